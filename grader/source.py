@@ -99,13 +99,27 @@ class Source:
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
 
-    def rewrites(self, tag: int, name: str, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
+    def rewrites(self, tag: int, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
         """Return the ways to give an attribute of an expanded element another value; None where its text is what is read.
 
-        `name` is the tag, and `old` and `new` are the values that the reader sees.
+        `old` and `new` are the values that the reader sees.
         """
-        del tag, name, attribute, old, new
+        del tag, attribute, old, new
         return None
+
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro of xacro that an edit is in, each with the macro's name; nothing outside of macros."""
+        del edit
+        return ()
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element as it is inserted in or instead of the one with this index."""
+        del tag
+        return xml
+
+    def corrections(self) -> "list[tuple[Edit, ...]]":
+        """Return the edits that may correct names of xacro which are not defined."""
+        return []
 
 
 class LazyLocation(NamedTuple):

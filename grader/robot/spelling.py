@@ -1,6 +1,6 @@
 """Unknown names that look like misspelt ones, which ROS 2 silently ignores, and repeated elements."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from grader.names import closest
 from grader.robot import catalogue
@@ -79,23 +79,20 @@ def check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    for name in unknown_attributes(element):
-        meant = meant_attribute(element, name, problems.closest)
-        if meant:
-            message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
-            problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
+    for name, meant in misspelt_attributes(element, problems.closest):
+        message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
+        problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
 
 
-def unknown_attributes(element: Element) -> list[str]:
-    """Return the attributes of an element that urdfdom does not read."""
-    known = _ATTRIBUTES.get(str(element.tag))
-    return [name for name in map(str, element.keys()) if known is not None and name not in known and name[0] != "{"]
-
-
-def meant_attribute(element: Element, name: str, closest: Closest = closest) -> str | None:
-    """Return the attribute that an unknown one of an element is probably meant to be."""
-    missing = _ATTRIBUTES[str(element.tag)] - set(map(str, element.keys()))
-    return _SWAPPED.get((str(element.tag), name)) or closest(name, missing)
+def misspelt_attributes(element: Element, closest: Closest = closest) -> Iterator[tuple[str, str]]:
+    """Yield the attributes of an element that urdfdom does not read, each with the one that is probably meant."""
+    known, given = _ATTRIBUTES.get(str(element.tag)), list(map(str, element.keys()))
+    missing = known - set(given) if known else frozenset[str]()
+    for name in given if missing else ():
+        if known is not None and name not in known and not name.startswith("{"):
+            meant = _SWAPPED.get((str(element.tag), name)) or closest(name, missing)
+            if meant:
+                yield name, meant
 
 
 def meant_tag(element: Element, closest: Closest = closest) -> str | None:

@@ -49,9 +49,10 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     """Return a submission with the URDF read again, and nothing else: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
-    data = files.get(urdf.path) or urdf.data
     if submission.is_single:
-        return replace(submission, urdf=read_as_ros(data, urdf.path, Surroundings(arguments=submission.arguments)))
+        path, data = next(((path, data) for path, data in files.items() if data is not None), (urdf.path, urdf.data))
+        return replace(submission, urdf=read_as_ros(data, path, Surroundings(arguments=submission.arguments)))
+    data = files.get(urdf.path) or urdf.data
     everything = overlaid(submission.everything, files)
     around = Surroundings(everything, submission.package, submission.packages, submission.arguments)
     return replace(submission, urdf=read_as_ros(data, urdf.path, around), everything=everything)

@@ -11,8 +11,8 @@ from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
 from grader.xacro.macros import MacroError
-from grader.xacro.nodes import Node, Place
-from grader.xacro.scopes import Reported, Scope
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
@@ -62,7 +62,13 @@ class Expander:
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
+        self.unknown: list[
+            tuple[UnknownName, Place, str | None]
+        ] = []  # names that are not defined, and where they are used
         self.calls: tuple[tuple[str, Place], ...] = ()
+        self.uses: dict[
+            tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]
+        ] = {}  # of macros, each with its calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._handlers = handlers
         self._other = other
@@ -106,7 +112,7 @@ class Expander:
 
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
-        out = Node(source.tag, self._placed(source.place))
+        out = Node(source.tag, self._placed(source.place, scopes.symbols))
         out.moved, out.unresolved = source.moved, dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
@@ -118,16 +124,23 @@ class Expander:
     def refuse(self, error: ExpressionFails, place: Place, attribute: str | None = None) -> None:
         """List that xacro refuses something, unless it is listed already."""
         if not isinstance(error, Reported):
-            self.report(str(error), place, attribute, _KINDS.get(type(error), catalogue.XACRO_EXPRESSION))
+            self.report(error, place, attribute)
 
-    def report(
-        self, message: str, place: Place, attribute: str | None, kind: Kind = catalogue.XACRO_EXPRESSION
-    ) -> None:
+    def report(self, error: ExpressionFails, place: Place, attribute: str | None) -> None:
         """List a problem at a place."""
+        message = str(error)
         if self._is_new(message, place, attribute):
             location = self._placed(place).at(attribute)
             joint = " " if message.endswith("?") else "; "
+            kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
             self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
+            if isinstance(error, XacroFails) and error.unknown is not None:
+                self.unknown.append((error.unknown, place, attribute))
+
+    def use(self, name: str, body: Place, call: Place) -> None:
+        """Note that a macro is called."""
+        _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
+        calls[call.source.path, call.tag] = call
 
     def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
         """Note that an expanded element may have more content than is known."""
@@ -146,8 +159,8 @@ class Expander:
             self._listed.add((message, place.source.path, place.tag, attribute))
         return len(self._listed) > known
 
-    def _placed(self, place: Place) -> Place:
-        return place if place.calls is not None else Place(place.source, place.tag, self.calls)
+    def _placed(self, place: Place, scope: Scope | None = None) -> Place:
+        return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
         self.budget.spend()

@@ -5,16 +5,21 @@ same, so that one defect does not hide another.
 """
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import NamedTuple
 
+from grader.markup import element_end
 from grader.problems import Problem
-from grader.source import Location, Source
+from grader.source import Edit, Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
+from grader.xacro.edits import Rewriter
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
+from grader.xacro.spelling import corrections
 from grader.xacro.tags import CALL, HANDLERS
+from grader.xacro.written import with_parameters
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
@@ -42,9 +47,10 @@ class Expansion(NamedTuple):
 class ExpandedSource(Source):
     """The text of a xacro file, whose start tags are those of the expanded elements."""
 
-    def __init__(self, source: Source, nodes: list[Node]) -> None:
+    def __init__(self, source: Source, nodes: list[Node], expander: Expander) -> None:
         super().__init__(source.path, source.text)
         self._nodes = nodes
+        self._expander = expander
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """Return the location in the source of an expanded element, or of an attribute if it has it."""
@@ -56,6 +62,43 @@ class ExpandedSource(Source):
         """Return the index of the first expanded element of this name after another one; that one if there is none."""
         others = range(index + 1, len(self._nodes))
         return next((other for other in others if self._nodes[other].tag == name), index)
+
+    def element(self, tag: int) -> tuple[Source, int]:
+        """Return the text that an expanded element was written in, and the offset of its start tag: also of an included file."""
+        place = self._nodes[tag].place
+        return place.source.element(place.tag)
+
+    def rewrites(self, tag: int, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
+        """Return the ways to give an attribute of an expanded element another value, the most plausible first."""
+        node = self._nodes[tag]
+        moved = node.moved.get(attribute)
+        if moved is not None:
+            return self._rewriter.ways(moved, "value", old, new)
+        return self._rewriter.ways(node.place, attribute, old, new)
+
+    def corrections(self) -> list[tuple[Edit, ...]]:
+        """Return the edits that may correct names which are not defined."""
+        return corrections(self._expander.unknown)
+
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
+        found: tuple[int, tuple[tuple[str, Location], ...]] = (-1, ())
+        for name, body, calls in self._expander.uses.values():
+            source, start = body.source.element(body.tag)
+            if source.path == edit.path and start <= source.offset(edit.line, edit.column) < element_end(
+                source.text, start
+            ):
+                found = max(found, (start, tuple((name, call.at()) for call in calls.values())), key=lambda it: it[0])
+        return found[1]
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element that is inserted in the one with this index: in a macro, with its parameters in names."""
+        scope = self._nodes[tag].place.scope
+        return with_parameters(xml, scope) if scope is not None else xml
+
+    @cached_property
+    def _rewriter(self) -> "Rewriter":
+        return Rewriter(self._expander.texts)
 
 
 def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> Expansion:
@@ -81,7 +124,11 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
     return Expansion(
-        element, ExpandedSource(plain, nodes), (*refused, *expander.problems), tuple(expander.undetermined), unresolved
+        element,
+        ExpandedSource(plain, nodes, expander),
+        (*refused, *expander.problems),
+        tuple(expander.undetermined),
+        unresolved,
     )
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.errors import InputError, NotDecided
 from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro.nodes import Node, read_nodes
+from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
 
@@ -34,7 +35,7 @@ class Workspace(NamedTuple):
     is_part: bool = False
 
 
-class FileFails(ExpressionFails):
+class FileFails(XacroFails):
     """A file that is not there."""
 
 
@@ -91,7 +92,10 @@ class Files:
         try:
             return self._workspace.read(path)
         except InputError as error:
-            raise FileFails(str(error)) from None
+            folder = posixpath.dirname(path)
+            names = (posixpath.basename(other) for other in self._workspace.paths if posixpath.dirname(other) == folder)
+            unknown = UnknownName(posixpath.basename(path), dict.fromkeys(names))
+            raise FileFails(str(error), unknown) from None
         except NotDecided as error:
             raise Undetermined(str(error)) from None
 

@@ -13,7 +13,7 @@ from grader.xacro.macros import (
     read_parameters,
 )
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Scope
+from grader.xacro.scopes import Definition, Scope, UnknownName
 
 _MAX_CALLS = 100  # macros that call each other
 
@@ -37,7 +37,8 @@ def define_macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> No
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
-    scopes.macros.bind(name, Macro(name, node, read_parameters(node.attributes.get("params", ""))))
+    macro = Macro(name, node, read_parameters(node.attributes.get("params", "")))
+    scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
 
 def call_macro(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
@@ -59,7 +60,9 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     if found is None:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open
-        raise MacroError(f"there is no macro {name} at this place{did_you_mean(name, scopes.macros.names())}")
+        known = scopes.macros.definitions()
+        message = f"there is no macro {name} at this place{did_you_mean(name, known)}"
+        raise MacroError(message, UnknownName(name, known))
     macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
@@ -71,6 +74,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
         raise Undetermined(given.open)
     bind_blocks(macro, given.elements, left, inner.symbols)
     bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
+    expander.use(name, macro.body.place, node.place)
     before = expander.calls
     expander.calls = (*before, (name, node.place))
     try:
@@ -91,7 +95,7 @@ def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> N
     else:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open
-        raise MacroError(f"there is no block {name} at this place")
+        raise MacroError(f"there is no block {name} at this place", UnknownName(name, scopes.symbols.blocks()))
     if key.startswith("**"):
         expander.start(block, scopes)
         expander.insert(block, out, scopes)

@@ -3,9 +3,9 @@
 import re
 from typing import NamedTuple
 
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Undetermined
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Scope
+from grader.xacro.scopes import Definition, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
@@ -16,7 +16,7 @@ _MAX_PARAMETERS = 200
 _MAX_QUOTES = 30  # in the parameters of one macro: the time to match them doubles with each
 
 
-class MacroError(ExpressionFails):
+class MacroError(XacroFails):
     """A macro that is not defined, or a call that does not fit its parameters."""
 
 
@@ -89,8 +89,9 @@ def bind_values(macro: Macro, call: Node, caller: Scope, inner: Scope, texts: Te
     for name, text in call.attributes.items():
         parameter = next((parameter for parameter in left if parameter.name == name), None)
         if parameter is None:
-            known = ", ".join(parameter.name for parameter in macro.parameters) or "none"
-            raise MacroError(f"the macro {macro.name} has no parameter {name}; it has: {known}")
+            known = {parameter.name: (macro.body.place, "params") for parameter in macro.parameters}
+            message = f"the macro {macro.name} has no parameter {name}; it has: {', '.join(known) or 'none'}"
+            raise MacroError(message, UnknownName(name, known))
         left.remove(parameter)
         texts.bind(inner, name, text, caller, call.place, name)
     return left
@@ -103,7 +104,8 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
         if parameter.is_block:
             if not waiting:
                 raise MacroError(f"this call of the macro {macro.name} has no element for {parameter.name}")
-            inner.bind(parameter.name, waiting.pop(0))
+            definition = Definition(parameter.name, "", macro.body.place, "params", inner)
+            inner.bind(parameter.name, waiting.pop(0), definition=definition)
     if waiting:
         raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")
 
@@ -115,7 +117,9 @@ def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Sco
         if parameter.is_block or parameter.name in missing:
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
-            inner.bind(parameter.name, texts.find(parameter.name, caller))
+            holder = caller.holder(parameter.name)
+            definition = holder.properties[parameter.name].definition if holder is not None else None
+            inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:
             texts.bind(inner, parameter.name, parameter.default, caller, macro.body.place, "params")
         else:

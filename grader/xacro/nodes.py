@@ -1,11 +1,10 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
 import re
-from dataclasses import replace
-from typing import NamedTuple
 
-from grader.source import Location, Source
+from grader.source import Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.xacro.scopes import Place
 from grader.xml.parsing import Element, parse_xml
 
 Children = list["Node | str"]
@@ -19,21 +18,6 @@ _MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
-
-
-class Place(NamedTuple):
-    """A start tag in a source file; `calls` are the macro calls that led to it, outermost first, None before expansion."""
-
-    source: Source
-    tag: int
-    calls: "tuple[tuple[str, Place], ...] | None" = None
-
-    def at(self, attribute: str | None = None) -> Location:
-        """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
-        location = self.source.tag(self.tag, attribute)
-        if not self.calls:
-            return location
-        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls))
 
 
 class Node:

@@ -1,16 +1,67 @@
 """The names that xacro binds: properties, evaluated when they are first used, and macros, in nested scopes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import NamedTuple
 
+from grader.source import Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
-from grader.xacro.nodes import Place
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one.
 Evaluate = Callable[[str, "Scope"], Value]
-Report = Callable[[str, Place, str], None]
+Report = Callable[[ExpressionFails, "Place", str], None]
 
 
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+
+
+class Place(NamedTuple):
+    """A start tag in a source file; once it is expanded, with the macro calls that led to it, outermost first, and the scope."""
+
+    source: Source
+    tag: int
+    calls: "tuple[tuple[str, Place], ...] | None" = None
+    scope: "Scope | None" = None
+
+    def at(self, attribute: str | None = None) -> Location:
+        """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
+        location = self.source.tag(self.tag, attribute)
+        if not self.calls:
+            return location
+        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls))
+
+
+Key = tuple[str, int, str, str]
+
+
+class Definition(NamedTuple):
+    """Where a name got its value: the text in an attribute, and the scope in which it is evaluated."""
+
+    name: str
+    text: str
+    place: Place
+    attribute: str
+    scope: "Scope"
+
+    @property
+    def key(self) -> Key:
+        """What identifies the text in the source, however often it is evaluated."""
+        return self.place.source.path, self.place.tag, self.attribute, self.name
+
+
+class UnknownName(NamedTuple):
+    """A name that is not defined, and those that are, each with the place and attribute that define it where they are known."""
+
+    name: str
+    known: "Mapping[str, tuple[Place, str] | None]"
+
+
+class XacroFails(ExpressionFails):
+    """Something that xacro refuses, perhaps for a name that it does not know."""
+
+    def __init__(self, message: str, unknown: UnknownName | None = None) -> None:
+        super().__init__(message)
+        self.unknown = unknown
 
 
 class Reported(ExpressionFails):
@@ -20,13 +71,13 @@ class Reported(ExpressionFails):
 class Property:
     """A value, or the text whose value is determined at the first use; `failure` is why it has none."""
 
-    __slots__ = ("failure", "is_lazy", "is_open", "place", "value")
+    __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
 
-    def __init__(self, value: Value, *, is_lazy: bool, place: Place | None) -> None:
+    def __init__(self, value: Value, *, is_lazy: bool, definition: Definition | None) -> None:
         value = literal(value)
         self.value = value
         self.is_lazy = is_lazy and isinstance(value, str)
-        self.place = place
+        self.definition = definition
         self.is_open = False  # whether it is being evaluated
         self.failure: ExpressionFails | Undetermined | None = None
 
@@ -59,9 +110,23 @@ class Scope:
         own = [name for name in self.properties if name.isidentifier()]
         return own + (self.parent.names() if self.parent is not None else [])
 
-    def bind(self, name: str, value: Value, *, is_lazy: bool = False, place: Place | None = None) -> None:
+    def definitions(self) -> dict[str, tuple[Place, str] | None]:
+        """Return the names that are known here, each with the tag and attribute that define it; a parameter has none."""
+        found = self.parent.definitions() if self.parent is not None else {}
+        for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
+            if name.isidentifier():
+                is_tag = definition is not None and definition.attribute in ("name", "value", "default")
+                found[name] = (definition.place, "name") if definition is not None and is_tag else None
+        return found
+
+    def blocks(self) -> dict[str, tuple[Place, str] | None]:
+        """Return the names of the blocks of this macro, with its own tag."""
+        bound = {name.lstrip("*"): it.definition for name, it in self.properties.items() if name.startswith("*")}
+        return {name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()}
+
+    def bind(self, name: str, value: Value, *, is_lazy: bool = False, definition: Definition | None = None) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
-        self.properties[name] = Property(value, is_lazy=is_lazy, place=place)
+        self.properties[name] = Property(value, is_lazy=is_lazy, definition=definition)
 
     def remove(self, name: str) -> None:
         """Remove a name from this scope and those around it."""
@@ -83,8 +148,8 @@ class Scope:
         try:
             found.value, found.is_lazy = literal(evaluate(found.value, self)), False
         except ExpressionFails as error:
-            if found.place is not None and not isinstance(error, Reported):
-                report(str(error), found.place, "value")
+            if found.definition is not None and not isinstance(error, Reported):
+                report(error, found.definition.place, "value")
             found.failure = Reported(str(error))
             raise found.failure from None
         except Undetermined as error:

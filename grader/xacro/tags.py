@@ -10,7 +10,7 @@ from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import BOOLEANS, Reported, Scope
+from grader.xacro.scopes import BOOLEANS, Definition, Reported, Scope
 from grader.xacro.texts import for_xml
 
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
@@ -44,11 +44,10 @@ def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     if is_removed and texts.is_bound(name, symbols):
         symbols.remove(name)
         return
-    text = given.get("value")
-    if "default" in given:
-        if texts.is_bound(name, symbols):
-            return
-        text = given["default"]
+    if "default" in given and texts.is_bound(name, symbols):
+        return
+    attribute = "default" if "default" in given else "value"
+    text = given.get(attribute)
     value: Value = text
     if text is None:
         name, value = f"**{name}", node
@@ -61,9 +60,10 @@ def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
             raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
         target, is_lazy = _outer(symbols), False
     if is_lazy or text is None:
-        target.bind(name, value, is_lazy=True, place=node.place)
+        definition = Definition(name, text, node.place, attribute, target) if text is not None else None
+        target.bind(name, value, is_lazy=True, definition=definition)
     else:
-        texts.bind(target, name, text, symbols, node.place, "value")
+        texts.bind(target, name, text, symbols, node.place, attribute)
 
 
 def _outer(symbols: Scope) -> Scope:
@@ -85,6 +85,7 @@ def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     name, default = needed(node, "name"), needed(node, "default")
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
+        expander.texts.defaults[name] = Definition(name, default, node.place, "default", scopes.symbols)
 
 
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
@@ -101,7 +102,7 @@ def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
     if value and not isinstance(value, str):
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
     out.attributes[name] = for_xml(value or "")
-    out.moved = {**out.moved, name: node.place}
+    out.moved = {**out.moved, name: node.place._replace(scope=scopes.symbols)}
 
 
 def _check_name(name: Value, node: Node) -> None:

@@ -1,7 +1,8 @@
 """The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from copy import copy
 from keyword import iskeyword
 from typing import Any
 
@@ -9,10 +10,9 @@ from grader.names import did_you_mean
 from grader.static_python.closed import Budget, OutOfSteps, evaluate
 from grader.static_python.closed_values import ExpressionFails, Namespace, Undetermined, Value, check_size, text_of
 from grader.xacro.functions import GLOBALS, argument_value
-from grader.xacro.nodes import Place
-from grader.xacro.scopes import Report, Reported, Scope
+from grader.xacro.scopes import Definition, Key, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
 
-_PIECE = re.compile(
+PIECE = re.compile(
     r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
@@ -33,11 +33,19 @@ class Texts:
     ) -> None:
         """`own` are functions that need the document, such as load_yaml; `is_own` says whether a package was submitted."""
         self.arguments = arguments
+        self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
+        self._supposed: Mapping[Key, str] | None = None
         self._budget = budget
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
+
+    def supposing(self, texts: Mapping[Key, str], budget: Budget) -> "Texts":
+        """Return the same with other texts where names are defined. Nothing is reported or remembered."""
+        other = copy(self)
+        vars(other).update(_supposed=texts, _budget=budget, _report=lambda *_: None)
+        return other
 
     def evaluate(self, text: str, scope: Scope) -> Value:
         """Return the value of a text: that of its expression, if it is a single one, else a text."""
@@ -47,7 +55,7 @@ class Texts:
         values: list[Value] = []
         position = 0
         while position < len(text):
-            piece = _PIECE.match(text, position)
+            piece = PIECE.match(text, position)
             if piece is None:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
@@ -68,13 +76,20 @@ class Texts:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
         if holder is not None:
-            return holder.value(name, self.evaluate, self._report)
+            definition = holder.properties[name].definition if self._supposed is not None else None
+            return self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
         if name in self._globals:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open
-        known = (*scope.names(), *self._globals)
-        raise ExpressionFails(f"there is no property {name} at this place{did_you_mean(name, known)}")
+        known = {**dict.fromkeys(self._globals), **scope.definitions()}
+        message = f"there is no property {name} at this place{did_you_mean(name, known)}"
+        raise XacroFails(message, UnknownName(name, known))
+
+    def _again(self, definition: Definition) -> Value:
+        """Return the value of a definition with the supposed texts."""
+        text = (self._supposed or {}).get(definition.key, definition.text)
+        return literal(self.evaluate(text, definition.scope)) if "$" in text else literal(text)
 
     def is_bound(self, name: str, scope: Scope) -> bool:
         """Return whether a name has a value in a scope."""
@@ -91,11 +106,11 @@ class Texts:
         except Reported as error:
             failure = error
         except ExpressionFails as error:
-            self._report(str(error), place, attribute)
+            self._report(error, place, attribute)
             failure = Reported(str(error))
         except Undetermined as error:
             failure = error
-        target.bind(name, value)
+        target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
     def namespace(self, name: str, scope: Scope) -> Namespace:
@@ -157,6 +172,8 @@ class Texts:
 
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
+        if self._supposed is not None and name in self.defaults:
+            return text_of(self._again(self.defaults[name]))
         if name in self.arguments:
             return known(name, self.arguments[name])
         raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")

@@ -13,6 +13,7 @@ from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.source import Edit
 from grader.submission.editing import content
+from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -100,14 +101,15 @@ class Search:
     def _proposals(self, state: State, names: Iterable[str]) -> list[Proposal]:
         """Return edits for criteria."""
         criteria = [self._criteria[name] for name in names]
-        found: list[Proposal] = []
+        about_urdf = any(criterion.check.subject == "urdf" for criterion in criteria)
+        found: list[Proposal] = list(raw_xacro_proposals(state.submission)) if about_urdf else []
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
             reference = self.reference or draft
             shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
             anchors = tuple(dict.fromkeys((*shown, *moved)))
-            if any(criterion.check.subject == "urdf" for criterion in criteria):
+            if about_urdf:
                 shown = moved = tuple(dict.fromkeys((*anchors, *(link.name for link in reference.robot.links))))
             places = [
                 result.outcome.location for result in state.results.values() if result.outcome.location is not None
@@ -260,7 +262,10 @@ def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
 
 def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
     """Return the edits of a submission that do what `first` does, and then `second`."""
-    joined: list[Edit] = []
+    joined = [edit for edit in (*first, *second) if edit.renamed]
+    before = {edit.renamed: edit.path for edit in joined}
+    second = [edit._replace(path=before.get(edit.path, edit.path)) for edit in second]
+    first, second = ([edit for edit in edits if not edit.renamed] for edits in (first, second))
     for path in dict.fromkeys(edit.path for edit in (*first, *second)):
         text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
         halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))

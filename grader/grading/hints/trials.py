@@ -82,7 +82,8 @@ class Trials:
         files = edited_files(state.submission, edits)
         if files is None:
             return None
-        if isinstance(state.submission.urdf, Read) and not any(_is_of_package(path) for path in files):
+        is_moved = None in files.values()
+        if isinstance(state.submission.urdf, Read) and not is_moved and not any(map(_is_of_package, files)):
             return with_urdf(state.submission, files)
         return self._from_scratch(state, edits)
 

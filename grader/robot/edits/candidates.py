@@ -9,10 +9,11 @@ from grader.robot.edits.families import written
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
 from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
-from grader.robot.spelling import meant_attribute, meant_tag, unknown_attributes
+from grader.robot.spelling import meant_tag, misspelt_attributes
 from grader.source import Location
 
 _MAX_ELEMENTS = 2000  # whose names are looked at
+_MAX_MISSPELT = 5  # attributes of one element
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
@@ -30,6 +31,8 @@ def proposals(
     """
     poses = Poses(draft.robot, reference.robot, anchors)
     found: dict[frozenset[object], Proposal] = {}
+    for edits in draft.source.corrections():
+        found[frozenset(edits)] = Proposal(edits, "a name that is not defined", "correct the name", "xacro")
     for proposal in (*misspelt(draft), *other_units(draft)):
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
@@ -60,14 +63,11 @@ def _of_link(
 def misspelt(draft: Draft) -> Iterator[Proposal]:
     """Correct the names of attributes and elements that ROS 2 ignores: height= of a cylinder, xzy=, <vizual>."""
     for element in islice(draft.root.iter(), _MAX_ELEMENTS):
-        for name in unknown_attributes(element):
-            meant = meant_attribute(element, name)
-            if meant is not None:
-                of = f"<{element.tag}>"
-                edits = draft.rename_attribute(element, name, meant)
-                yield Proposal(
-                    edits, f"the name of the attribute {meant}", f"correct the name of the attribute {meant}{{}}", of
-                )
+        for name, meant in islice(misspelt_attributes(element), _MAX_MISSPELT):
+            of, edits = f"<{element.tag}>", draft.rename_attribute(element, name, meant)
+            yield Proposal(
+                edits, f"the name of the attribute {meant}", f"correct the name of the attribute {meant}{{}}", of
+            )
         tag = meant_tag(element)
         if tag is not None:
             yield Proposal(

@@ -80,7 +80,7 @@ class Draft:
     def set(self, element: Element, attribute: str, value: str) -> list[Edits]:
         """Return the ways to give an attribute another value."""
         old, tag = element.get(attribute) or "", self._tags[element]
-        ways = self.source.rewrites(tag, str(element.tag), attribute, old, escaped(value))
+        ways = self.source.rewrites(tag, attribute, old, escaped(value))
         if ways is not None:
             return ways
         source, start = self.source.element(tag)
@@ -99,16 +99,16 @@ class Draft:
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
-        source, start = self.source.element(self._tags[parent])
-        return (with_child(source, start, xml),)
+        tag = self._tags[parent]
+        return (with_child(*self.source.element(tag), self.source.adapted(tag, xml)),)
 
     def append(self, xml: str) -> Edits:
         """Return the edit that inserts an element after the last one of the robot."""
-        last = next(self.root.iterchildren(reversed=True), None)
-        if last is None:
-            return self.insert(self.root, xml)
-        source, start = self.source.element(self._tags[last])
-        return (with_sibling(source, start, xml),)
+        for last in self.root.iterchildren(reversed=True):
+            place = self.source.tag(self._tags[last])
+            if place.path == self.source.path and not place.calls:  # not in a macro of xacro, nor in another file
+                return (with_sibling(*self.source.element(self._tags[last]), xml),)
+        return self.insert(self.root, xml)
 
     def remove(self, element: Element) -> Edits:
         """Return the edit that removes an element."""
@@ -117,8 +117,8 @@ class Draft:
 
     def replace(self, element: Element, xml: str) -> Edits:
         """Return the edit that replaces an element."""
-        source, start = self.source.element(self._tags[element])
-        return (with_element(source, start, xml),)
+        tag = self._tags[element]
+        return (with_element(*self.source.element(tag), self.source.adapted(tag, xml)),)
 
 
 def end_of(joint: Element, role: str) -> str:

@@ -84,7 +84,7 @@ def renamed(draft: Draft, old: str, new: str) -> Edits:
             end = child_of(found, role)
             if end is not None and end.get("link") == old:
                 edits += draft.set(end, "link", new)[0]
-    return edits
+    return tuple(dict.fromkeys(edits))  # a parameter of xacro can be both names
 
 
 def duplicates(draft: Draft, link: str) -> Iterator[Proposal]:

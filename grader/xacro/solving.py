@@ -1,0 +1,183 @@
+"""A number of the expanded file and the texts that it is computed from: which change of one of them gives another number."""
+
+import re
+from collections.abc import Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.static_python.closed import Budget
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.xacro.scopes import Definition, Key, Scope
+from grader.xacro.texts import Texts
+from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
+from grader.xacro.written import Change, Written, defined
+
+_ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
+_MAX_STEPS = 40_000  # of all evaluations for one document
+_MAX_SITES = 10  # texts that one number is computed from
+_MAX_NAMES = 24  # that are tried in place of another one
+_MAX_DIGITS = 6
+_NICE_DIGITS = 3  # more are no number that a student would write into an expression
+_ROUNDS = 8  # of the secant method
+_TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
+
+
+class Ranked(NamedTuple):
+    """A change; the smaller the rank, the more plausible."""
+
+    rank: tuple[int, int]
+    change: Change
+
+
+class Evaluator:
+    """What texts would be if others were written where names are defined; all within one budget of steps."""
+
+    def __init__(self, texts: Texts) -> None:
+        self._texts = texts
+        self._budget = Budget(_MAX_STEPS)
+        self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
+
+    def value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> Value:
+        """Return the value of a text; None if it has none, or no steps are left."""
+        try:
+            return self._texts.supposing(supposed or {}, self._budget).evaluate(text, scope)
+        except (ExpressionFails, Undetermined, RecursionError):
+            return None
+
+    def number(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> float | None:
+        """Return the number that a text is; None if it is none."""
+        return as_number(self.value(text, scope, supposed))
+
+    def arguments(self, text: str) -> list[Definition]:
+        """Return the defaults of the arguments in a text."""
+        return [self._texts.defaults[name] for name in _ARGUMENT.findall(text) if name in self._texts.defaults]
+
+    def names(self, scope: Scope) -> tuple[list[str], list[str]]:
+        """Return the names that have numbers in a scope, and those of the innermost macro that are 1 or -1."""
+        if id(scope) not in self._known:
+            found = dict.fromkeys(scope.names()[:_MAX_NAMES])
+            known = [name for name in found if self.number(f"${{{name}}}", scope) is not None]
+            own = [name for name in known if scope.parent is not None and name in scope.properties]
+            signs = [name for name in own if abs(self.number(f"${{{name}}}", scope) or 0.0) == 1.0]
+            self._known[id(scope)] = scope, (known, signs)
+        return self._known[id(scope)][1]
+
+
+def as_number(value: Value) -> float | None:
+    """Return a value as a number; None if it is none."""
+    if not isinstance(value, str | int | float) or (isinstance(value, str) and "_" in value):
+        return None
+    try:
+        return float(value)
+    except (ValueError, OverflowError):
+        return None
+
+
+def is_near(value: float | None, wanted: float) -> bool:
+    """Return whether a number is as good as the wanted one."""
+    return value is not None and abs(value - wanted) <= _TOLERANCE * abs(wanted) + 1e-6
+
+
+class Site(NamedTuple):
+    """A text that a number is computed from; `key` is None for the text of the attribute itself."""
+
+    written: Written
+    key: Key | None
+    rank: int
+
+
+class ComputedNumber:
+    """A number in an attribute, such as ${-length/4}."""
+
+    def __init__(self, evaluator: Evaluator, written: Written) -> None:
+        self.written = written
+        self._evaluator = evaluator
+        self._memo: dict[tuple[Key | None, str], float | None] = {}
+
+    def changes(self, wanted: float) -> list[Ranked]:
+        """Return the changes of one text that give the wanted number, the most plausible first."""
+        found: dict[Change, Ranked] = {}
+        for site in self._sites:
+            for ranked in (*self._varied(site, wanted), *self._solved(site, wanted)):
+                found.setdefault(ranked.change, ranked)
+        return sorted(found.values(), key=lambda ranked: ranked.rank)
+
+    @cached_property
+    def _sites(self) -> list[Site]:
+        sites: dict[Key | None, Site] = {None: Site(self.written, None, 0)}
+        pending = [self.written]
+        while pending and len(sites) < _MAX_SITES:
+            for definition in definitions(pending.pop(0), self._evaluator):
+                text = defined(definition)
+                if text is not None and definition.key not in sites:
+                    is_given = definition.attribute not in ("params", "value", "default")
+                    sites[definition.key] = Site(text, definition.key, 0 if is_given else 1)
+                    pending.append(text)
+        return list(sites.values())
+
+    def _with(self, site: Site, text: str) -> float | None:
+        """Return the number that another text at a site gives."""
+        if (site.key, text) not in self._memo:
+            root, supposed = (text, None) if site.key is None else (self.written.text, {site.key: text})
+            self._memo[site.key, text] = self._evaluator.number(root, self.written.scope, supposed)
+        return self._memo[site.key, text]
+
+    def _varied(self, site: Site, wanted: float) -> Iterator[Ranked]:
+        kinds: set[int] = set()
+        for kind, text in variants(site.written.text, *self._evaluator.names(site.written.scope)):
+            if kind not in kinds and is_near(self._with(site, text), wanted):
+                kinds.add(kind)
+                yield Ranked((kind + 2 * site.rank, 0), Change(site.written, text))
+
+    def _solved(self, site: Site, wanted: float) -> Iterator[Ranked]:
+        for slot in numbers(site.written.text):
+            solution = self._solution(site, slot, wanted)
+            is_plain = slot.end - slot.start == len(site.written.text.strip())
+            if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
+                text, digits = solution
+                yield Ranked((NUMBER + 2 * site.rank + (not is_plain), digits), Change(site.written, text))
+
+    def _solution(self, site: Site, slot: Slot, wanted: float) -> tuple[str, int] | None:
+        """Return the text with the number in a slot that gives the wanted one, and how many digits it has."""
+
+        def of(number: float) -> float | None:
+            return self._with(site, with_number(site.written.text, slot, repr(number)))
+
+        before, start = slot.value, of(slot.value)
+        x, slope = before + 1e-3 + abs(before) / 64, 0.0
+        for _ in range(_ROUNDS):
+            value = of(x)
+            if start is None or value is None or x == before:
+                return None
+            slope = (value - start) / (x - before)
+            if not slope:
+                return None
+            before, start, x = x, value, x + (wanted - value) / slope
+            if abs(wanted - value) <= 1e-9 * (1 + abs(wanted)):
+                break
+        for digits in range(1, _MAX_DIGITS + 1):
+            shown = decimal(before, digits)
+            if abs((float(shown) - before) * slope) <= 2 * (_TOLERANCE * abs(wanted) + 1e-6):
+                text = with_number(site.written.text, slot, shown)
+                if is_near(self._with(site, text), wanted):
+                    return text, digits
+        return None
+
+
+def decimal(value: float, digits: int) -> str:
+    """Return a number with so many significant digits, without an exponent where it can be."""
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-9 < abs(value) < 1e9:
+        text = f"{float(text):.9f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def definitions(text: Written, evaluator: Evaluator) -> Iterator[Definition]:
+    """Yield where the names in the expressions of a text are defined."""
+    for expression in EXPRESSION.findall(text.text):
+        for name in NAME.findall(expression):
+            holder = text.scope.holder(name)
+            definition = holder.properties[name].definition if holder is not None else None
+            if definition is not None:
+                yield definition
+    yield from evaluator.arguments(text.text)

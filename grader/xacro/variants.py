@@ -1,0 +1,86 @@
+"""Small changes of the text of an expression, as in mistakes: a sign, an operator, a name, a half, a number."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?![\w.(])")
+_PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
+_NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_OPERATOR = re.compile(r"(?<=[\w.)\s])(?<!\*)[-+*/](?![*/])")
+_OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
+_DIVIDED = re.compile(r"/\s*[\d.]+\Z")
+_TERM = re.compile(r"[\w.]+")
+_MAX_VARIANTS = 60  # of one text
+SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(6)  # kinds of changes, the most plausible first
+
+
+class Slot(NamedTuple):
+    """A number in a text: its offsets, and its value."""
+
+    start: int
+    end: int
+    value: float
+
+
+def numbers(text: str) -> list[Slot]:
+    """Return the numbers in the expressions of a text; the text itself, if it is one."""
+    plain = _PLAIN.fullmatch(text)
+    if plain is not None:
+        return [Slot(plain.start(1), plain.end(1), float(plain[1]))]
+    inside = ((found.start(1), found.end(1)) for found in EXPRESSION.finditer(text))
+    slots = (number for start, end in inside for number in _NUMBER.finditer(text, start, end))
+    return [Slot(number.start(), number.end(), float(number[0])) for number in slots]
+
+
+def with_number(text: str, slot: Slot, number: str) -> str:
+    """Return a text with another number, in parentheses where its sign would follow another one."""
+    before = text[: slot.start].rstrip()[-1:]
+    shown = f"({number})" if number.startswith("-") and before in ("-", "+", "*") else number
+    return f"{text[: slot.start]}{shown}{text[slot.end :]}"
+
+
+def variants(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Yield texts with one change of an expression, each with its rank: the smaller, the more plausible.
+
+    `names` are known at this place; those in `signs` have the value 1 or -1.
+    """
+    for found in EXPRESSION.finditer(text):
+        start, end = found.span(1)
+        for _, (rank, inner) in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, signs), strict=False):
+            yield rank, f"{text[:start]}{inner}{text[end:]}"
+    if _PLAIN.fullmatch(text):
+        number = text.strip()
+        for sign in signs:
+            for magnitude in (number.lstrip("+-"), number):
+                yield FACTOR, f"${{{sign}*{magnitude}}}"
+
+
+def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
+    stripped = text.strip()
+    whole = stripped if _TERM.fullmatch(stripped) else f"({stripped})"
+    if stripped.startswith("-"):
+        yield SIGN, stripped[1:].lstrip()
+    yield SIGN, f"-{stripped.removeprefix('+')}"
+    yield SIGN, f"-{whole}"
+    for found in _OPERATOR.finditer(text):
+        yield OPERATOR, f"{text[: found.start()]}{_OTHER[found[0]]}{text[found.end() :]}"
+    for sign in signs:
+        yield FACTOR, f"{sign}*{whole}"
+        yield from ((FACTOR, without) for without in _without(rf"\b{sign}\s*\*\s*", text))
+    if not _DIVIDED.search(stripped):
+        yield HALF, f"{stripped}/2"
+        yield HALF, f"{whole}/2"
+    yield from ((HALF, without) for without in _without(r"\s*/\s*2(?![\w.])", text))
+    yield HALF, f"2*{whole}"
+    for found in NAME.finditer(text):
+        for name in names:
+            if name != found[0]:
+                yield OTHER_NAME, f"{text[: found.start()]}{name}{text[found.end() :]}"
+
+
+def _without(pattern: str, text: str) -> Iterator[str]:
+    """Yield a text without each of the parts that match."""
+    for found in re.finditer(pattern, text):
+        yield text[: found.start()] + text[found.end() :]

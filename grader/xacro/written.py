@@ -1,0 +1,87 @@
+"""Texts of a xacro file where they are written: the value of an attribute or a part of it, with its place for edits."""
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from grader import markup
+from grader.source import Edit, Source
+from grader.xacro.scopes import Definition, Place, Scope
+
+_VALUE = re.compile(r'("[^"$]*")')
+
+
+class Written(NamedTuple):
+    """A text that stands at an offset of a file, the scope in which it is evaluated, and the attribute that it is in."""
+
+    source: Source
+    start: int
+    text: str
+    scope: Scope
+    attribute: tuple[int, int]  # its offsets, with name and quotes
+
+    @property
+    def end(self) -> int:
+        """The offset after it."""
+        return self.start + len(self.text)
+
+    def part(self, start: int, end: int) -> "Written":
+        """Return a part of it."""
+        return self._replace(start=self.start + start, text=self.text[start:end])
+
+
+class Change(NamedTuple):
+    """A text that becomes another one."""
+
+    written: Written
+    new: str
+
+
+def edits_of(changes: Iterable[Change]) -> tuple[Edit, ...] | None:
+    """Return the edits that make changes, one for each attribute; None where two of them overlap."""
+    attributes: dict[tuple[str, int], list[Change]] = {}
+    for change in dict.fromkeys(changes):
+        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(change)
+    edits: list[Edit] = []
+    for inside in attributes.values():
+        source, (start, end) = inside[0].written.source, inside[0].written.attribute
+        new, position = "", start
+        for written, text in sorted(inside, key=lambda change: change.written.start):
+            if written.start < position:
+                return None
+            new += source.text[position : written.start] + text
+            position = written.end
+        edits.append(source.edit(start, end, new + source.text[position:end]))
+    return tuple(edits)
+
+
+def written(place: Place, attribute: str, scope: Scope) -> Written | None:
+    """Return the value of an attribute; None where it is missing, or has entities, so that the text is not what is read."""
+    source, start = place.source.element(place.tag)
+    found = markup.attribute(source.text, start, attribute)
+    text = source.text[found.value_start : found.value_end] if found is not None else "&"
+    if found is None or "&" in text:
+        return None
+    return Written(source, found.value_start, text, scope, (found.start, found.end))
+
+
+def with_parameters(xml: str, scope: Scope) -> str:
+    """Return elements in whose attributes the texts that a macro's parameters have are the parameters: ${side}_wheel."""
+    for name, bound in scope.properties.items() if scope.parent is not None else ():
+        if isinstance(bound.value, str) and bound.value.isidentifier() and name.isidentifier():
+            word = re.compile(rf"(?<![^\W_]){re.escape(bound.value)}(?![^\W_])")
+            pieces = _VALUE.split(xml)  # every other one is a value
+            pieces[1::2] = [word.sub(f"${{{name}}}", piece) for piece in pieces[1::2]]
+            xml = "".join(pieces)
+    return xml
+
+
+def defined(definition: Definition) -> Written | None:
+    """Return the text that a name is defined with: of a parameter's default the part of `params`."""
+    whole = written(definition.place, definition.attribute, definition.scope)
+    if whole is None or definition.attribute != "params" or whole.text == definition.text:
+        return whole
+    found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+    if found is None or not whole.text.startswith(definition.text, found.end()):
+        return None
+    return whole.part(found.end(), found.end() + len(definition.text))
