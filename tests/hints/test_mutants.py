@@ -2,6 +2,8 @@
 
 from random import Random
 
+import pytest
+
 from tests.hints.measure import verdicts
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, hints_for
@@ -36,4 +38,15 @@ def test_a_link_without_name_gets_its_name() -> None:
     changed = REFERENCE.text.replace('<link name="lidar">', "<link>")
     hints = hints_for(REFERENCE.changed(changed))
     assert [(edit.old, edit.new) for found in hints.found for edit in found.edits] == [("<link", '<link name="lidar"')]
+    assert hints.is_full
+
+
+@pytest.mark.parametrize(
+    "written", ['xyz="0.15 0 0.225 0"', 'xyz="0.15 0"', 'xyz=""', 'rpy="0 0 0 0 0"', 'rpy="1"', 'xyz="0.15, 0, 0.225"']
+)
+def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
+    """A vector with too many or too few numbers, or none, is replaced."""
+    changed = REFERENCE.text.replace('xyz="0.15 0 0.225" rpy="0 0 0"', written)
+    hints = hints_for(REFERENCE.changed(changed))
+    assert "lidar-frame" in hints.lost
     assert hints.is_full
