@@ -64,24 +64,6 @@ def with_attribute(source: Source, start: int, attribute: str, value: str) -> Ed
     return source.edit(found.start, found.end, f"{head}{value}{tail}")
 
 
-def with_attribute_name(source: Source, start: int, old: str, new: str) -> Edit | None:
-    """Return the edit that renames an attribute of the start tag at an offset, if it has it."""
-    found = markup.attribute(source.text, start, old)
-    if found is None:
-        return None
-    return source.edit(found.start, found.end, new + source.text[found.start + len(old) : found.end])
-
-
-def with_tag_name(source: Source, start: int, old: str, new: str) -> tuple[Edit, ...]:
-    """Return the edits that rename the element at an offset."""
-    opening = source.text.find(old, start)
-    end = markup.element_end(source.text, start)
-    closing = source.text.rfind(old, opening + len(old), end)
-    is_closed = closing >= 0 and source.text[opening + len(old) : closing].rstrip().endswith("</")
-    places = (opening, closing) if is_closed else (opening,)
-    return tuple(source.edit(place, place + len(old), new) for place in places)
-
-
 def with_child(source: Source, start: int, xml: str) -> Edit:
     """Return the edit that inserts an element as the first child of the one at an offset."""
     text, newline = source.text, "\r\n" if "\r\n" in source.text else "\n"
@@ -124,7 +106,8 @@ def merged(old: str, new: str) -> str:
     before, after = _PIECE.findall(old), new.split()
     if len(before) != len(after):
         return new
-    return "".join(space + _merged(piece, other) for (space, piece), other in zip(before, after, strict=True))
+    pieces = zip(before, after, strict=True)
+    return "".join((" " if space.strip(" ") else space) + _merged(piece, other) for (space, piece), other in pieces)
 
 
 def _merged(old: str, new: str) -> str:

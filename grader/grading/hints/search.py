@@ -5,16 +5,14 @@ from decimal import Decimal
 from itertools import combinations
 from typing import NamedTuple
 
-from grader.edits import REWRITTEN, TRIED, Proposal, composed
+from grader.edits import REWRITTEN, TRIED, Proposal
+from grader.grading.hints.loading import repaired
 from grader.grading.hints.targets import targets_of
-from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained
+from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
-from grader.source import Edit
-from grader.submission.editing import content
 from grader.submission.raw_xacro import raw_xacro_proposals
-from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
@@ -58,6 +56,7 @@ class Search:
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
         try:
+            self._load()
             for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):
                 while self._round(self.final, ranks):
                     pass
@@ -85,8 +84,14 @@ class Search:
             if together is not None and not together.lost:
                 taken, current = together.edits, together
         if taken:
-            self.final = current._replace(edits=_joined(self.trials.start.submission, state.edits, taken))
+            self.final = current._replace(edits=joined(self.trials.start.submission, state.edits, taken))
         return bool(taken)
+
+    def _load(self) -> None:
+        """Repair a URDF that ROS 2 rejects, or drops content of: the rest of the search goes on from there."""
+        repair = repaired(self.trials, self.reference)
+        self.found += [Found(*hint) for hint in repair.hints]
+        self.final = repair.final
 
     def _by_cost(self, results: Results) -> list[str]:
         """Return the failed criteria, those with which most points are lost first."""
@@ -139,9 +144,9 @@ class Search:
         whole = [option for option in passing if TRIED < option.proposal.rank in ranks]
         best = self._best(state, name, single)
         more = [option for option in single if best is None or _promised(state.results, option) > best.gain]
-        repaired = self._repaired(state, name, more)
-        if repaired is not None and (best is None or repaired.gain > best.gain):
-            best = repaired
+        two = self._repaired(state, name, more)
+        if two is not None and (best is None or two.gain > best.gain):
+            best = two
         found = best or self._best(state, name, whole) or self._pair(state, name, options)
         return found.proposal if found is not None else None
 
@@ -169,7 +174,7 @@ class Search:
             broken = [middle.lost] if middle is not None and middle.lost else []
             for second in self._options(middle, broken) if middle is not None and broken else ():
                 if second.passes and second.proposal.rank <= TRIED:
-                    edits = _joined(state.submission, first.edits, second.proposal.edits)
+                    edits = joined(state.submission, first.edits, second.proposal.edits)
                     proven = self._proven(state, _pair_of(first, second.proposal, edits), name)
                     if proven is not None:
                         return proven
@@ -198,13 +203,13 @@ class Search:
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
         """Add a proven edit of the submission as it is: the edit alone, else together with one or all of those before it."""
         submission = self.trials.start.submission
-        all_edits = _joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
+        all_edits = joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
         if len(alone) + len(state.edits) == len(all_edits):
             if self._add(proposal, alone, name, ()):
                 return True
             for before in list(self.found):
-                if self._add(proposal, _joined(submission, before.edits, ()) + alone, name, (before,)):
+                if self._add(proposal, joined(submission, before.edits, ()) + alone, name, (before,)):
                     return True
         return self._add(proposal, all_edits, name, tuple(self.found))
 
@@ -258,16 +263,3 @@ def _score(results: Results) -> Decimal:
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
     leading = tuple(sorted(edits, key=lambda edit: edit not in first.edits))
     return Proposal(leading, f"{first.named} and {second.named}", f"{first.said} and {second.said}", "", first.link)
-
-
-def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
-    """Return the edits of a submission that do what `first` does, and then `second`."""
-    joined = [edit for edit in (*first, *second) if edit.renamed]
-    before = {edit.renamed: edit.path for edit in joined}
-    second = [edit._replace(path=before.get(edit.path, edit.path)) for edit in second]
-    first, second = ([edit for edit in edits if not edit.renamed] for edits in (first, second))
-    for path in dict.fromkeys(edit.path for edit in (*first, *second)):
-        text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
-        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
-        joined += composed(text, path, *halves)
-    return tuple(joined)

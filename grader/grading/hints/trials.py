@@ -1,15 +1,16 @@
 """Try edits of a submission: which criteria pass with them, and whether the whole proves it."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
+from grader.edits import composed
 from grader.errors import InputError
 from grader.grading.grade import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.source import Edit
-from grader.submission.editing import edited_files, with_files, with_urdf
+from grader.submission.editing import content, edited_files, with_files, with_urdf
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -53,7 +54,7 @@ class Trials:
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
-        edited = self._quick(state, edits)
+        edited = self.edited(state, edits)
         results = decide(self.rubric, edited, wanted) if edited is not None else ()
         return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
 
@@ -64,7 +65,7 @@ class Trials:
 
         Raises OutOfBudget.
         """
-        edited = self._from_scratch(state, edits) if whole else self._quick(state, edits)
+        edited = self._from_scratch(state, edits) if whole else self.edited(state, edits)
         if edited is None:
             return None
         self._spend(edited)
@@ -77,7 +78,8 @@ class Trials:
                 return State(edited, edits, results, name)
         return State(edited, edits, results)
 
-    def _quick(self, state: State, edits: Edits) -> Submission | None:
+    def edited(self, state: State, edits: Edits) -> Submission | None:
+        """Return the submission with edits of a state, not graded; None where they do not fit. Raises OutOfBudget."""
         self._spend(state.submission)
         files = edited_files(state.submission, edits)
         if files is None:
@@ -122,3 +124,13 @@ def gained(before: Results, after: Results) -> dict[str, Decimal]:
         for name, result in after.items()
         if result.outcome.status == "passed" and before[name].outcome.status in ("failed", "skipped")
     }
+
+
+def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
+    """Return the edits of a submission that do what `first` does, and then `second`."""
+    found: list[Edit] = []
+    for path in dict.fromkeys(edit.path for edit in (*first, *second)):
+        text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
+        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
+        found += composed(text, path, *halves)
+    return tuple(found)

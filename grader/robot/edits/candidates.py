@@ -1,7 +1,6 @@
 """The edits of a robot that may undo a mistake, the most plausible first."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import islice
 
 from grader.edits import REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
@@ -9,11 +8,8 @@ from grader.robot.edits.families import written
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
 from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
-from grader.robot.spelling import meant_tag, misspelt_attributes
 from grader.source import Location
 
-_MAX_ELEMENTS = 2000  # whose names are looked at
-_MAX_MISSPELT = 5  # attributes of one element
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
@@ -33,7 +29,7 @@ def proposals(
     found: dict[frozenset[object], Proposal] = {}
     for edits in draft.source.corrections():
         found[frozenset(edits)] = Proposal(edits, "a name that is not defined", "correct the name", "xacro")
-    for proposal in (*misspelt(draft), *other_units(draft)):
+    for proposal in other_units(draft):
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
         for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
@@ -58,23 +54,6 @@ def _of_link(
     if is_moved:
         yield from together(draft, reference, poses, link)
         yield from as_in_reference(draft, reference, link)
-
-
-def misspelt(draft: Draft) -> Iterator[Proposal]:
-    """Correct the names of attributes and elements that ROS 2 ignores: height= of a cylinder, xzy=, <vizual>."""
-    for element in islice(draft.root.iter(), _MAX_ELEMENTS):
-        for name, meant in islice(misspelt_attributes(element), _MAX_MISSPELT):
-            of, edits = f"<{element.tag}>", draft.rename_attribute(element, name, meant)
-            yield Proposal(
-                edits, f"the name of the attribute {meant}", f"correct the name of the attribute {meant}{{}}", of
-            )
-        tag = meant_tag(element)
-        if tag is not None:
-            yield Proposal(
-                draft.rename_tag(element, tag),
-                f"the name of the element <{tag}>",
-                f"correct the name of the element <{tag}>",
-            )
 
 
 def other_units(draft: Draft) -> Iterator[Proposal]:

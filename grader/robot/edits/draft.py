@@ -1,23 +1,14 @@
 """The elements of a robot, each with its place in the text, and the edits of them."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from grader.edits import (
-    merged,
-    text_of,
-    with_attribute,
-    with_attribute_name,
-    with_child,
-    with_element,
-    with_sibling,
-    with_tag_name,
-    without_element,
-)
+from grader import markup
+from grader.edits import merged, text_of, with_attribute, with_child, with_element, with_sibling, without_element
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
-from grader.source import Edit, Source
+from grader.source import Edit, Location, Source
 from grader.xml.parsing import Element
 
 Edits = tuple[Edit, ...]
@@ -78,24 +69,58 @@ class Draft:
         return self.source.tag(self._tags[element]).line
 
     def set(self, element: Element, attribute: str, value: str) -> list[Edits]:
-        """Return the ways to give an attribute another value."""
+        """Return the ways to give an attribute other numbers; those that stay the same stay as they are written."""
+        return self.write(element, attribute, merged(element.get(attribute) or "", value))
+
+    def write(self, element: Element, attribute: str, value: str) -> list[Edits]:
+        """Return the ways to give an attribute another text."""
         old, tag = element.get(attribute) or "", self._tags[element]
         ways = self.source.rewrites(tag, attribute, old, escaped(value))
         if ways is not None:
             return ways
         source, start = self.source.element(tag)
-        return [(with_attribute(source, start, attribute, merged(old, escaped(value))),)]
+        return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
-        """Return the edit that renames an attribute; none where xacro gives it its name."""
+        """Return the edit that gives an attribute another name."""
         source, start = self.source.element(self._tags[element])
-        edit = with_attribute_name(source, start, old, new)
-        return (edit,) if edit is not None else ()
+        found = markup.attribute(source.text, start, old)
+        if found is None:
+            return ()
+        return (source.edit(found.start, found.end, f"{new}{source.text[found.start + len(old) : found.end]}"),)
 
     def rename_tag(self, element: Element, new: str) -> Edits:
-        """Return the edits that give an element another tag."""
+        """Return the edits that give an element another name, at its start and at its end."""
         source, start = self.source.element(self._tags[element])
-        return with_tag_name(source, start, str(element.tag), new)
+        text, end = source.text, markup.name_end(source.text, start)
+        edits: Edits = (source.edit(start, end, f"<{new}"),)
+        closing = text.rfind("</", start, markup.element_end(text, start))
+        if not markup.head_end(text, start)[1] and closing >= 0:
+            tail = text.index(">", closing) + 1
+            edits += (source.edit(closing, tail, f"</{new}>"),)
+        return edits
+
+    def wrap(self, element: Element, tag: str) -> Edits:
+        """Return the edits that put an element into a new one."""
+        source, start = self.source.element(self._tags[element])
+        end = markup.element_end(source.text, start)
+        return source.edit(start, start, f"<{tag}>"), source.edit(end, end, f"</{tag}>")
+
+    def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
+        """Return the edit that adds attributes to an element."""
+        source, start = self.source.element(self._tags[element])
+        end = markup.name_end(source.text, start)
+        added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+
+    def places(self) -> dict[Location, tuple[Element, str | None]]:
+        """Return the element, and the attribute, that is at each place of the file."""
+        found: dict[Location, tuple[Element, str | None]] = {}
+        for element, tag in self._tags.items():
+            found.setdefault(self.source.tag(tag), (element, None))
+            for attribute in map(str, element.keys()):
+                found.setdefault(self.source.tag(tag, attribute), (element, attribute))
+        return found
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
@@ -117,8 +142,8 @@ class Draft:
 
     def replace(self, element: Element, xml: str) -> Edits:
         """Return the edit that replaces an element."""
-        tag = self._tags[element]
-        return (with_element(*self.source.element(tag), self.source.adapted(tag, xml)),)
+        source, start = self.source.element(self._tags[element])
+        return (with_element(source, start, xml),)
 
 
 def end_of(joint: Element, role: str) -> str:

@@ -1,0 +1,194 @@
+"""Repair a URDF step by step until ROS 2 loads it: each step makes ROS 2 read on, or reject or drop less."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from decimal import Decimal
+from itertools import islice
+from typing import NamedTuple
+
+from grader.edits import Proposal
+from grader.grading.hints.trials import Edits, State, Trials, gained, joined
+from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
+from grader.robot.edits.draft import Draft
+from grader.robot.model import Robot
+from grader.robot.reader import Reading
+from grader.robot.repairs.pieces import remaining
+from grader.robot.repairs.repairs import repairable, repairs_of
+from grader.robot.repairs.site import Robots
+from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
+from grader.submission.urdf import Read
+from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
+
+_MAX_STEPS = 20  # of one chain
+_MAX_GRADED = 4  # edits of one step that are graded, to choose the best
+_MAX_FALLBACKS = 60
+_SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
+
+Defects = tuple[int, ...]
+
+
+class Step(NamedTuple):
+    """An edit of a state that brings ROS 2 further, and the state after it."""
+
+    proposal: Proposal
+    before: State
+    after: State
+
+
+class Hint(NamedTuple):
+    """A repair that is proven, and the criteria that pass with it."""
+
+    proposal: Proposal
+    edits: Edits
+    gains: Mapping[str, Decimal]
+
+
+class Repair(NamedTuple):
+    """The proven repairs of a URDF, and the state after all."""
+
+    hints: list[Hint]
+    final: State
+
+
+def defects(reading: Reading) -> Defects:
+    """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
+    effects = [problem.kind.effect for problem in reading.problems]
+    unread = remaining(reading.source.text) if reading.root is None else -1
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + len(lost_brackets(reading.source.text))
+    rejected = effects.count("rejects") or int(reading.verdict == "rejected")
+    return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
+
+
+def _loose(robot: Robot | None) -> int:
+    """Return how many links have no parent joint."""
+    return len(robot.links) - len({joint.child for joint in robot.joints}) if robot is not None else 0
+
+
+def repaired(trials: Trials, reference: Draft | None) -> Repair:
+    """Return the hints of the steps, each alone if it gains something alone, and all together. Raises OutOfBudget."""
+    start = final = trials.start
+    taken: list[Proposal] = []
+    for step in _steps(trials, reference):
+        edits = joined(start.submission, final.edits, step.proposal.edits)
+        taken.append(step.proposal._replace(edits=_alone(edits, final.edits)))
+        final = step.after._replace(edits=edits)
+    groups = _grouped(taken)
+    hints = [_proven(trials, proposal) for proposal in groups if proposal.edits] if len(groups) > 1 else []
+    known = {name for hint in hints if hint is not None for name in hint.gains}
+    if set(gained(start.results, final.results)) - known:
+        hints.append(_proven(trials, _chained(groups, final.edits)))
+    return Repair([hint for hint in hints if hint is not None], final)
+
+
+def _proven(trials: Trials, proposal: Proposal) -> Hint | None:
+    """Return a repair that gains something, graded from scratch."""
+    after = trials.applied(trials.start, proposal.edits, whole=True)
+    if after is None or after.lost:
+        return None
+    gains = gained(trials.start.results, after.results)
+    return Hint(proposal, proposal.edits, gains) if gains else None
+
+
+def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
+    """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises OutOfBudget."""
+    state, reserve = trials.start, trials.left // 2
+    given_up: set[str] = set()
+    for _ in range(_MAX_STEPS):
+        reading = _reading(state)
+        if reading is None or not state.failed or (reading.verdict == "clean" and not defects(reading)[-1]):
+            return
+        step = None
+        for cause, proposals in _groups(reading, reference):
+            if cause in given_up:
+                continue
+            if step := _best(trials, state, proposals) if trials.left > reserve else None:
+                break
+            given_up.add(cause)
+        if step is None:
+            return
+        yield step
+        state = step.after
+
+
+def _reading(state: State) -> Reading | None:
+    """Return what ROS 2 loads; None of xacro that is loaded without xacro: its text is not what is wrong."""
+    urdf = state.submission.urdf
+    if not isinstance(urdf, Read) or (urdf.as_it_stands is not None and b"xacro:" in urdf.data):
+        return None
+    return urdf.loaded
+
+
+def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, Iterable[Proposal]]]:
+    """Yield edits that may be the next step, one group for each problem, with what they are to undo."""
+    at = str(remaining(reading.source.text))
+    yield f"text {at}", text_proposals(reading, reference)
+    draft = Draft.of(reading)
+    if draft is not None:
+        robots = Robots(draft, reference or draft, reading.problems)
+        for problem in repairable(reading.problems):
+            yield f"{problem.code} {problem.message}", repairs_of(robots, problem)
+    elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
+        yield f"token {at}", islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
+
+
+def _best(trials: Trials, state: State, proposals: Iterable[Proposal]) -> Step | None:
+    """Return the edit that brings ROS 2 furthest; of several that make it load the file, the one with the best score."""
+    before = _reading(state)
+    assert before is not None
+    now = defects(before)
+    better: list[tuple[Defects, int, Proposal]] = []
+    for order, proposal in enumerate(proposals):
+        edited = trials.edited(state, proposal.edits)
+        urdf = edited.urdf if edited is not None else None
+        left = defects(urdf.loaded) if isinstance(urdf, Read) else now
+        if left < now:
+            better.append((left, order, proposal))
+    best: tuple[tuple[bool, Decimal, Defects], Step] | None = None
+    better.sort(key=lambda found: (found[0][0], found[1]))
+    is_read = bool(better) and better[0][0][0] < 0
+    for left, _, proposal in better[: _MAX_GRADED if is_read else 1]:
+        after = trials.applied(state, proposal.edits)
+        if after is not None and not after.lost:
+            rank = (left[0] < 0, _score(after), tuple(-count for count in left))
+            if best is None or rank > best[0]:
+                best = rank, Step(proposal, state, after)
+    return best[1] if best is not None else None
+
+
+def _score(state: State) -> Decimal:
+    return sum((result.points for result in state.results.values()), Decimal(0))
+
+
+def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
+    """Return steps with those that do the same as one."""
+    groups: dict[tuple[str, str], list[Proposal]] = {}
+    for proposal in proposals:
+        groups.setdefault((proposal.cause, proposal.action), []).append(proposal)
+    return [_together(group) for group in groups.values()]
+
+
+def _together(group: list[Proposal]) -> Proposal:
+    owners, links = {proposal.of for proposal in group}, {proposal.link for proposal in group}
+    edits = tuple(edit for proposal in group for edit in proposal.edits) if all(p.edits for p in group) else ()
+    return group[0]._replace(
+        edits=edits,
+        of=owners.pop() if len(owners) == 1 else "",
+        link=links.pop() if len(links) == 1 else "",
+    )
+
+
+def _chained(proposals: list[Proposal], edits: Edits) -> Proposal:
+    """Return several steps as one proposal."""
+    causes = dict.fromkeys(proposal.cause for proposal in proposals)
+    actions = dict.fromkeys(proposal.said for proposal in proposals)
+    links = {proposal.link for proposal in proposals}
+    return Proposal(edits, " and ".join(causes), " and ".join(actions), "", links.pop() if len(links) == 1 else "")
+
+
+def _alone(together: Edits, before: Edits) -> Edits:
+    """Return the edits that were added; none where they change what earlier ones wrote."""
+    added = tuple(edit for edit in together if edit not in before)
+    if len(added) + len(before) == len(together):
+        return added
+    (last,) = added if len(added) == 1 else (None,)
+    same = next((edit for edit in before if last and edit[:4] == last[:4] and last.new.startswith(edit.new)), None)
+    return (last._replace(new=last.new.removeprefix(same.new)),) if last and same and not last.old else ()
