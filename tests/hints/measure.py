@@ -1,4 +1,4 @@
-"""Measure the hints: python -m tests.hints.measure [--share 0.1] [--seed 1] [--bad] [BASE...] or --samples.
+"""Measure the hints: python -m tests.hints.measure [--count 100] [--seed 1] [--bad] [BASE...], or --samples, or --students.
 
 Every mutant of the correct robots that loses points is searched. For each family it prints how many have a verified hint
 (`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`).
@@ -11,9 +11,20 @@ from statistics import mean
 from time import perf_counter
 from typing import NamedTuple
 
+from grader.grading.hints.words import message
 from tests.hints.mutants import mutants
-from tests.hints.trials import Base, Hints, bases, behaviour, differences, hints_for, text_after
+from tests.hints.students import MISTAKES
+from tests.hints.trials import BASES, Base, Hints, behaviour, differences, hints_for, text_after
 from tests.samples import SAMPLES
+
+
+class Marks(NamedTuple):
+    """Whether there is a hint, and whether all hints lead to full marks, to the same robot, and to the same text."""
+
+    has_hint: bool
+    is_full: bool
+    is_same: bool
+    is_undo: bool
 
 
 class Verdict(NamedTuple):
@@ -27,34 +38,33 @@ class Verdict(NamedTuple):
     milliseconds: float
 
     @property
-    def marks(self) -> tuple[bool, bool, bool, bool]:
-        """Whether there is a hint, full marks, the same robot, the same text."""
+    def marks(self) -> "Marks":
+        """What the hints achieve, from little to much."""
         full = self.hints.is_full
-        return bool(self.hints.found), full, full and not self.differs, self.is_undo
+        return Marks(bool(self.hints.found), full, full and not self.differs, self.is_undo)
 
     @property
     def told(self) -> str:
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
         for found in self.hints.found:
-            edits = "; ".join(f"{edit.line}: {_flat(edit.old)} -> {_flat(edit.new)}" for edit in found.edits[:4])
-            lines.append(f"     + {found.proposal.said} [{found.proposal.named}] {edits} ({len(found.gains)})")
-        left = f"     left: {' '.join(self.hints.final.failed[:6])}" if not self.hints.is_full else ""
+            lines.append(f"     + {message(found, 'edit', self.hints.fixed.path)}")
+            lines.append(f"       {found.proposal.said} [{found.proposal.named}]")
+        left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
 
 
-def verdicts(base: Base, share: float, random: Random) -> Iterator[Verdict]:
-    """Yield the verdict on every mutant of a base that loses points, or on a share of them."""
+def verdicts(base: Base, count: int | None, random: Random) -> Iterator[Verdict]:
+    """Yield the verdict on those of `count` mutants of a base that lose points; of all without a count."""
     expected = behaviour(base.submission)
-    for mutant in mutants(base.text):
-        if share < 1 and random.random() >= share:
-            continue
+    those = list(mutants(base.text))
+    for mutant in those if count is None else random.sample(those, min(count, len(those))):
         submission = base.changed(mutant.text)
         start = perf_counter()
         hints = hints_for(submission)
         milliseconds = (perf_counter() - start) * 1e3
         if hints.lost:
-            differs = differences(expected, behaviour(hints.final.submission))
+            differs = differences(expected, behaviour(hints.fixed))
             is_undo = hints.is_full and text_after(base, hints) == base.text
             yield Verdict(mutant.family, f"{base.name} {mutant.change}", hints, is_undo, tuple(differs), milliseconds)
 
@@ -69,6 +79,20 @@ def of_samples() -> Iterator[Verdict]:
             yield Verdict("sample", sample.name, hints, False, (), (perf_counter() - start) * 1e3)
 
 
+def of_students() -> Iterator[Verdict]:
+    """Yield the verdict on every mistake of students; its label says what a teacher would say."""
+    for mistake in MISTAKES.values():
+        if mistake.base.is_xacro:
+            continue
+        submission = mistake.base.changed(mistake.text)
+        start = perf_counter()
+        hints = hints_for(submission)
+        milliseconds = (perf_counter() - start) * 1e3
+        differs = differences(behaviour(mistake.base.submission), behaviour(hints.fixed))
+        is_undo = hints.is_full and text_after(mistake.base, hints) == mistake.base.text
+        yield Verdict("student", f"{mistake.name} | {mistake.teacher}", hints, is_undo, tuple(differs), milliseconds)
+
+
 def table(found: Iterable[Verdict]) -> Iterator[str]:
     """Yield the shares by family, the worst first, and of all."""
     families: dict[str, list[Verdict]] = {}
@@ -76,7 +100,7 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
         families.setdefault(verdict.family, []).append(verdict)
         families.setdefault("all", []).append(verdict)
     yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'steps':>8}{'ms':>8}"
-    for family, those in sorted(families.items(), key=lambda pair: mean(found.marks[1] for found in pair[1])):
+    for family, those in sorted(families.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])):
         shares = "".join(f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(4))
         steps, time = (
             mean(found.hints.steps for found in those),
@@ -85,30 +109,23 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
         yield f"{family:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
 
 
-def _flat(text: str) -> str:
-    flat = " ".join(text.split())
-    return flat if len(flat) <= 70 else f"{flat[:67]}..."
-
-
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
     parser.add_argument("--samples", action="store_true")
-    parser.add_argument("--share", type=float, default=1.0)
+    parser.add_argument("--students", action="store_true")
+    parser.add_argument("--count", type=int, help="mutants of each base (default: all)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bad", action="store_true", help="show those without full marks or another robot")
     parser.add_argument("--all", action="store_true", help="show every hint")
     options = parser.parse_args()
     random = Random(options.seed)
-    chosen = (base for base in bases() if not options.names or base.name in options.names)
-    found = (
-        list(of_samples())
-        if options.samples
-        else [verdict for base in chosen for verdict in verdicts(base, options.share, random)]
-    )
+    chosen = (base for base in BASES.values() if not options.names or base.name in options.names)
+    mutated = (verdict for base in chosen for verdict in verdicts(base, options.count, random))
+    found = list(of_samples() if options.samples else of_students() if options.students else mutated)
     for verdict in found:
-        if options.all or (options.bad and not (verdict.marks[1] and not verdict.differs)):
+        if options.all or (options.bad and not (verdict.marks.is_full and not verdict.differs)):
             print(verdict.told)
     print("\n".join(table(found)))
 

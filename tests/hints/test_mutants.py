@@ -1,9 +1,36 @@
 """The share of single mistakes for which hints are found that undo them."""
 
-from tests.hints.trials import bases, hints_for
+from random import Random
 
-BASES = {base.name: base for base in bases()}
+import pytest
+
+from tests.hints.measure import verdicts
+from tests.hints.students import MISTAKES
+from tests.hints.trials import BASES, hints_for
+
 REFERENCE = BASES["reference"]
+_MUTANTS = 8  # of each correct robot; all of them take minutes: python -m tests.hints.measure
+
+
+def test_single_mistakes_get_hints_that_undo_them() -> None:
+    """At least 95 % of the mutants have a verified hint, and 90 % become a robot that behaves like the correct one."""
+    found = [
+        verdict for base in BASES.values() if not base.is_xacro for verdict in verdicts(base, _MUTANTS, Random(14))
+    ]
+    assert len(found) >= 100
+    assert sum(bool(verdict.hints.found) for verdict in found) >= 0.95 * len(found)
+    assert sum(verdict.marks.is_same for verdict in found) >= 0.90 * len(found)
+
+
+def test_mistakes_of_students_get_hints_that_lead_to_full_marks() -> None:
+    """At least 95 % of mistakes that cost points have a verified hint, and 90 % lose nothing with all edits."""
+    found = [
+        hints_for(mistake.base.changed(mistake.text)) for mistake in MISTAKES.values() if not mistake.base.is_xacro
+    ]
+    costly = [hints for hints in found if hints.lost]
+    assert len(costly) >= 75
+    assert sum(bool(hints.found) for hints in costly) >= 0.95 * len(costly)
+    assert sum(hints.is_full for hints in costly) >= 0.90 * len(costly)
 
 
 def test_a_link_without_name_gets_its_name() -> None:
@@ -11,4 +38,15 @@ def test_a_link_without_name_gets_its_name() -> None:
     changed = REFERENCE.text.replace('<link name="lidar">', "<link>")
     hints = hints_for(REFERENCE.changed(changed))
     assert [(edit.old, edit.new) for found in hints.found for edit in found.edits] == [("<link", '<link name="lidar"')]
+    assert hints.is_full
+
+
+@pytest.mark.parametrize(
+    "written", ['xyz="0.15 0 0.225 0"', 'xyz="0.15 0"', 'xyz=""', 'rpy="0 0 0 0 0"', 'rpy="1"', 'xyz="0.15, 0, 0.225"']
+)
+def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
+    """A vector with too many or too few numbers, or none, is replaced."""
+    changed = REFERENCE.text.replace('xyz="0.15 0 0.225" rpy="0 0 0"', written)
+    hints = hints_for(REFERENCE.changed(changed))
+    assert "lidar-frame" in hints.lost
     assert hints.is_full

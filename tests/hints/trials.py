@@ -1,22 +1,24 @@
 """Search hints for submissions, and judge what was found."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
-from grader.grading.hints.trials import State, Trials
+from grader.grading.hints.trials import Trials
+from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
 from grader.robot.edits.draft import Draft
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.shapes import half_width, is_empty
-from grader.robot.transforms import Vector
-from grader.submission.editing import with_files
+from grader.robot.transforms import Vector, unit
+from grader.source import Edit
+from grader.submission.editing import content, with_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
@@ -27,17 +29,21 @@ _SAME = 4e-3  # metres, components of directions and channels of colours: what t
 
 
 class Hints(NamedTuple):
-    """What a search found for a submission: the criteria that lost points, the proven edits, and all of them together."""
+    """What a search found for a submission: the criteria that lost points, the proven edits, and all of them together.
+
+    `fixed` is the submission with all edits, `left` are the criteria that still lose points then.
+    """
 
     lost: tuple[str, ...]
     found: list[Found]
-    final: State
+    fixed: Submission
+    left: tuple[str, ...]
     steps: int
 
     @property
     def is_full(self) -> bool:
         """Whether nothing is lost any more with all edits."""
-        return not self.final.failed
+        return not self.left
 
 
 @cache
@@ -50,14 +56,54 @@ def reference_draft(name: str) -> Draft | None:
 
 def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     """Return the hints for a submission; it is searched only if it lost points."""
-    results = {result.criterion.id: result for result in grade(rubric, submission).results}
-    trials = Trials(rubric, submission, results)
-    budget = trials.left
-    lost = tuple(name for name, result in results.items() if result.is_lost)
-    search = Search(trials, reference_draft(rubric.id))
-    if lost:
-        search.run()
-    return Hints(lost, search.found, search.final, budget - trials.left)
+    results = graded(submission, rubric)
+    search = search_for(submission, results, rubric)
+    budget = Trials(rubric, submission, results).left
+    fixed = with_edits(submission, search.final.edits)
+    return Hints(_lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left)
+
+
+def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> Search:
+    """Return the search for a submission with these results."""
+    search = Search(Trials(rubric, submission, results), reference_draft(rubric.id))
+    return search.run() if _lost(results) else search
+
+
+def graded(submission: Submission, rubric: Rubric = LAB6) -> dict[str, Result]:
+    """Return the results of a submission by criterion."""
+    return {result.criterion.id: result for result in grade(rubric, submission).results}
+
+
+def _lost(results: Mapping[str, Result]) -> tuple[str, ...]:
+    return tuple(name for name, result in results.items() if result.is_lost)
+
+
+def with_edits(submission: Submission, edits: Iterable[Edit]) -> Submission:
+    """Return a submission with edits, which are applied here: nothing of the search is trusted."""
+    files: dict[str, bytes | None] = {}
+    for path in {edit.path for edit in edits}:
+        own = [edit for edit in edits if edit.path == path]
+        files[path] = applied(content(submission, path) or b"", [edit for edit in own if not edit.renamed])
+        for edit in own:
+            if edit.renamed:
+                files[edit.renamed] = files[path]
+                files[path] = None
+    return with_files(submission, files) if files else submission
+
+
+def applied(data: bytes, edits: Iterable[Edit]) -> bytes:
+    """Return bytes after edits, each of which must find the old text where it says."""
+    lines = data.decode("utf-8", "surrogateescape").split("\n")
+    if lines[0].startswith("\ufeff"):
+        mark, lines[0] = "\ufeff", lines[0][1:]
+    else:
+        mark = ""
+    text = "\n".join(lines)
+    starts = [sum(len(line) + 1 for line in lines[: edit.line - 1]) + edit.column - 1 for edit in edits]
+    for start, edit in sorted(zip(starts, edits, strict=True), key=lambda pair: -pair[0]):
+        assert text[start : start + len(edit.old)] == edit.old, edit
+        text = text[:start] + edit.new + text[start + len(edit.old) :]
+    return (mark + text).encode("utf-8", "surrogateescape")
 
 
 class Base(NamedTuple):
@@ -68,6 +114,11 @@ class Base(NamedTuple):
     path: str
     text: str
 
+    @property
+    def is_xacro(self) -> bool:
+        """Whether xacro is run on it."""
+        return isinstance(self.submission.urdf, Read) and self.submission.urdf.is_expanded
+
     def changed(self, text: str) -> Submission:
         """Return the submission with another text of the file."""
         data = text.encode("utf-8", "surrogateescape")
@@ -76,7 +127,12 @@ class Base(NamedTuple):
         return with_files(self.submission, {self.path: data})
 
 
-def bases() -> Iterator[Base]:
+def _alone(submission: Submission, urdf: Read) -> Submission:
+    """Return the URDF without its package where that makes no difference: it is read faster."""
+    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
+
+
+def _bases() -> Iterator[Base]:
     """Yield the reference and every different text of the equivalents, the files that xacro includes as well."""
     texts: Counter[bytes] = Counter()
     for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in SAMPLES if name.startswith("equivalent-"))]:
@@ -90,13 +146,11 @@ def bases() -> Iterator[Base]:
             data = urdf.data if path == urdf.path else submission.everything.files[path].read(1 << 20)
             texts[data] += 1
             if texts[data] == 1:
-                yield Base(sample.name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
+                name = sample.name if path == urdf.path else f"{sample.name}/{path}"
+                yield Base(name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
 
 
-def _alone(submission: Submission, urdf: Read) -> Submission:
-    """Return the URDF without its package where that makes no difference: it is read faster."""
-    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
-
+BASES = {base.name: base for base in _bases()}
 
 Behaviour = dict[str, tuple[object, ...]]
 
@@ -121,8 +175,8 @@ def behaviour(submission: Submission) -> Behaviour:
                 found[f"{link.name} {index}"] = (*placed.translation, *extent, *_colour(visual))
         joint = robot.parent_joints.get(link.name)
         if joint is not None and joint.type in ("continuous", "revolute", "prismatic", "planar", "floating"):
-            axis = pose.rotate(joint.axis) if joint.axis is not None else ()
-            found[f"joint of {link.name}"] = (joint.type, *axis)
+            axis = unit(pose.rotate(joint.axis)) if joint.axis is not None else ()
+            found[f"joint of {link.name}"] = (joint.type, *(axis or ()))
         if link.name in ("lidar", "base_footprint"):
             found[f"frame of {link.name}"] = pose.translation
     return found
@@ -147,8 +201,4 @@ def _is_same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
 
 def text_after(base: Base, hints: Hints) -> str:
     """Return the text of a base's file after all edits."""
-    submission = hints.final.submission
-    if isinstance(submission.urdf, Read) and submission.urdf.path == base.path:
-        return submission.urdf.data.decode("utf-8", "surrogateescape")
-    file = submission.everything.files.get(base.path)
-    return file.read(1 << 20).decode("utf-8", "surrogateescape") if file is not None else ""
+    return (content(hints.fixed, base.path) or b"").decode("utf-8", "surrogateescape")

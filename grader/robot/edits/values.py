@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.edits import KNOWN, SOLVED, TOGETHER, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
-from grader.robot.edits.families import BLIND, Change, Slot, Values, is_close, named, written
+from grader.robot.edits.families import BLIND, COMPONENTS, Change, Slot, Values, is_close, named, written
 from grader.robot.edits.poses import Poses, shapes_of
 from grader.robot.numbers import NumberError, numbers
 from grader.xml.parsing import Element
@@ -67,7 +67,8 @@ def _slot(number: Number, halves: tuple[tuple[float, str], ...]) -> Slot:
     text = child.get(number.attribute) if child is not None else None
     default = _DEFAULTS.get((number.tag, number.attribute), ())
     name = "axis" if number.tag == "axis" else number.attribute
-    return Slot(name, values_of(text) if text is not None else default, halves)
+    values = values_of(text) if text is not None else default
+    return Slot(name, values if len(values) <= len(COMPONENTS.get(name, values)) else (), halves)
 
 
 def values_of(text: str) -> Values:
