@@ -6,7 +6,7 @@ from itertools import islice
 from grader.edits import KNOWN, REWRITTEN, TOGETHER, Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Draft, Edits, child_of, end_of
-from grader.robot.edits.families import written
+from grader.robot.edits.families import Slot, named, written
 from grader.robot.edits.values import values_of
 from grader.robot.model import Material
 from grader.xml.parsing import Element
@@ -301,6 +301,10 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
             )
         elif inside.get("rgba") != colour:
             given = values_of(inside.get("rgba") or "")
+            change, is_named = named(Slot("rgba", given), wanted.rgba)
+            if is_named:
+                for edits in draft.set(inside, "rgba", written(change.values)):
+                    yield Proposal(edits, change.cause, change.action, of, link)
             if len(given) == 4:  # the opacity stays
                 kept = written((*wanted.rgba[:3], given[3]))
                 for edits in draft.set(inside, "rgba", kept):
