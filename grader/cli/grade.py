@@ -36,6 +36,9 @@ def grade(
     answers: Annotated[
         bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
     ] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
+    ] = False,
     watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,
 ) -> int:
     """Grade a submission against a rubric.
@@ -68,13 +71,14 @@ def grade(
             max_size,
             answers,
             tuple(arg or ()),
+            verbose,
         )
         if watch:
             from grader.usecases.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
         result = grade_and_save(request, warn)
-        text = render(result.report, output_format, result.base, screen())
+        text = render(result.report, output_format, result.base, screen(), verbose=verbose)
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():
             annotate = write_stderr if output_format is not Format.GITHUB else None

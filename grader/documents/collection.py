@@ -26,6 +26,7 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
+    r"|grader \d\S*, \S+: "
 )
 
 

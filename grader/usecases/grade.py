@@ -41,6 +41,7 @@ class GradeRequest:
     max_size: int
     answers: bool = False
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
+    verbose: bool = False
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -168,7 +169,7 @@ def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
     _refuse_graded(request, os.path.join(request.path, result.report.submission.path or ""))  # noqa: PTH118  names
     for kind, file in request.saves:
-        save(file, render(result.report, kind, result.base), (request.path,), modes.get(file))
+        save(file, render(result.report, kind, result.base, verbose=request.verbose), (request.path,), modes.get(file))
 
 
 def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":

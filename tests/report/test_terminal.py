@@ -10,7 +10,7 @@ from rich.console import Console
 
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
-from grader.report.console import show_excerpt
+from grader.report.console import excerpt_block, put
 from grader.report.inspection import Inspection, inspection_terminal, main_root
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
@@ -96,7 +96,8 @@ def test_the_score_comes_first() -> None:
 def test_the_location_is_underlined(line: str, column: int, underlined: str) -> None:
     """The marks are below the attribute or tag, from its first character to its last."""
     out = StringIO()
-    show_excerpt(Console(file=out, width=80), Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)
+    console = Console(file=out, width=80)
+    put(console, excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4))
     text, marks = out.getvalue().splitlines()
     start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
     assert text[start:end] == underlined
@@ -106,7 +107,8 @@ def test_a_long_line_is_cut_around_the_location() -> None:
     """The underlined text is in view, even far to the right."""
     out = StringIO()
     line = "<a>" * 500 + '<b c="d"/>'
-    show_excerpt(Console(file=out, width=60), Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)
+    console = Console(file=out, width=60)
+    put(console, excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4))
     text, marks = out.getvalue().splitlines()
     assert 'c="d"' in text
     assert max(len(text), len(marks)) <= 60
