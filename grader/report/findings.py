@@ -7,7 +7,7 @@ from decimal import Decimal
 from functools import cache
 from typing import Literal, NamedTuple
 
-from grader.grading.report import Report
+from grader.grading.report import Hint, Report
 from grader.report.content import other_problems, points_of, undecided
 from grader.report.details import location_text, result_details, sentence
 from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
@@ -24,7 +24,7 @@ class Finding(NamedTuple):
 
     `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost` includes the
     points of criteria that are skipped because of it. `location` is None where the whole submission is meant; `fallback` is the
-    location for formats that require one. `fingerprint` does not depend on the number of the line.
+    location for formats that require one. `fingerprint` does not depend on the number of the line. `hints` are changes that fix it.
     """
 
     rule: str
@@ -34,6 +34,7 @@ class Finding(NamedTuple):
     location: RepositoryLocation | None
     fallback: RepositoryLocation
     fingerprint: str = ""
+    hints: tuple[Hint, ...] = ()
 
 
 def findings(report: Report, base: Base) -> list[Finding]:
@@ -70,7 +71,8 @@ def _of_criterion(failure: Failure, report: Report, source_of: Callable[[str], S
     location = in_repository(where, source_of(where.path), base) if where is not None else None
     fallback = location or _fallback(report, base, of_package=criterion.check.subject == "package")
     level: Level = "note" if result.why_given else "error"
-    return Finding(criterion.id, level, _text(tuple(lines), where, base), failure.lost, location, fallback)
+    text = _text(tuple(lines), where, base)
+    return Finding(criterion.id, level, text, failure.lost, location, fallback, hints=details.hints)
 
 
 def _undecided(report: Report, base: Base) -> Iterator[Finding]:

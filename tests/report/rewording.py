@@ -56,4 +56,11 @@ def _result(old: Result, words: Words, path: Words) -> Result:
     outcome = old.outcome
     where = Location(path(), 1, 2) if outcome.location is not None else None
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
-    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where))
+    hints = tuple(
+        hint._replace(
+            message=words(),
+            edits=tuple(edit._replace(path=path(), old=words(), new=words()) for edit in hint.edits),
+        )
+        for hint in old.hints
+    )
+    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where), hints=hints)
