@@ -77,7 +77,7 @@ def grade(
             from grader.usecases.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
-        result = grade_and_save(request, warn)
+        result = grade_and_save(request, warn, TERMINAL.show_progress)
         text = render(result.report, output_format, result.base, screen(), verbose=verbose)
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():

@@ -16,7 +16,7 @@ from grader.report.evidence import evidence, evidence_line
 from grader.report.order import Group, alike, groups, is_failure
 from grader.text import counted, first_lines, printable
 
-_MAX_LISTED, _MAX_KINDS, _MAX_LINES = 12, 5, 3
+_MAX_LISTED, _MAX_KINDS = 12, 3
 
 
 def show_groups(page: Page) -> None:
@@ -87,19 +87,19 @@ def show_evidence(page: Page) -> None:
 
 
 def show_other_problems(page: Page) -> None:
-    """Print the problems that no failed criterion has reported: a line for each kind of error and warning; notes are counted."""
+    """Print the problems that no failed criterion has reported: one of each kind of error and warning; notes are counted."""
     report, console = page.report, page.console
     problems = tuple(content.other_problems(report))
     listed = problems if page.is_verbose else tuple(found for found in problems if found.severity != "note")
     if listed:
         console.print()
+    if page.is_verbose and listed:
         wrapped(console, Text(content.other_problems_title(report), "bold"), 0)
-    if page.is_verbose:
         show_problems(console, problems, report.submission.source, report.submission.path)
         return
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
     for _, some in kinds[:_MAX_KINDS]:
-        put(console, _kind_line(some, console))
+        put(console, _kind_block(some, console))
     rest = len(problems) - sum(len(some) for _, some in kinds[:_MAX_KINDS])
     if rest:
         noun = "problem" if len(kinds) > _MAX_KINDS else "note"
@@ -107,13 +107,13 @@ def show_other_problems(page: Page) -> None:
         wrapped(console, Text(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim"), 0)
 
 
-def _kind_line(problems: Sequence[Problem], console: Console) -> Text:
-    """Return problems of one kind in one file as a line: code, file, lines, title."""
-    first = problems[0]
-    lines = dict.fromkeys(str(problem.location.line) for problem in problems)
-    where = f"{printable(first.location.path.rpartition('/')[2])}:{','.join(list(lines)[:_MAX_LINES])}"
-    head = Text.assemble((f"{first.code} {first.severity} ", SEVERITY_STYLES[first.severity]), (where, "dim"))
-    return block(console, head + Text(f": {first.kind.title}"), INDENT, Text(), most=1)
+def _kind_block(problems: Sequence[Problem], console: Console) -> Text:
+    """Return problems of one kind in one file in at most two lines: code, place and message of the first, and how many more."""
+    first, more = problems[0], len(problems) - 1
+    where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
+    text = Text.assemble((f"{first.code} {first.severity} ", SEVERITY_STYLES[first.severity]), (where, "dim"))
+    text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
+    return block(console, text, INDENT, Text(), most=2)
 
 
 def show_notes(page: Page) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
-from grader.usecases import Warn
+from grader.usecases import Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
@@ -91,10 +91,10 @@ def _read_save(text: str) -> tuple[Format, Path]:
     return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111  the shell expands no ~ after =; this never raises
 
 
-def grade_and_save(request: GradeRequest, warn: Warn) -> GradeResult:
+def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request)
-    result = grade_submission(request, warn)
+    result = grade_submission(request, warn, show_progress)
     save_reports(request, result, modes)
     return result
 
@@ -107,7 +107,7 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
+def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
@@ -128,6 +128,8 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
         from grader.usecases.several_students import refusal  # late: few submissions are several
 
         raise refusal(request.path, submission.students, rubric, request.choice)
+    if not submission.is_single:
+        submission.documents.show_progress = show_progress
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:

@@ -43,7 +43,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     try:
         for has_changed in changes:
             try:
-                result = grade_submission(request, terminal.warn)
+                result = grade_submission(request, terminal.warn, terminal.show_progress)
             except (InputError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 if has_changed or str(error) != last_error:

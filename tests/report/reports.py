@@ -52,7 +52,7 @@ def hinted(report: Report | None = None) -> Report:
     xyz = Edit(where, 99, 15, 'xyz="0 0 0.05"', 'xyz="0 0 0.1"')
     other = Edit("notes.txt", 1, 1, "", "a new file\n")
     points = {result.criterion.id: result.criterion.points for result in report.results}
-    hints = {}
+    hints: dict[str, tuple[Hint, ...]] = {}
     for names, message, edits in (
         (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73): both pass, +7 points', (rpy,)),
         (LIFT, "Raise the base by 50 mm: both pass, +7 points", (xyz, other)),
