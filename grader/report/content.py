@@ -8,7 +8,7 @@ from grader.grading.report import Report, Result
 from grader.problems import Problem
 from grader.report.details import sentence
 from grader.report.order import failures
-from grader.text import counted, counted_points, enumerated, first_lines, format_points, printable, shell_quoted
+from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
@@ -89,13 +89,15 @@ def notes(report: Report) -> list[str]:
     return [f"Note: {printable(note)}" for note in report.notes]
 
 
-def ignored_counts(report: Report) -> list[str]:
-    """Return the first other candidates for grading and the number of ignored files, without the reasons."""
-    names = [file.path for file in report.submission.other_candidates]
-    others = f"Not graded: {enumerated(names, _MAX_FILES)}" if names else ""
-    ignored = counted(len(report.submission.ignored), "ignored file") if report.submission.ignored else ""
-    texts = "; ".join(filter(None, (others, ignored)))
-    return [printable(f"{texts} (--verbose says why)")] if texts else []
+def first_ignored(report: Report) -> list[str]:
+    """Return the other candidates for grading in a line, and the first ignored file; of many how many more there are."""
+    others, ignored = report.submission.other_candidates, report.submission.ignored
+    lines = (
+        [f"Not graded: {enumerated([file.path for file in others], _MAX_FILES)} (--verbose says why)"] if others else []
+    )
+    more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
+    lines += [f"Ignored: {file}{more}" for file in ignored[:1]]
+    return list(map(printable, lines))
 
 
 def ignored_lines(report: Report) -> list[str]:
@@ -120,12 +122,14 @@ def pending_reason(result: Result) -> str:
     outcome = result.outcome
     if not is_manual(result):
         return sentence(outcome.message)
+    where = ""
     if isinstance(outcome.measured, tuple):
-        return printable(enumerated(list(map(str, outcome.measured)), _MAX_FILES))
-    if outcome.location is None:
-        return "not found"
-    path = printable(outcome.location.path)
-    return path if path.lower().endswith(_WITHOUT_LINES) else f"{path}:{outcome.location.line}"
+        where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
+    elif outcome.location is not None:
+        path = outcome.location.path
+        where = path if path.lower().endswith(_WITHOUT_LINES) else f"{path}:{outcome.location.line}"
+    doubt = outcome.problem or ("" if where else "not found")
+    return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 
 
 def carried_text(cause: str, results: tuple[Result, ...]) -> str:

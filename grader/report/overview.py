@@ -23,9 +23,12 @@ def show_groups(page: Page) -> None:
     """Print the points of each group; without details those of which nothing is known yet are listed elsewhere."""
     report, console = page.report, page.console
     titles = {part.id: part.title for part in report.rubric.parts}
-    if not page.is_verbose:
+    shown = [
+        group for group in groups(report) if page.is_verbose or not all(result.is_open for result in group.results)
+    ]
+    if shown and not page.is_verbose:
         console.print()
-    for part, of_part in groupby(groups(report), key=lambda group: group.part):
+    for part, of_part in groupby(shown, key=lambda group: group.part):
         found = list(of_part)
         if page.is_verbose and len(report.parts) > 1:
             console.print()
@@ -34,7 +37,7 @@ def show_groups(page: Page) -> None:
         for group in found:
             if page.is_verbose:
                 _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
-            elif not all(result.is_open for result in group.results):
+            else:
                 start = mark(_status(group), console) + Text(" ")
                 wrapped(console, Text(f"{printable(group.title)} {content.earned_text(group.results)}"), INDENT, start)
 
@@ -120,7 +123,7 @@ def show_notes(page: Page) -> None:
     """Print how the submission was read: what it was not graded on, other candidates, ignored files."""
     report = page.report
     notes = [(note, "cyan") for note in content.notes(report)]
-    ignored = content.ignored_lines(report) if page.is_verbose else content.ignored_counts(report)
+    ignored = content.ignored_lines(report) if page.is_verbose else content.first_ignored(report)
     if page.is_verbose and (notes or ignored):
         page.console.print()
     for line, style in (*notes, *((line, "dim") for line in ignored)):
