@@ -83,13 +83,14 @@ def _show_marked(order: Order, page: Page) -> None:
 
 
 def _show_end(page: Page) -> None:
+    """Print the score, whether ROS 2 loads the URDF, and the next command: the last lines of a report."""
     report, console = page.report, page.console
-    style = "bold green" if report.score + report.pending == report.max_score else "bold"
     console.print()
-    score = Text.assemble((content.earned_text(report.results), style), "  ")
-    wrapped(console, score + Text(printable(report.rubric.title), "bold"), 0)
+    if page.is_verbose and report.submission.has_urdf:
+        wrapped(console, Text("grader inspect shows the whole robot.", "dim"), 0)
+    style = "bold green" if report.score + report.pending == report.max_score else "bold"
+    score = Text(content.earned_text(report.results), style)
+    wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)
     command = content.next_command(report)
-    next_line = f"Next: {command}" if command else content.what_is_left(report)
-    inspection = ["grader inspect shows the whole robot."] if page.is_verbose and report.submission.has_urdf else []
-    for line in (content.verdict_and_counts(report), next_line, *inspection):
+    for line in (content.verdict_and_counts(report), f"Next: {command}" if command else content.what_is_left(report)):
         wrapped(console, Text(line), INDENT, Text())
