@@ -23,8 +23,7 @@ _SYMBOLS = {
     "errored": ("!", "!"),
 }
 INDENT = 2
-_MAX_LINES = 9  # of a failure, besides the empty one before it
-MAX_NAMED = 3
+_MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
 
 
 class Page(NamedTuple):
@@ -35,10 +34,6 @@ class Page(NamedTuple):
     is_verbose: bool
     shown: set[str]
 
-    def most(self, number: int) -> int | None:
-        """Return how many items of a list are shown: a number, or all."""
-        return None if self.is_verbose else number
-
 
 def mark(status: str, console: Console) -> Text:
     """Return the symbol of a status in its colour."""
@@ -48,17 +43,20 @@ def mark(status: str, console: Console) -> Text:
 def show_failure(failure: Failure, page: Page) -> None:
     """Print a criterion that failed: what it costs, what is and what should be, where, and what to do.
 
-    Unless everything is shown, it takes at most ten lines, with the empty one before it: what does not fit is cut.
+    Unless everything is shown, it takes at most ten lines, with the empty one before it: texts that do not fit are cut, but no hint.
     """
     result, console = failure.result, page.console
     details = result_details(result, page.report)
     head, excerpt = [_head(failure, details, console)], [*_excerpt(details, page)]
+    hints = [
+        block(console, Text(hint.message, "bold"), INDENT) for hint in details.hints[: None if page.is_verbose else 1]
+    ]
     skipped = [_skipped(failure, page)] if failure.skipped else []
-    room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *skipped)
-    message = _fitted([_message(details, result)], room, console)
-    advice = _fitted(_advice(details, result, page), room - _height(*message), console)
+    room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *hints, *skipped)
+    message = _fitted([_message(details, result)], max(room, _MIN_MESSAGE), console)
+    reasons = _fitted(_reasons(details, result, page), room - _height(*message), console)
     console.print()
-    put(console, Text("\n").join((*head, *message, *excerpt, *advice, *skipped)))
+    put(console, Text("\n").join((*head, *message, *excerpt, *hints, *reasons, *skipped)))
 
 
 def _head(failure: Failure, details: Details, console: Console) -> Text:
@@ -86,10 +84,8 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
         yield excerpt_block(page.console, source, details.location, INDENT)
 
 
-def _advice(details: Details, result: Result, page: Page) -> Iterator[Text]:
-    """Yield what to do, and what should be where the message does not say it; everything on a page that shows everything."""
-    for hint in details.hints if page.is_verbose else details.hints[:1]:
-        yield Text(hint.message, "bold")
+def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
+    """Yield the feedback where there is no hint, and what should be where the message does not say it; on a full page both."""
     if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
         page.shown.add(details.feedback)
         yield Text(details.feedback, "italic")

@@ -58,7 +58,7 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     yield from _head(report)
     order, shown = in_order(report), set[str]()
     if order.failures:
-        yield "## To fix"
+        yield "## Failed"
     for result, skipped in order.failures:
         item = _item(result, report, shown, answers=answers)
         text = escaped(content.skipped_text(result.criterion.id, skipped)) if skipped else ""

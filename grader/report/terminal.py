@@ -7,10 +7,12 @@ from grader.grading.report import Report
 from grader.report import content
 from grader.report.console import wrapped
 from grader.report.details import result_details
-from grader.report.entries import INDENT, MAX_NAMED, Page, mark, show_answer, show_failure
+from grader.report.entries import INDENT, Page, mark, show_answer, show_failure
 from grader.report.order import Order, alike, in_order
 from grader.report.overview import show_evidence, show_groups, show_notes, show_other_problems
 from grader.text import enumerated, format_points, printable
+
+_MAX_NAMED = 3
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
@@ -62,7 +64,9 @@ def _show_pending(order: Order, page: Page) -> None:
             for result in results:
                 show_answer(result, page)
             continue
-        names = enumerated([printable(result.criterion.id) for result in results], page.most(MAX_NAMED))
+        names = enumerated(
+            [printable(result.criterion.id) for result in results], None if page.is_verbose else _MAX_NAMED
+        )
         text = Text.assemble((names, "bold"), f" ({format_points(content.maximum(results))}): {reason}")
         wrapped(page.console, text, INDENT, mark("pending", page.console) + Text(" "))
 

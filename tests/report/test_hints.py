@@ -43,6 +43,24 @@ def test_the_whole_report_has_hint_and_feedback() -> None:
         assert words in " ".join(whole.split())
 
 
+def test_a_hint_is_never_cut() -> None:
+    """Half an edit would be a wrong one: a long message is cut instead."""
+    report = hinted()
+    change = "Change " + " ".join(f"part{number}" for number in range(80))
+    results = tuple(
+        result._replace(
+            outcome=result.outcome._replace(message="wrong " * 200),
+            hints=(result.hints[0]._replace(message=change),),
+        )
+        if result.hints
+        else result
+        for result in report.results
+    )
+    text = render(replace(report, results=results), Format.TERMINAL)
+    assert f"{change}." in " ".join(text.split())
+    assert "wrong\u2026" in text
+
+
 def test_a_manual_mark_leaves_no_hint() -> None:
     """What a person has graded is not to be changed."""
     report = hinted()

@@ -22,7 +22,7 @@ from tests.samples import SAMPLES
 
 NOTICE = "The report is cut off here, because it is too long."
 ELEMENTS = {"div", "h1", "h2", "p", "ul", "li", "code", "pre", "em", "strong", "details", "summary"}
-TITLES = ("To fix", "Needs manual grading", "Marked manually", "Passed", "Evidence")
+TITLES = ("Failed", "Needs manual grading", "Marked manually", "Passed", "Evidence")
 JOINER = "\u2060"  # prevents GitHub from finding a mention
 ITEM = re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")  # a criterion with its mark and its points
 
