@@ -75,7 +75,7 @@ def _change(edit: Edit, main: str | None) -> str:
 
 
 def _where(edit: Edit, main: str | None) -> str:
-    return f"line {edit.line}" if edit.path == main else f"{edit.path}, line {edit.line}"
+    return f"line {edit.line}" if edit.path == main else f"line {edit.line} of {edit.path}"
 
 
 def _quoted(text: str) -> str:
