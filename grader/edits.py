@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from posixpath import commonprefix
 from typing import NamedTuple
 
 from grader import markup
@@ -28,12 +29,19 @@ class Proposal(NamedTuple):
     @property
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
-        return sum(100 + len(edit.old) + len(edit.new) for edit in self.edits)
+        return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
 
     @property
     def said(self) -> str:
         """The change in words: "negate the roll of the joint of 'right_wheel'"."""
         return f"{self.action} of {self.of}" if self.of else self.action
+
+
+def _changed(old: str, new: str) -> int:
+    """Return the number of characters that differ: without those that both begin or end with."""
+    start = len(commonprefix((old, new)))
+    end = len(commonprefix((old[start:][::-1], new[start:][::-1])))
+    return len(old) + len(new) - 2 * (start + end)
 
 
 def text_of(source: Source, start: int) -> str:

@@ -37,7 +37,7 @@ class Rewriter:
 
     def __init__(self, texts: Texts) -> None:
         self._evaluator = Evaluator(texts)
-        self._numbers: dict[tuple[str, int, int, int], ComputedNumber] = {}
+        self._numbers: dict[tuple[str, int, int, int, int], ComputedNumber] = {}
 
     def ways(self, place: Place, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
         """Return the ways to change an attribute at a place that the reader sees as `old`, the most plausible first."""
@@ -112,7 +112,7 @@ class Rewriter:
         plain: Way = (Change(part, " ".join(wanted)),)
         if len(words) != 1:
             inner = self._of_name(part, " ".join(words), " ".join(wanted), depth)
-            return [*inner, plain]
+            return [*(inner or self._in_list(token, wanted)), plain]
         kept = Change(part, merged(part.text, wanted[0]))
         if "$" not in part.text:
             signed = [ranked for ranked in self._number(part).changes(float(wanted[0])) if "$" in ranked.change.new]
@@ -120,10 +120,16 @@ class Rewriter:
         changes = [*self._number(part).changes(float(wanted[0]))[: _MAX_WAYS - 1], Ranked(_LAST, kept)]
         return [(ranked.change,) for ranked in changes]
 
-    def _number(self, part: Written) -> ComputedNumber:
-        key = part.source.path, part.start, part.end, id(part.scope)
+    def _in_list(self, token: Token, wanted: list[str]) -> list[Way]:
+        """Return the ways to change one of the numbers that an expression gives, as ${colours['green']}."""
+        off = [index for index, pair in enumerate(zip(token.words, wanted, strict=True)) if not _same(*pair)]
+        changes = self._number(token.written, off[0]).changes(float(wanted[off[0]])) if len(off) == 1 else []
+        return [(ranked.change,) for ranked in changes]
+
+    def _number(self, part: Written, index: int = 0) -> ComputedNumber:
+        key = part.source.path, part.start, part.end, id(part.scope), index
         if key not in self._numbers:
-            self._numbers[key] = ComputedNumber(self._evaluator, part)
+            self._numbers[key] = ComputedNumber(self._evaluator, part, index)
         return self._numbers[key]
 
     def _of_name(self, text: Written, old: str, new: str, depth: int) -> list[Way]:

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.static_python.closed import Budget
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, text_of
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
@@ -87,10 +87,11 @@ class Site(NamedTuple):
 
 
 class ComputedNumber:
-    """A number in an attribute, such as ${-length/4}."""
+    """A number in an attribute, such as ${-length/4}; one of several, where an expression gives a list of them."""
 
-    def __init__(self, evaluator: Evaluator, written: Written) -> None:
+    def __init__(self, evaluator: Evaluator, written: Written, index: int) -> None:
         self.written = written
+        self._index = index
         self._evaluator = evaluator
         self._memo: dict[tuple[Key | None, str], float | None] = {}
 
@@ -119,7 +120,8 @@ class ComputedNumber:
         """Return the number that another text at a site gives."""
         if (site.key, text) not in self._memo:
             root, supposed = (text, None) if site.key is None else (self.written.text, {site.key: text})
-            self._memo[site.key, text] = self._evaluator.number(root, self.written.scope, supposed)
+            words = text_of(self._evaluator.value(root, self.written.scope, supposed)).split()[self._index :]
+            self._memo[site.key, text] = as_number(words[0]) if words else None
         return self._memo[site.key, text]
 
     def _varied(self, site: Site, wanted: float) -> Iterator[Ranked]:

@@ -81,6 +81,7 @@ def changes(document: Document, tag: str, attribute: str, new: str, which: int =
         ('<origin xyz="0 0 ${height/2}"/>', "origin", "xyz", "0 0 0.15", ['value="0.15"']),
         ('<box size="${size}"/>', "box", "size", "0.6 0.4 0.2", ['value="0.4"']),
         ('<box size="${size}"/>', "box", "size", "0.8 0.2 0.2", ['value="0.8 ${y} ${height}"']),
+        ("<a b=\"${dict(white='1 0.1 1')['white']}\"/>", "a", "b", "1 1 1", ["b=\"${dict(white='1 1 1')['white']}\""]),
         # an argument of a macro, a default, a block, a name with a parameter
         (WHEEL, "axis", "xyz", "0 0 0.1", ['reflect="2"']),
         (WHEEL, "axis", "xyz", "0 0 0.1", ['xyz="0 0 ${reflect*0.1}"']),
@@ -165,8 +166,10 @@ def test_an_element_that_is_inserted_in_a_macro_has_its_parameters() -> None:
          ["<xacro:whel|</xacro:whel>", 'name="wheel"']),
         ('<xacro:macro name="wheel" params="sde"><a/></xacro:macro><xacro:wheel side="left"/>',
          ['sde="left"', 'params="side"']),
-        ('<xacro:macro name="wheel" params="*orign"><xacro:insert_block name="origin"/></xacro:macro>'
-         '<xacro:wheel><origin/></xacro:wheel>', ['name="orign"', 'params="*origin"']),
+        ('<xacro:macro name="w" params="*orign"><xacro:insert_block name="origin"/></xacro:macro><xacro:w><a/></xacro:w>',
+         ['name="orign"', 'params="*origin"']),
+        ('<xacro:macro name="w" params="mas:=1"><a b="${mass}"/></xacro:macro><xacro:w/>',
+         ['b="${mas}"', 'params="mass:=1"']),
         ('<xacro:include filename="parts/wheels.xacro"/>', ['filename="parts/wheel.xacro"']),
         ('<a b="${nothing_like_it}"/>', []),
     ],

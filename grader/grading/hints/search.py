@@ -119,7 +119,7 @@ class Search:
         for proposal in self._proposals(state, wanted):
             passes = frozenset(self.trials.passing(state, proposal.edits, wanted))
             options.append(Option(proposal, passes))
-            if len(passes) == len(wanted):
+            if len(passes) == len(wanted) and self._proven(state, proposal.edits, wanted[0]):
                 break
         return options
 
