@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.static_python.closed import Budget
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, text_of
+from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
@@ -37,16 +37,12 @@ class Evaluator:
         self._budget = Budget(_MAX_STEPS)
         self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
 
-    def value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> Value:
-        """Return the value of a text; None if it has none, or no steps are left."""
+    def text(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
+        """Return what a text is in the expanded file; None if it has no value, or no steps are left."""
         try:
-            return self._texts.supposing(supposed or {}, self._budget).evaluate(text, scope)
+            return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
         except (ExpressionFails, Undetermined, RecursionError):
             return None
-
-    def number(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> float | None:
-        """Return the number that a text is; None if it is none."""
-        return as_number(self.value(text, scope, supposed))
 
     def arguments(self, text: str) -> list[Definition]:
         """Return the defaults of the arguments in a text."""
@@ -56,20 +52,18 @@ class Evaluator:
         """Return the names that have numbers in a scope, and those of the innermost macro that are 1 or -1."""
         if id(scope) not in self._known:
             found = dict.fromkeys(scope.names()[:_MAX_NAMES])
-            known = [name for name in found if self.number(f"${{{name}}}", scope) is not None]
-            own = [name for name in known if scope.parent is not None and name in scope.properties]
-            signs = [name for name in own if abs(self.number(f"${{{name}}}", scope) or 0.0) == 1.0]
-            self._known[id(scope)] = scope, (known, signs)
+            values = {name: as_number(self.text(f"${{{name}}}", scope)) for name in found}
+            own = scope.properties if scope.parent is not None else {}
+            signs = [name for name, value in values.items() if name in own and value in (1.0, -1.0)]
+            self._known[id(scope)] = scope, ([name for name, value in values.items() if value is not None], signs)
         return self._known[id(scope)][1]
 
 
-def as_number(value: Value) -> float | None:
-    """Return a value as a number; None if it is none."""
-    if not isinstance(value, str | int | float) or (isinstance(value, str) and "_" in value):
-        return None
+def as_number(text: str | None) -> float | None:
+    """Return a text as a number; None if it is none."""
     try:
-        return float(value)
-    except (ValueError, OverflowError):
+        return float(text) if text is not None and "_" not in text else None
+    except ValueError:
         return None
 
 
@@ -120,7 +114,7 @@ class ComputedNumber:
         """Return the number that another text at a site gives."""
         if (site.key, text) not in self._memo:
             root, supposed = (text, None) if site.key is None else (self.written.text, {site.key: text})
-            words = text_of(self._evaluator.value(root, self.written.scope, supposed)).split()[self._index :]
+            words = (self._evaluator.text(root, self.written.scope, supposed) or "").split()[self._index :]
             self._memo[site.key, text] = as_number(words[0]) if words else None
         return self._memo[site.key, text]
 
