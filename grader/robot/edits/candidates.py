@@ -14,8 +14,8 @@ def proposals(draft: Draft, reference: Draft, links: Sequence[str], places: Iter
     """Return edits of links, their parent joints and what they show: those at the places of failures first."""
     poses = Poses(draft.robot, reference.robot, links)
     found: dict[frozenset[object], Proposal] = {}
-    for edits in draft.source.corrections():
-        found[frozenset(edits)] = Proposal(edits, "a name that is not defined", "correct the name", "xacro")
+    for correction in draft.source.corrections():
+        found[frozenset(correction.edits)] = Proposal(*correction)
     for link in links:
         for proposal in _of_link(draft, reference, poses, link):
             if proposal.edits and all(edit.old != edit.new for edit in proposal.edits):
