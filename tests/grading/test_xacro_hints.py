@@ -106,6 +106,7 @@ def test_raw_xacro_with_another_mistake() -> None:
     found = search(submission)
     assert not found.final.failed
     assert {edit.path for edit in found.final.edits} == {"my_robot.urdf"}
+    assert 'xyz="${base_length/4} 0 ${base_height + wheel_width/2}"' in texts(found.final.edits)
 
 
 LAUNCH = "my_robot/launch/my_robot_rviz.launch.py"
