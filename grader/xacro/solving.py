@@ -1,7 +1,7 @@
 """A number of the expanded file and the texts that it is computed from: which change of one of them gives another number."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ _MAX_SITES = 10  # texts that one number is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_DIGITS = 6
 _NICE_DIGITS = 3  # more are no number that a student would write into an expression
-_ROUNDS = 8  # of the secant method
+_ROUNDS = 4  # of the secant method
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 
 
@@ -139,25 +139,31 @@ class ComputedNumber:
         def of(number: float) -> float | None:
             return self._with(site, with_number(site.written.text, slot, repr(number)))
 
-        before, start = slot.value, of(slot.value)
-        x, slope = before + 1e-3 + abs(before) / 64, 0.0
-        for _ in range(_ROUNDS):
-            value = of(x)
-            if start is None or value is None or x == before:
-                return None
-            slope = (value - start) / (x - before)
-            if not slope:
-                return None
-            before, start, x = x, value, x + (wanted - value) / slope
-            if abs(wanted - value) <= 1e-9 * (1 + abs(wanted)):
-                break
-        for digits in range(1, _MAX_DIGITS + 1):
-            shown = decimal(before, digits)
-            if abs((float(shown) - before) * slope) <= 2 * (_TOLERANCE * abs(wanted) + 1e-6):
-                text = with_number(site.written.text, slot, shown)
-                if is_near(self._with(site, text), wanted):
-                    return text, digits
+        root = secant(of, slot.value, wanted)
+        if root is None and wanted:  # a divisor: 1/f is linear
+            root = secant(lambda number: 1.0 / (of(number) or 0.0), slot.value, 1.0 / wanted)
+        for digits in range(1, _MAX_DIGITS + 1) if root is not None else ():
+            text = with_number(site.written.text, slot, decimal(root or 0.0, digits))
+            if is_near(self._with(site, text), wanted):
+                return text, digits
         return None
+
+
+def secant(of: Callable[[float], float | None], start: float, wanted: float) -> float | None:
+    """Return where a function has the wanted value; None if a few steps of the secant method do not find it."""
+    before, x = start, start + 1e-3 + abs(start) / 64
+    try:
+        value, now = of(before), of(x)
+        for _ in range(_ROUNDS):
+            if value is None or now is None or now == value:
+                return None
+            before, x = x, x + (wanted - now) * (x - before) / (now - value)
+            value, now = now, of(x)
+            if now is not None and abs(wanted - now) <= 1e-9 * (1 + abs(wanted)):
+                return x
+    except (ZeroDivisionError, OverflowError):
+        pass
+    return None
 
 
 def decimal(value: float, digits: int) -> str:
