@@ -236,6 +236,13 @@ def test_an_edit_changes_one_attribute_and_nothing_else(seed: int, which: int, n
                 assert len({(element, attribute) for element, attribute, _ in changed}) <= len(edits)
 
 
+def test_a_yaml_file_is_not_read_again_for_each_edit() -> None:
+    """A value from a YAML file is replaced by the number; reading the file for each edit would take too long."""
+    body = f"{named('config', '${xacro.load_yaml(&quot;a.yaml&quot;)}')}<a b=\"${{config['x']}} 0\"/>"
+    document = Document(robot(body.replace("&quot;", "'")), {"urdf/a.yaml": "x: 0.5"})
+    assert changes(document, "a", "b", "0.3 0") == [['b="0.3 0"']]
+
+
 def test_hostile_expressions_take_a_bounded_number_of_steps() -> None:
     """Names that double in cost with each of 60 definitions are given up, and the number in place of the expression remains."""
     chain = "".join(named(f"a{n}", f"${{a{n - 1} + a{n - 1}}}") for n in range(1, 61))
