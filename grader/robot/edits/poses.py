@@ -1,12 +1,14 @@
 """The origins and axes that put a link where the reference has it, whatever frames the robot uses."""
 
 from collections.abc import Iterator, Sequence
+from math import hypot, inf
 
 from grader.errors import MissingElement, NotDecided
 from grader.robot.edits.families import Values
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Robot, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Mesh, Robot, Sphere, Visual
+from grader.robot.shapes import bounding_radius
 from grader.robot.transforms import Transform, minus, rotation_from_rpy
 
 _SAME = 2e-3  # metres
@@ -36,10 +38,26 @@ class Poses:
                     yield minus(centre.translation, offset)
 
     def visual(self, link: str, index: int, attribute: str) -> Iterator[Values]:
-        """Yield the values of a visual's origin with which it is where the reference shows it."""
-        if index < len(self._visuals(link)):
+        """Yield the values of a visual's origin with which it is where the reference shows it.
+
+        None far from the link's frame: a visual there would only hide that the frame is elsewhere than it should be.
+        """
+        for own in self._visuals(link)[index : index + 1]:
+            near = hypot(*own.origin.xyz) + 2 * self._reach(link)
             for pose in self._centres(link, link):
-                yield pose.translation if attribute == "xyz" else pose.rpy
+                if hypot(*pose.translation) <= near:
+                    yield pose.translation if attribute == "xyz" else pose.rpy
+
+    def _reach(self, link: str) -> float:
+        """Return the distance from the centre to the farthest point of what the reference shows of a link."""
+        return max(
+            (
+                bounding_radius(visual.geometry)
+                for visual in self.reference.robot.link(link).visuals[:1]
+                if not isinstance(visual.geometry, Mesh)
+            ),
+            default=inf,
+        )
 
     def is_shown_right(self, link: str) -> bool:
         """Return whether what a link shows is where the reference shows it."""
