@@ -11,6 +11,7 @@ from grader.grading.hints.words import message
 from grader.grading.levels import Level
 from grader.grading.report import Fix, Hint, Report
 from grader.grading.rubric import Rubric
+from grader.package.package import Package
 from grader.robot.edits.draft import Draft
 from grader.source import Location
 from grader.submission.editing import edited_files, with_files
@@ -28,7 +29,7 @@ class Hinted(NamedTuple):
 def hinted(report: Report, submission: Submission, level: Level) -> Hinted:
     """Return a report with proven hints for the criteria that failed."""
     results = {result.criterion.id: result for result in report.results}
-    search = Search(Trials(report.rubric, submission, results), _reference(report.rubric)).run()
+    search = Search(Trials(report.rubric, submission, results), *_reference(report.rubric)).run()
     hints = {
         name: hint
         for found in reversed(search.found)
@@ -59,12 +60,13 @@ def _hint(found: Found, level: Level, submission: Submission) -> Hint:
     return Hint(message(found, level, submission.path), at, found.gains, edits, found.proposal.said)
 
 
-def _reference(rubric: Rubric) -> Draft | None:
-    """Return the robot of a rubric's reference solution, if it has one that can be read."""
+def _reference(rubric: Rubric) -> tuple[Draft | None, Package | None]:
+    """Return the robot and the package of a rubric's reference solution, as far as they can be read."""
     if not rubric.reference:
-        return None
+        return None, None
     try:
-        urdf = open_reference(rubric).urdf
+        reference = open_reference(rubric)
     except InputError:
-        return None
-    return Draft.of(urdf.reading) if isinstance(urdf, Read) else None
+        return None, None
+    urdf = reference.urdf
+    return Draft.of(urdf.reading) if isinstance(urdf, Read) else None, reference.package

@@ -10,6 +10,8 @@ from grader.grading.hints.loading import repaired
 from grader.grading.hints.targets import targets_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined
 from grader.grading.rubric import Criterion
+from grader.package.edits.candidates import package_proposals
+from grader.package.package import Package
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.submission.raw_xacro import raw_xacro_proposals
@@ -45,9 +47,11 @@ class Option(NamedTuple):
 class Search:
     """The search for one submission; `found` are proven edits, `final` the submission with those that fit together."""
 
-    def __init__(self, trials: Trials, reference: Draft | None) -> None:
+    def __init__(self, trials: Trials, reference: Draft | None, package: Package | None = None) -> None:
+        """`reference` and `package` are those of the rubric's reference solution."""
         self.trials = trials
         self.reference = reference
+        self.package = package
         self.found: list[Found] = []
         self.final = trials.start
         self._known: dict[Edits, list[Option]] = {}
@@ -107,7 +111,9 @@ class Search:
         """Return edits for criteria."""
         criteria = [self._criteria[name] for name in names]
         about_urdf = any(criterion.check.subject == "urdf" for criterion in criteria)
-        found: list[Proposal] = list(raw_xacro_proposals(state.submission)) if about_urdf else []
+        wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
+        found = package_proposals(state.submission.package, self.package, wanted)
+        found += raw_xacro_proposals(state.submission) if about_urdf else ()
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
@@ -122,17 +128,18 @@ class Search:
             found += proposals(draft, reference, shown, moved, anchors, places)
         return found
 
-    def _options(self, state: State, wanted: Sequence[str]) -> Iterator[Option]:
-        """Yield the edits of a state, each with the wanted criteria that it makes pass."""
+    def _options(self, state: State, wanted: Sequence[str], tried: Sequence[str]) -> Iterator[Option]:
+        """Yield the edits of a state for wanted criteria, each with those of the tried ones that it makes pass."""
         for proposal in self._proposals(state, wanted):
-            yield Option(proposal, self.trials.passing(state, proposal.edits, wanted))
+            yield Option(proposal, self.trials.passing(state, proposal.edits, tried))
 
     def _tried(self, state: State, wanted: Sequence[str]) -> list[Option]:
-        """Return the edits of a state, up to one that makes all wanted criteria pass: no other can gain more."""
+        """Return the edits of a state, up to one that makes all lost criteria pass: no other can gain more."""
         options: list[Option] = []
-        for option in self._options(state, wanted):
+        lost = state.failed
+        for option in self._options(state, wanted, lost):
             options.append(option)
-            is_enough = len(option.passes) == len(wanted) and option.proposal.rank <= TRIED
+            is_enough = len(option.passes) == len(lost) and option.proposal.rank <= TRIED
             if is_enough and self._proven(state, option.proposal, wanted[0]):
                 break
         return options
@@ -172,7 +179,7 @@ class Search:
             first = option.proposal
             middle = self.trials.applied(state, first.edits)
             broken = [middle.lost] if middle is not None and middle.lost else []
-            for second in self._options(middle, broken) if middle is not None and broken else ():
+            for second in self._options(middle, broken, broken) if middle is not None and broken else ():
                 if second.passes and second.proposal.rank <= TRIED:
                     edits = joined(state.submission, first.edits, second.proposal.edits)
                     proven = self._proven(state, _pair_of(first, second.proposal, edits), name)

@@ -18,6 +18,7 @@ Results = Mapping[str, Result]
 Edits = tuple[Edit, ...]
 
 _MAX_STEPS = 600  # of one submission
+_PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
 _BYTES_PER_STEP = 8192  # a larger file costs more to read
 
 
@@ -85,8 +86,10 @@ class Trials:
         if files is None:
             return None
         is_moved = None in files.values()
-        if isinstance(state.submission.urdf, Read) and not is_moved and not any(map(_is_of_package, files)):
+        is_robot = all(_is_of_robot(path, state.submission) for path in files)
+        if isinstance(state.submission.urdf, Read) and is_robot and not is_moved:
             return with_urdf(state.submission, files)
+        self.left -= _PACKAGE_STEPS
         return self._from_scratch(state, edits)
 
     def _from_scratch(self, state: State, edits: Edits) -> Submission | None:
@@ -104,9 +107,10 @@ class Trials:
             raise OutOfBudget
 
 
-def _is_of_package(path: str) -> bool:
-    """Return whether a file is one that the package's checks read, not only the URDF."""
-    return path.lower().endswith((".py", ".rviz", ".cfg", ".toml", ".yaml", "package.xml", ".launch", ".launch.xml"))
+def _is_of_robot(path: str, submission: Submission) -> bool:
+    """Return whether a file is the URDF or one that its xacro reads, and not one that the package's checks read."""
+    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.everything.files
+    return is_robot or path == submission.path
 
 
 def is_worse(before: Result, after: Result) -> bool:
@@ -128,9 +132,12 @@ def gained(before: Results, after: Results) -> dict[str, Decimal]:
 
 def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
     """Return the edits of a submission that do what `first` does, and then `second`."""
+    renamed = {edit.renamed: edit.path for edit in first if edit.renamed}
+    second = [edit._replace(path=renamed.get(edit.path, edit.path)) for edit in second]
     found: list[Edit] = []
     for path in dict.fromkeys(edit.path for edit in (*first, *second)):
         text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
-        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
-        found += composed(text, path, *halves)
+        halves = ([edit for edit in edits if edit.path == path and not edit.renamed] for edits in (first, second))
+        renames = [edit for edit in (*first, *second) if edit.path == path and edit.renamed]
+        found += (*composed(text, path, *halves), *renames[-1:])
     return tuple(found)

@@ -1,0 +1,173 @@
+"""The text of a Python file with its syntax tree and tokens, for edits that change nothing else."""
+
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.source import Edit, Source
+from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.parse import Code, SyntaxFault, parse
+
+_TOKEN = re.compile(
+    r'''(?P<comment>\#[^\n]*)
+    |(?P<string>[rRbBfFuU]{0,2}(?:"""(?:\\.|[^\\])*?"""|\'\'\'(?:\\.|[^\\])*?\'\'\'|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))
+    |(?P<name>\w+)|(?P<op>[^\s\w])''',
+    re.DOTALL | re.VERBOSE,
+)
+_QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_USE = re.compile(r"\bglob\.glob\b")
+
+
+class Token(NamedTuple):
+    """A token: string, name (also a number) or op, with its offsets."""
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+class Literal(NamedTuple):
+    """The text in a string, between its quotes, with its offsets."""
+
+    text: str
+    start: int
+    end: int
+    outer_start: int
+    outer_end: int
+
+
+class PythonFile:
+    """A Python file; offsets are those of the text as it is in the file, which may have other line breaks than Python sees."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.text = source.text
+        self.newline = "\r\n" if "\r\n" in source.text else "\n"
+
+    @cached_property
+    def parsed(self) -> Code | SyntaxFault:
+        """The syntax tree, or why there is none."""
+        return parse(self.text.encode("utf-8", "surrogateescape"), self.source.path)
+
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        """All nodes of the syntax tree; nothing where Python cannot read the file."""
+        return list(ast.walk(self.parsed.tree)) if isinstance(self.parsed, Code) else []
+
+    @cached_property
+    def tokens(self) -> list[Token]:
+        """The tokens without comments, as far as can be told, also where Python cannot read the file."""
+        found = (match for match in _TOKEN.finditer(self.text) if match.lastgroup != "comment")
+        return [Token(match.lastgroup or "", match[0], match.start(), match.end()) for match in found]
+
+    @cached_property
+    def literals(self) -> list[Literal]:
+        """The texts in its strings."""
+        found = []
+        for token in self.tokens:
+            quotes = _QUOTES.match(token.text) if token.kind == "string" else None
+            if quotes is not None:
+                start, end = token.start + quotes.end(), token.end - len(quotes[1])
+                found.append(Literal(self.text[start:end], start, end, token.start, token.end))
+        return found
+
+    def offset(self, line: int, byte: int) -> int:
+        """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
+        text = self.source.line(line).encode("utf-8", "surrogateescape")[:byte]
+        return self.source.offset(line, len(text.decode("utf-8", "surrogateescape")) + 1)
+
+    def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
+        """Return the offsets of the start and the end of a node."""
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        return self.offset(node.lineno, node.col_offset), self.offset(node.end_lineno, node.end_col_offset)
+
+    def segment(self, node: ast.expr | ast.stmt | ast.keyword) -> str:
+        """Return the text of a node."""
+        start, end = self.span(node)
+        return self.text[start:end]
+
+    def replaced(self, node: ast.expr | ast.stmt | ast.keyword, new: str) -> Edit:
+        """Return the edit that replaces a node."""
+        return self.source.edit(*self.span(node), new)
+
+    def word_at(self, line: int, column: int) -> str:
+        """Return the name at a place, counted in characters from 1."""
+        found = re.compile(r"\w+").match(self.text, self.source.offset(line, column))
+        return found[0] if found else ""
+
+    @cached_property
+    def bound(self) -> frozenset[str]:
+        """The names that the file binds anywhere."""
+        return frozenset(_bound(self.nodes))
+
+    @cached_property
+    def imports(self) -> list[ast.Import | ast.ImportFrom]:
+        """Its import statements, in order."""
+        found = (node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom))
+        return sorted(found, key=lambda node: node.lineno)
+
+    def calls(self, name: str) -> list[ast.Call]:
+        """Return the calls of a function or class of this name, in order."""
+        found = (node for node in self.nodes if isinstance(node, ast.Call) and called(node) == name)
+        return sorted(found, key=lambda node: (node.lineno, node.col_offset))
+
+    def with_imports(self, names: Iterable[str]) -> list[Edit]:
+        """Return the edits that import those of these names that have a usual meaning and are not bound."""
+        wanted = (name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound)
+        at: dict[int, list[str]] = {}
+        for statement in sorted(map(self._import, wanted), key=_import_order):
+            at.setdefault(self._place(statement), []).append(statement)
+        return [self.source.edit(start, start, "".join(line + self.newline for line in it)) for start, it in at.items()]
+
+    def _import(self, name: str) -> str:
+        module, _, own = USUAL_NAMES[name].rpartition(".")
+        if own == "?glob":
+            module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
+        return f"from {module} import {own}" if module else f"import {own}"
+
+    def _place(self, statement: str) -> int:
+        """Return the offset of the line before which an import is added: the first later one in the usual order, or the end of the imports."""
+        top = [node for node in self.imports if node.col_offset == 0]
+        for node in top:
+            if _import_order(self.segment(node)) > _import_order(statement):
+                return self.span(node)[0]
+        if top:
+            return self._next_line(self.span(top[-1])[1])
+        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
+        is_docstring = bool(body) and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
+        return self._next_line(self.span(body[0])[1]) if is_docstring else self.source.offset(1, 1)
+
+    def _next_line(self, offset: int) -> int:
+        end = self.text.find("\n", offset)
+        return end + 1 if end >= 0 else len(self.text)
+
+
+def called(call: ast.Call) -> str:
+    """Return the last part of the name of the function that is called."""
+    return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
+
+
+def keyword(call: ast.Call, name: str) -> ast.keyword | None:
+    """Return a keyword argument of a call."""
+    return next((keyword for keyword in call.keywords if keyword.arg == name), None)
+
+
+def _import_order(statement: str) -> tuple[bool, str]:
+    """Return the order of the lab's files: what is imported as a whole comes first, setuptools last."""
+    words = statement.split()
+    return words[1] == "setuptools", "" if words[0] == "import" else words[1]
+
+
+def _bound(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    for node in nodes:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store()):
+                yield name
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
+                yield name
+            case ast.alias(name=name, asname=other):
+                yield other or name.split(".")[0]
