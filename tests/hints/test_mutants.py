@@ -59,3 +59,12 @@ def test_the_frame_is_corrected_and_not_the_picture(name: str, change: tuple[str
     mistake = MISTAKES[name]
     hints = hints_for(mistake.base.changed(mistake.text))
     assert [[(edit.old, edit.new) for edit in found.edits] for found in hints.found] == [[change]]
+
+
+@pytest.mark.parametrize("written", ["0.0025", "0.0225", "0.0275", "0.0279", "0.0221"])
+def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -> None:
+    """Nothing else that is nearly right is proposed, such as half of a length more; and 2.5 mm are not nothing."""
+    changed = REFERENCE.text.replace('xyz="0 0 0.025"', f'xyz="0 0 {written}"')
+    hints = hints_for(REFERENCE.changed(changed))
+    assert hints.lost
+    assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]

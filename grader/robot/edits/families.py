@@ -16,7 +16,8 @@ COMPONENTS = {
 }
 _LENGTHS = ("xyz", "size", "radius", "length", "scale")
 _ANGLE_STEP = 5.0  # degrees: what is written in degrees is a multiple
-_CLOSE = 3e-3  # metres, radians, channels of a colour
+_CLOSE = 1e-3  # metres, radians, channels of a colour
+_ROUNDED = 3e-3  # radians and channels of a colour that were rounded to two digits
 
 
 class Slot(NamedTuple):
@@ -128,24 +129,25 @@ NAMING: Sequence[Family] = (*BLIND, halved, half_shapes)
 
 def named(slot: Slot, wanted: Values) -> Change:
     """Return the change to expected values, named by the family whose mistake it is, else by the numbers that change."""
+    tolerance = _CLOSE if slot.attribute in _LENGTHS else _ROUNDED
     for family in NAMING:
         for change in family(slot):
-            if is_close(change.values, wanted):
+            if is_close(change.values, wanted, tolerance):
                 return change
     if len(slot.values) != len(wanted):
         return Change(
             wanted, f"{slot.attribute}{{}}, which ROS 2 cannot read", f"set {slot.attribute}{{}} to {written(wanted)}"
         )
-    off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _CLOSE / 10]
+    off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _CLOSE / 3]
     values = _with(slot.values, {index: wanted[index] for index in off})
     names = " and ".join(map(slot.component, off)) or _called(slot)
     to = " and ".join(number(wanted[index]) for index in off)
     return Change(values, names, f"set {names}{{}} to {to}")
 
 
-def is_close(one: Values, other: Values) -> bool:
+def is_close(one: Values, other: Values, tolerance: float = _CLOSE) -> bool:
     """Return whether values are the same for a robot that is built by hand."""
-    return len(one) == len(other) and all(abs(a - b) <= _CLOSE for a, b in zip(one, other, strict=True))
+    return len(one) == len(other) and all(abs(a - b) <= tolerance for a, b in zip(one, other, strict=True))
 
 
 def written(values: Values) -> str:
