@@ -52,10 +52,12 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
     ("name", "change"),
     [
         ("outer-face-y", ('xyz="-0.15 0.25 0"', 'xyz="-0.15 -0.25 0"')),
+        ("mount-of-the-wheel-wrong-side", ('xyz="-0.15 -0.2 0"', 'xyz="-0.15 0.2 0"')),
+        ("mount-of-the-wheel-turned", ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')),
     ],
 )
-def test_the_frame_is_corrected_and_not_the_picture(name: str, change: tuple[str, str]) -> None:
-    """A visual far from its frame would only hide that the frame is in the wrong place."""
+def test_the_mistake_is_corrected_and_not_hidden_by_another(name: str, change: tuple[str, str]) -> None:
+    """A frame in the wrong place is corrected there, not by a picture far from it or by the next joint."""
     mistake = MISTAKES[name]
     hints = hints_for(mistake.base.changed(mistake.text))
     assert [[(edit.old, edit.new) for edit in found.edits] for found in hints.found] == [[change]]

@@ -38,6 +38,7 @@ class Change(NamedTuple):
     values: Values
     cause: str
     action: str
+    is_named: bool = True  # as a known mistake, not only by the numbers that change
 
 
 def negated(slot: Slot) -> Iterator[Change]:
@@ -142,7 +143,7 @@ def named(slot: Slot, wanted: Values) -> Change:
     values = _with(slot.values, {index: wanted[index] for index in off})
     names = " and ".join(map(slot.component, off)) or _called(slot)
     to = " and ".join(number(wanted[index]) for index in off)
-    return Change(values, names, f"set {names}{{}} to {to}")
+    return Change(values, names, f"set {names}{{}} to {to}", is_named=False)
 
 
 def is_close(one: Values, other: Values, tolerance: float = _CLOSE) -> bool:

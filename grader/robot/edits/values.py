@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.edits import KNOWN, SOLVED, TOGETHER, TRIED, Proposal
+from grader.edits import FITTED, KNOWN, SOLVED, TOGETHER, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import BLIND, COMPONENTS, Change, Slot, Values, is_close, named, written
 from grader.robot.edits.poses import Poses, shapes_of
@@ -40,7 +40,8 @@ def _proposals(draft: Draft, found: Sequence[Number], link: str) -> Iterator[Pro
         slot = _slot(number, halves)
         for wanted, rank in number.wanted:
             if not is_close(slot.values, wanted):
-                yield from _changed(draft, number, named(slot, wanted), link, rank)
+                change = named(slot, wanted)
+                yield from _changed(draft, number, change, link, rank if change.is_named or rank == KNOWN else FITTED)
         for family in BLIND:
             for change in family(slot):
                 yield from _changed(draft, number, change, link, TRIED)
