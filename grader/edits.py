@@ -44,9 +44,9 @@ class Proposal(NamedTuple):
         return text.replace("{}", f" of {self.of}" if self.of else "")
 
 
-# The ranks of proposals: a value that the reference has, one that is computed from it and that a known mistake explains, a known
-# mistake that is tried without knowing the value, a value that only fits, all values of a link at once, whole elements of the reference.
-KNOWN, SOLVED, TRIED, FITTED, TOGETHER, REWRITTEN = range(6)
+# The ranks of proposals: a value that the reference has, one that is computed from it, one that is tried without knowing it, all
+# values of a link at once, whole elements of the reference.
+KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(5)
 
 
 def text_of(source: Source, start: int) -> str:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from grader import markup
 
+_BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
 _START_TAG = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<(?![/!?])", re.DOTALL)
 
@@ -84,6 +85,11 @@ class Source:
     def _attribute(self, start: int, name: str) -> int:
         found = markup.attribute(self.text, start, name)
         return found.start if found is not None else start
+
+    @property
+    def cost(self) -> int:
+        """How much longer this takes to read than a short file, as a number of readings of that."""
+        return len(self.text) // _BYTES_OF_SHORT_FILE
 
     def offset(self, line: int, column: int) -> int:
         """Return the character offset of a line and column, the inverse of `at`."""

@@ -140,12 +140,14 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
-    report, fix = _with_hints(request, report, submission)
+    report, fix = _with_hints(request, report, submission, warn)
     base = _base_of(request.path, is_single=submission.is_single)
     return GradeResult(report, base, exit_code(report, threshold), fix)
 
 
-def _with_hints(request: GradeRequest, report: "Report", submission: "Submission") -> "tuple[Report, Fix | None]":
+def _with_hints(
+    request: GradeRequest, report: "Report", submission: "Submission", warn: Warn
+) -> "tuple[Report, Fix | None]":
     """Return the report with hints, and the edits of all of them if they are to be written. Raises InputError."""
     allowed = report.rubric.hints
     level = allowed if request.hints is None else min(allowed, request.hints, key=LEVELS.index)
@@ -156,7 +158,11 @@ def _with_hints(request: GradeRequest, report: "Report", submission: "Submission
         return report, None
     from grader.grading.hints.hinting import fixed, hinted  # late: many submissions lose nothing
 
-    found = hinted(report, submission, level)
+    try:
+        found = hinted(report, submission, level)
+    except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
+        warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
+        return report, None
     return found.report, fixed(found, submission) if request.fix is not None else None
 
 

@@ -73,6 +73,11 @@ class Expander:
         self._handlers = handlers
         self._other = other
 
+    @property
+    def spent(self) -> int:
+        """The number of steps up to now."""
+        return _MAX_STEPS - self.budget.left
+
     def root(self, source: Node) -> Node:
         """Return the expanded root element of a document."""
         scopes = Scopes(Scope(), Scope())

@@ -165,8 +165,8 @@ def test_an_element_that_is_inserted_in_a_macro_has_its_parameters() -> None:
          ["<xacro:whel|</xacro:whel>", 'name="wheel"']),
         ('<xacro:macro name="wheel" params="sde"><a/></xacro:macro><xacro:wheel side="left"/>',
          ['sde="left"', 'params="side"']),
-        ('<xacro:macro name="wheel" params="*orign"><xacro:insert_block name="origin"/></xacro:macro>'
-         '<xacro:wheel><origin/></xacro:wheel>', ['name="orign"', 'params="*origin"']),
+        (('<xacro:macro name="wheel" params="*orign"><xacro:insert_block name="origin"/></xacro:macro>'
+          '<xacro:wheel><origin/></xacro:wheel>'), ['name="orign"', 'params="*origin"']),
         ('<xacro:include filename="parts/wheels.xacro"/>', ['filename="parts/wheel.xacro"']),
         ('<a b="${nothing_like_it}"/>', []),
     ],

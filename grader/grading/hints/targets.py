@@ -8,6 +8,8 @@ from grader.grading.rubric import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 
+_MAX_LINKS, _MAX_CHAIN = 40, 12
+
 
 class Targets(NamedTuple):
     """Links that decide criteria: those whose shapes count, those whose parent joints move them, and those that criteria name."""
@@ -25,7 +27,7 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
         named = [name for name in texts(criterion.arguments) if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
-    return Targets(tuple(shown), tuple(moved))
+    return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
 
 
 def texts(value: Any) -> Iterator[str]:
@@ -43,6 +45,7 @@ def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
     """Yield the links whose parent joints are on the chains between links; all of those that no chain connects."""
     for other in named[1:]:
         try:
-            yield from (joint.child for joint in posed.between(other, named[0]))
+            chain = [joint.child for joint in posed.between(other, named[0])]
+            yield from chain if len(chain) <= _MAX_CHAIN else (*chain[: _MAX_CHAIN // 2], *chain[-_MAX_CHAIN // 2 :])
         except (MissingElement, NotDecided):
             yield from (named[0], other)

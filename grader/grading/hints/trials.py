@@ -19,7 +19,8 @@ Edits = tuple[Edit, ...]
 
 _MAX_STEPS = 600  # of one submission
 _PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
-_BYTES_PER_STEP = 8192  # a larger file costs more to read
+_MAX_COST = 60  # of one reading: no hints are searched for a larger robot
+_FILES_OF_READING = 200
 
 
 class OutOfBudget(Exception):
@@ -51,7 +52,7 @@ class Trials:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         own = {name: result for name, result in results.items() if result.criterion.part in parts}
         self.start = State(submission, (), own)
-        self.left = _MAX_STEPS
+        self.left = _MAX_STEPS if _cost(submission) <= _MAX_COST else 0
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
@@ -101,10 +102,16 @@ class Trials:
             return None
 
     def _spend(self, submission: Submission) -> None:
-        size = len(submission.urdf.data) if isinstance(submission.urdf, Read) else 0
-        self.left -= 1 + size // _BYTES_PER_STEP
+        self.left -= 1 + _cost(submission)
         if self.left < 0:
             raise OutOfBudget
+
+
+def _cost(submission: Submission) -> int:
+    """Return how much more a reading of a submission costs than one of a short URDF."""
+    urdf = submission.urdf
+    of_urdf = urdf.reading.source.cost if isinstance(urdf, Read) else 0
+    return of_urdf + len(submission.everything.files) // _FILES_OF_READING
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:

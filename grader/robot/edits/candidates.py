@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from grader.edits import REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import written
+from grader.robot.edits.misplaced import misplaced
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
 from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
@@ -29,7 +30,7 @@ def proposals(
     found: dict[frozenset[object], Proposal] = {}
     for edits in draft.source.corrections():
         found[frozenset(edits)] = Proposal(edits, "a name that is not defined", "correct the name", "xacro")
-    for proposal in other_units(draft):
+    for proposal in (*misplaced(draft), *other_units(draft)):
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
         for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
@@ -85,7 +86,7 @@ def moved_offsets(draft: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
     for frame in frames:
         for placed in with_values(draft, joint, "origin", {"xyz": frame}):
             for shown in with_values(draft, visual, "origin", {"xyz": poses.shown_offset(link)}):
-                cause = "the place of the offset: in the visual, not in the joint"
+                cause = "the offset{}, which belongs in the joint"
                 yield Proposal(
                     (*placed, *shown), cause, "move the offset{} to the joint", f"the visual of {link!r}", link
                 )

@@ -16,16 +16,26 @@ COMPONENTS = {
 }
 _LENGTHS = ("xyz", "size", "radius", "length", "scale")
 _ANGLE_STEP = 5.0  # degrees: what is written in degrees is a multiple
-_CLOSE = 1e-3  # metres, radians, channels of a colour
-_ROUNDED = 3e-3  # radians and channels of a colour that were rounded to two digits
+_CLOSE = {"rpy": 2e-2, "rgba": 6e-3, "axis": 2e-2}  # radians, channels, components; else metres:
+_CLOSE_LENGTH = 1e-3
+_SAME = 3e-4
+
+
+class HalfLength(NamedTuple):
+    """Half a length of a shape, the component of a position that it may be missing in, and what it is half of."""
+
+    length: float
+    component: int
+    name: str
 
 
 class Slot(NamedTuple):
-    """Numbers of one attribute, "axis" for those of an axis, and the half lengths of the shapes there with their names."""
+    """Numbers of one attribute, "axis" for those of an axis, and the half lengths of the shapes there with component and name."""
 
     attribute: str
     values: Values
-    halves: tuple[tuple[float, str], ...] = ()
+    halves: tuple["HalfLength", ...] = ()
+    is_given: bool = True
 
     def component(self, index: int) -> str:
         """Return what one of the numbers is called."""
@@ -38,7 +48,6 @@ class Change(NamedTuple):
     values: Values
     cause: str
     action: str
-    is_named: bool = True  # as a known mistake, not only by the numbers that change
 
 
 def negated(slot: Slot) -> Iterator[Change]:
@@ -112,13 +121,17 @@ def halved(slot: Slot) -> Iterator[Change]:
 
 def half_shapes(slot: Slot) -> Iterator[Change]:
     """Add or remove half a shape's height, radius or length: a lidar whose frame is at the top of the box, and half in it."""
-    for half, name in slot.halves if slot.attribute == "xyz" else ():
-        for index, value in enumerate(slot.values):
-            for sign, verb, word in ((1, "add", "lacks"), (-1, "subtract", "has")):
-                component = slot.component(index)
-                values = _with(slot.values, {index: value + sign * half})
-                excess = "" if sign > 0 else " too much"
-                yield Change(values, f"{component}{{}}, which {word} half of {name}{excess}", f"{verb} half of {name} {'to' if sign > 0 else 'from'} {component}{{}}")  # fmt: skip
+    for half, index, name in slot.halves if slot.attribute == "xyz" else ():
+        for sign, verb, word in ((1, "add", "lacks"), (-1, "subtract", "has")):
+            component = slot.component(index)
+            values = _with(slot.values, {index: slot.values[index] + sign * half}) if slot.values else ()
+            excess = "" if sign > 0 else " too much"
+            to = "to" if sign > 0 else "from"
+            yield Change(
+                values,
+                f"{component}{{}}, which {word} half of {name}{excess}",
+                f"{verb} half of {name} {to} {component}{{}}",
+            )
 
 
 Family = Callable[[Slot], Iterator[Change]]
@@ -128,27 +141,26 @@ BLIND: Sequence[Family] = (negated, in_radians, in_metres, in_shares, swapped)
 NAMING: Sequence[Family] = (*BLIND, halved, half_shapes)
 
 
-def named(slot: Slot, wanted: Values) -> Change:
-    """Return the change to expected values, named by the family whose mistake it is, else by the numbers that change."""
-    tolerance = _CLOSE if slot.attribute in _LENGTHS else _ROUNDED
+def named(slot: Slot, wanted: Values) -> tuple[Change, bool]:
+    """Return the change to expected values, and whether a family names it; else it is named by the numbers that change."""
     for family in NAMING:
         for change in family(slot):
-            if is_close(change.values, wanted, tolerance):
-                return change
+            if is_close(slot.attribute, change.values, wanted):
+                return change._replace(values=wanted), True
     if len(slot.values) != len(wanted):
-        return Change(
-            wanted, f"{slot.attribute}{{}}, which ROS 2 cannot read", f"set {slot.attribute}{{}} to {written(wanted)}"
-        )
-    off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _CLOSE / 3]
+        cause = f"{_called(slot)}{{}}, which ROS 2 cannot read" if slot.is_given else f"{_called(slot)}{{}}"
+        return Change(wanted, cause, f"set {_called(slot)}{{}} to {written(wanted)}"), False
+    off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _SAME]
     values = _with(slot.values, {index: wanted[index] for index in off})
     names = " and ".join(map(slot.component, off)) or _called(slot)
-    to = " and ".join(number(wanted[index]) for index in off)
-    return Change(values, names, f"set {names}{{}} to {to}", is_named=False)
+    to = " and ".join(dict.fromkeys(number(wanted[index]) for index in off))
+    return Change(values, names, f"set {names}{{}} to {to}"), False
 
 
-def is_close(one: Values, other: Values, tolerance: float = _CLOSE) -> bool:
+def is_close(attribute: str, one: Values, other: Values) -> bool:
     """Return whether values are the same for a robot that is built by hand."""
-    return len(one) == len(other) and all(abs(a - b) <= tolerance for a, b in zip(one, other, strict=True))
+    close = _CLOSE.get(attribute, _CLOSE_LENGTH)
+    return len(one) == len(other) and all(abs(a - b) <= close for a, b in zip(one, other, strict=True))
 
 
 def written(values: Values) -> str:

@@ -1,17 +1,19 @@
 """The origins and axes that put a link where the reference has it, whatever frames the robot uses."""
 
 from collections.abc import Iterator, Sequence
-from math import hypot, inf
+from math import hypot
 
 from grader.errors import MissingElement, NotDecided
-from grader.robot.edits.families import Values
+from grader.robot.edits.families import HalfLength, Values
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Mesh, Robot, Sphere, Visual
 from grader.robot.shapes import bounding_radius
-from grader.robot.transforms import Transform, minus, rotation_from_rpy
+from grader.robot.transforms import Transform, Vector, minus, rotation_from_rpy
 
 _SAME = 2e-3  # metres
+_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_UP = 2  # the component z
 
 
 class Poses:
@@ -30,34 +32,20 @@ class Poses:
             yield from self._axis(link)
             return
         for frame in self._frames(link, joint.parent):
-            yield frame.translation if attribute == "xyz" else frame.rpy
+            yield _rounded(frame.translation if attribute == "xyz" else frame.rpy)
         if attribute == "xyz":
             for centre in self._centres(link, joint.parent):
                 for visual in self._visuals(link)[:1]:
                     offset = Transform(rotation_from_rpy(joint.origin.rpy)).rotate(visual.origin.xyz)
-                    yield minus(centre.translation, offset)
+                    yield _rounded(minus(centre.translation, offset))
 
     def visual(self, link: str, index: int, attribute: str) -> Iterator[Values]:
-        """Yield the values of a visual's origin with which it is where the reference shows it.
-
-        None far from the link's frame: a visual there would only hide that the frame is elsewhere than it should be.
-        """
-        for own in self._visuals(link)[index : index + 1]:
-            near = hypot(*own.origin.xyz) + 2 * self._reach(link)
-            for pose in self._centres(link, link):
-                if hypot(*pose.translation) <= near:
-                    yield pose.translation if attribute == "xyz" else pose.rpy
-
-    def _reach(self, link: str) -> float:
-        """Return the distance from the centre to the farthest point of what the reference shows of a link."""
-        return max(
-            (
-                bounding_radius(visual.geometry)
-                for visual in self.reference.robot.link(link).visuals[:1]
-                if not isinstance(visual.geometry, Mesh)
-            ),
-            default=inf,
-        )
+        """Yield the values of a visual's origin with which it is where the reference shows it, if that is at its frame."""
+        shown = self._visuals(link)
+        for pose in self._centres(link, link) if index < len(shown) else ():
+            shape = shown[index].geometry
+            if isinstance(shape, Mesh) or hypot(*pose.translation) <= bounding_radius(shape) + _SAME:
+                yield _rounded(pose.translation if attribute == "xyz" else pose.rpy)
 
     def is_shown_right(self, link: str) -> bool:
         """Return whether what a link shows is where the reference shows it."""
@@ -72,12 +60,16 @@ class Poses:
         return shown[0].origin.xyz if shown else (0.0, 0.0, 0.0)
 
     def _frames(self, link: str, parent: str) -> Iterator[Transform]:
-        """Yield T_parent_link as the reference has it."""
-        for anchor in dict.fromkeys((parent, *self._anchors)):
-            wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, parent, anchor)
-            if wanted is not None and own is not None and not self._is_above(link, anchor):
-                yield own.inverse() @ wanted
-                return
+        """Yield T_parent_link as the reference has it: of a link that it does not have, as one that it carries needs it."""
+        carried = [name for name in self._anchors if name != link and self._is_above(link, name)]
+        targets = [link] if self.reference.robot.has_link(link) else carried
+        for target in targets:
+            inner = _pose(self.robot, target, link)
+            for anchor in dict.fromkeys((parent, *self._anchors)):
+                wanted, own = _pose(self.reference, target, anchor), _pose(self.robot, parent, anchor)
+                if wanted and own and inner and not self._is_above(link, anchor):
+                    yield own.inverse() @ wanted @ inner.inverse()
+                    return
 
     def _centres(self, link: str, frame: str) -> Iterator[Transform]:
         """Yield the pose of the reference's visual of a link in a frame of the robot: of its parent, or its own."""
@@ -112,6 +104,10 @@ class Poses:
         return self.robot.robot.link(link).visuals if self.robot.robot.has_link(link) else ()
 
 
+def _rounded(values: Values) -> Values:
+    return tuple(round(value, 4) + 0.0 for value in values)
+
+
 def _pose(robot: Configuration, link: str, relative_to: str) -> Transform | None:
     try:
         return robot.pose(link, relative_to=relative_to)
@@ -119,19 +115,32 @@ def _pose(robot: Configuration, link: str, relative_to: str) -> Transform | None
         return None
 
 
-def shapes_of(robot: Robot, link: str) -> Iterator[tuple[float, str]]:
-    """Yield half the lengths of what a link and its parent show, with their names."""
-    parents = [joint.parent for joint in robot.joints if joint.child == link]
-    for name in (link, *parents[:1]):
-        for visual in robot.link(name).visuals[:1] if robot.has_link(name) else ():
-            match visual.geometry:
-                case Box(size=size):
-                    for length, word in zip(size, ("length", "width", "height"), strict=True):
-                        yield length / 2, f"the {word} of the box of {name!r}"
-                case Cylinder(radius=radius, length=length):
-                    yield length / 2, f"the length of the cylinder of {name!r}"
-                    yield radius, f"the diameter of the cylinder of {name!r}"
-                case Sphere(radius=radius):
-                    yield radius, f"the diameter of the sphere of {name!r}"
-                case _:
-                    pass
+def halves_of_visual(robot: Robot, link: str) -> Iterator[HalfLength]:
+    """Yield half the lengths of what a link shows, along the axes of its visual."""
+    for visual in robot.link(link).visuals[:1] if robot.has_link(link) else ():
+        match visual.geometry:
+            case Box(size=size):
+                for index, (length, word) in enumerate(zip(size, ("length", "width", "height"), strict=True)):
+                    yield HalfLength(length / 2, index, f"the {word} of the box of {link!r}")
+            case Cylinder(length=length):
+                yield HalfLength(length / 2, 2, f"the length of the cylinder of {link!r}")
+            case Sphere(radius=radius):
+                yield from (HalfLength(radius, index, f"the diameter of the sphere of {link!r}") for index in range(3))
+            case _:
+                pass
+
+
+def halves_of_joint(robot: Robot, link: str) -> Iterator[HalfLength]:
+    """Yield half the lengths of what a link shows at its frame, along the axes of its parent; and of a box of the parent."""
+    joint = next((joint for joint in robot.joints if joint.child == link), None)
+    if joint is None or joint.origin is None or not robot.has_link(link):
+        return
+    turned = Transform(rotation_from_rpy(joint.origin.rpy))
+    for half in halves_of_visual(robot, link):
+        axis = turned.rotate(_AXES[half.component])
+        component = max(range(3), key=lambda index: abs(axis[index]))
+        if abs(robot.link(link).visuals[0].origin.xyz[half.component]) < _SAME:
+            yield half._replace(component=component)
+    for half in halves_of_visual(robot, joint.parent):
+        if half.component < _UP and "box" in half.name:
+            yield half

@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from grader.edits import KNOWN, REWRITTEN, Proposal
+from grader.edits import KNOWN, REWRITTEN, TOGETHER, Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Draft, Edits, child_of, end_of
+from grader.robot.edits.families import Slot, named, written
 from grader.robot.edits.values import values_of
 from grader.robot.model import Material
 from grader.xml.parsing import Element
@@ -152,7 +153,6 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
 
 def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     """Connect a link that no joint has as its child: one whose name the joint misspells, or one without a joint."""
-    of = f"the joint of {link!r}"
     for found in draft.joints():
         child = end_of(found, "child")
         if draft.link(child) is None:
@@ -161,7 +161,9 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
-            yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint{}", of, link)
+            yield from joint_end(draft, same, "child", link, link)
+            whole = draft.replace(same, reference.text(other))
+            yield Proposal(whole, "the joint", "correct the joint{}", f"the link {link!r}", link, TOGETHER)
         yield Proposal(
             draft.append(reference.text(other)),
             "the joint{}, which is missing",
@@ -273,6 +275,9 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
             draft.insert(visual, definition), "the material{}, which is missing", "add the material{}", of, link
         )
         return
+    if name != wanted.name and len(used):
+        for edits in draft.set(used, "name", wanted.name):
+            yield Proposal(edits, "the name of the material", "correct the name of the material{}", of, link)
     if name != wanted.name and draft.material(wanted.name) is None:
         second = definition.replace(f'"{name}"', f'"{wanted.name}"', 1)
         edits = (*draft.set(used, "name", wanted.name)[0], *draft.insert(draft.root, second))
@@ -295,6 +300,15 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
                 link,
             )
         elif inside.get("rgba") != colour:
+            given = values_of(inside.get("rgba") or "")
+            change, is_named = named(Slot("rgba", given), wanted.rgba)
+            if is_named:
+                for edits in draft.set(inside, "rgba", written(change.values)):
+                    yield Proposal(edits, change.cause, change.action, of, link)
+            if len(given) == 4:  # the opacity stays
+                kept = written((*wanted.rgba[:3], given[3]))
+                for edits in draft.set(inside, "rgba", kept):
+                    yield Proposal(edits, "the colour", f"set the colour{{}} to {kept}", of, link)
             yield from (
                 Proposal(edits, "the colour", f"set the colour{{}} to {colour}", of, link)
                 for edits in draft.set(inside, "rgba", colour)

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.edits import FITTED, KNOWN, SOLVED, TOGETHER, TRIED, Proposal
+from grader.edits import KNOWN, SOLVED, TOGETHER, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
-from grader.robot.edits.families import BLIND, COMPONENTS, Change, Slot, Values, is_close, named, written
-from grader.robot.edits.poses import Poses, shapes_of
+from grader.robot.edits.families import BLIND, COMPONENTS, Change, HalfLength, Slot, Values, is_close, named, written
+from grader.robot.edits.poses import Poses, halves_of_joint, halves_of_visual
 from grader.robot.numbers import NumberError, numbers
 from grader.xml.parsing import Element
 
@@ -26,22 +26,31 @@ class Number(NamedTuple):
 
 def joint_values(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
     """Yield edits of the origin and the axis of the parent joint of a link."""
-    return _proposals(draft, tuple(_of_joint(draft, reference, poses, link)), link)
+    halves = tuple(halves_of_joint(draft.robot, link))
+    return _proposals(draft, tuple(_of_joint(draft, reference, poses, link)), halves, link)
 
 
 def visual_values(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
     """Yield edits of the origins and the sizes of the visuals of a link."""
-    return _proposals(draft, tuple(_of_visuals(draft, reference, poses, link)), link)
+    halves = tuple(halves_of_visual(draft.robot, link))
+    yield from _proposals(draft, tuple(_of_visuals(draft, reference, poses, link)), halves, link)
+    own = draft.link(link)
+    for cylinder in own.iter("cylinder") if own is not None else ():
+        radius, length = cylinder.get("radius"), cylinder.get("length")
+        if cylinder.getparent() is not None and radius and length and radius != length:
+            for one in draft.set(cylinder, "radius", length)[:1]:
+                for other in draft.set(cylinder, "length", radius)[:1]:
+                    cause, action = "the order of radius and length", "exchange radius and length{}"
+                    yield Proposal((*one, *other), cause, action, f"the visual of {link!r}", link, TRIED)
 
 
-def _proposals(draft: Draft, found: Sequence[Number], link: str) -> Iterator[Proposal]:
-    halves = tuple(shapes_of(draft.robot, link))
+def _proposals(draft: Draft, found: Sequence[Number], halves: tuple[HalfLength, ...], link: str) -> Iterator[Proposal]:
     for number in found:
         slot = _slot(number, halves)
         for wanted, rank in number.wanted:
-            if not is_close(slot.values, wanted):
-                change = named(slot, wanted)
-                yield from _changed(draft, number, change, link, rank if change.is_named or rank == KNOWN else FITTED)
+            if not is_close(slot.attribute, slot.values, wanted):
+                change, is_named = named(slot, wanted)
+                yield from _changed(draft, number, change, link, KNOWN if is_named else rank)
         for family in BLIND:
             for change in family(slot):
                 yield from _changed(draft, number, change, link, TRIED)
@@ -53,7 +62,7 @@ def together(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterato
     for number in (*_of_joint(draft, reference, poses, link), *_of_visuals(draft, reference, poses, link)):
         slot = _slot(number, ())
         known = [values for values, rank in number.wanted if rank == KNOWN]
-        if known and not is_close(slot.values, known[0]):
+        if known and not is_close(slot.attribute, slot.values, known[0]):
             ways = with_values(draft, number.owner, number.tag, {number.attribute: known[0]})
             edits += ways[0] if ways else ()
     if len(edits) > 1:
@@ -63,13 +72,17 @@ def together(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterato
         )
 
 
-def _slot(number: Number, halves: tuple[tuple[float, str], ...]) -> Slot:
+def _slot(number: Number, halves: tuple[HalfLength, ...]) -> Slot:
     child = child_of(number.owner, number.tag) if number.tag else number.owner
     text = child.get(number.attribute) if child is not None else None
     default = _DEFAULTS.get((number.tag, number.attribute), ())
-    name = "axis" if number.tag == "axis" else number.attribute
+    name = _slot_name(number.tag, number.attribute)
     values = values_of(text) if text is not None else default
-    return Slot(name, values if len(values) <= len(COMPONENTS.get(name, values)) else (), halves)
+    return Slot(name, values if len(values) <= len(COMPONENTS.get(name, values)) else (), halves, text is not None)
+
+
+def _slot_name(tag: str, attribute: str) -> str:
+    return "axis" if tag == "axis" else attribute
 
 
 def values_of(text: str) -> Values:
@@ -104,7 +117,13 @@ def _of_joint(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterat
     of = f"the joint of {link!r}"
     turns = joint.get("type") not in ("fixed", "floating")
     for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), *((("axis", "xyz"),) if turns else ())):
-        yield Number(joint, tag, attribute, of, _wanted(_of(other, tag, attribute), poses.joint(link, tag, attribute)))
+        yield Number(
+            joint,
+            tag,
+            attribute,
+            of,
+            _wanted(_slot_name(tag, attribute), _of(other, tag, attribute), poses.joint(link, tag, attribute)),
+        )
 
 
 def _of_visuals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Number]:
@@ -115,13 +134,15 @@ def _of_visuals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iter
     for index, visual in enumerate(own.iterchildren("visual")):
         for attribute in ("xyz", "rpy"):
             solved = poses.visual(link, index, attribute)
-            yield Number(visual, "origin", attribute, of, _wanted(_of(expected, "origin", attribute), solved))
+            yield Number(
+                visual, "origin", attribute, of, _wanted(attribute, _of(expected, "origin", attribute), solved)
+            )
         shape, like = _shape(visual), _shape(expected) if expected is not None else None
         for name in ("size", "radius", "length", "scale") if shape is not None else ():
             if shape is not None and shape.get(name) is not None:
                 values = like.get(name) if like is not None else None
                 known = (values_of(values),) if values is not None else ()
-                yield Number(shape, "", name, of, _wanted(known, ()))
+                yield Number(shape, "", name, of, _wanted(name, known, ()))
 
 
 def _shape(visual: Element) -> Element | None:
@@ -139,10 +160,10 @@ def _of(owner: Element | None, tag: str, attribute: str) -> tuple[Values, ...]:
     return (values,) if values else ()
 
 
-def _wanted(known: Iterable[Values], solved: Iterable[Values]) -> tuple[tuple[Values, int], ...]:
+def _wanted(attribute: str, known: Iterable[Values], solved: Iterable[Values]) -> tuple[tuple[Values, int], ...]:
     """Return expected values with their ranks, each once."""
     found: list[tuple[Values, int]] = []
     for values, rank in (*((values, KNOWN) for values in known), *((values, SOLVED) for values in solved)):
-        if not any(is_close(values, other) for other, _ in found):
+        if not any(is_close(attribute, values, other) for other, _ in found):
             found.append((values, rank))
     return tuple(found)

@@ -19,14 +19,13 @@ def duplicate_repairs(site: Site) -> Iterator[Proposal]:
     element, tag = site.element, str(site.element.tag)
     name = element.get("name")
     same = [other for other in site.draft.root.iterchildren(tag) if other.get("name") == name]
-    names = _other_names(site, tag)
     first = next((other for other in same if other is not element), element)
     is_copy = _content(first) == _content(element)
     removals = [_removed(site, other) for other in (element, first)]
     renames = [
         site.propose(edits, f"a {tag} name that is there twice", _copy("rename", tag))
-        for other, names_of in ((element, names), (first, names[:1]))
-        for new in names_of
+        for other in (element, first)
+        for new in _other_names(site, other)
         for edits in site.draft.set(other, "name", new)
     ]
     yield from (*removals, *renames) if is_copy else (*renames, *removals)
@@ -41,11 +40,12 @@ def _copy(verb: str, tag: str) -> str:
     return f"{verb} one copy" if tag != "material" else f"{verb} one copy of the material"
 
 
-def _other_names(site: Site, tag: str) -> list[str]:
+def _other_names(site: Site, element: Element, tag: str = "") -> list[str]:
+    tag = tag or str(element.tag)
     if tag == "link":
         return site.robots.unused_links()[:_MAX_NAMES]
     if tag == "joint":
-        return site.robots.unused_joints(site.element)
+        return site.robots.unused_joints(element)
     known = {material.get("name") for material in site.draft.root.iterchildren("material")}
     used = dict.fromkeys(found.get("name") or "" for found in site.draft.root.iter("material"))
     return [name for name in used if name and name not in known][:_MAX_NAMES]
@@ -66,7 +66,7 @@ def name_repairs(site: Site) -> Iterator[Proposal]:
         case "joint":
             names = site.robots.unused_joints(element)
         case _:
-            names = _other_names(site, "material") or ["material"]
+            names = _other_names(site, element, "material") or ["material"]
     for name in names:
         edits = site.draft.add_attributes(element, {"name": name})
         yield site.propose(edits, f"the name of the {tag}, which is missing", f"name the {tag}")
