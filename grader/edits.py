@@ -23,7 +23,7 @@ class Proposal(NamedTuple):
     action: str
     of: str = ""
     link: str = ""
-    rank: int = 0
+    rank: int = 1
 
     @property
     def size(self) -> int:
@@ -44,9 +44,9 @@ class Proposal(NamedTuple):
         return text.replace("{}", f" of {self.of}" if self.of else "")
 
 
-# The ranks of proposals: a value that the reference has, one that is computed from it, one that is tried without knowing it, all
-# values of a link at once, whole elements of the reference.
-KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(5)
+# The ranks of proposals: what is misplaced goes where it belongs, a value that the reference has, one that is computed from it, one
+# that is tried without knowing it, all values of a link at once, whole elements of the reference.
+MOVED, KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(6)
 
 
 def text_of(source: Source, start: int) -> str:

@@ -9,6 +9,7 @@ from grader.edits import Proposal
 from grader.grading.hints.trials import Edits, State, Trials, gained, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.draft import Draft
+from grader.robot.edits.misplaced import misplaced
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
 from grader.robot.repairs.pieces import remaining
@@ -123,6 +124,7 @@ def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, It
     yield f"text {at}", text_proposals(reading, reference)
     draft = Draft.of(reading)
     if draft is not None:
+        yield "misplaced", misplaced(draft)
         robots = Robots(draft, reference or draft, reading.problems)
         for problem in repairable(reading.problems):
             yield f"{problem.code} {problem.message}", repairs_of(robots, problem)

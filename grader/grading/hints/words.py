@@ -21,7 +21,7 @@ def message(found: Found, level: Level, main: str | None) -> str:
     if not own:
         text = f"The edits for {_after(found)} together"
     elif level == "edit":
-        changes = [_change(edit, main) for edit in own[:_MAX_NAMED]]
+        changes = _moves(own, main) or [_change(edit, main) for edit in own[:_MAX_NAMED]]
         changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
         text = enumerated(changes, _MAX_NAMED + 1)
     else:
@@ -52,6 +52,15 @@ def _outcome(gains: Mapping[str, Decimal]) -> str:
     points = sum(gains.values(), Decimal(0))
     gain = f", +{counted_points(points)}" if points else ""
     return f"{enumerated(names, _MAX_NAMED)} {'passes' if len(names) == 1 else 'pass'}{gain}"
+
+
+def _moves(edits: list[Edit], main: str | None) -> list[str]:
+    """Return the change in words if a text is moved: removed at one place, and inserted at another one."""
+    texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
+    if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+        return []
+    old, new = sorted(edits, key=lambda edit: not edit.old)
+    return [f"move {_quoted(old.old)} ({_where(old, main)}) to the place after {_where(new, main)}"]
 
 
 def _change(edit: Edit, main: str | None) -> str:

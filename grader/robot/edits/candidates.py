@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from grader.edits import REWRITTEN, Proposal
+from grader.edits import KNOWN, REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import written
 from grader.robot.edits.misplaced import misplaced
@@ -39,7 +39,10 @@ def proposals(
     lines = {(place.path, place.line) for place in places}
     return sorted(
         found.values(),
-        key=lambda proposal: (proposal.rank, (proposal.edits[0].path, proposal.edits[0].line) not in lines),
+        key=lambda proposal: (
+            proposal.rank,
+            proposal.rank == KNOWN and (proposal.edits[0].path, proposal.edits[0].line) not in lines,
+        ),
     )
 
 

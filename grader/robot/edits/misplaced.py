@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from grader.edits import Proposal
+from grader.edits import MOVED, Proposal
 from grader.robot.edits.draft import Draft
 from grader.robot.spelling import CHILDREN
 from grader.xml.parsing import Element
@@ -25,7 +25,7 @@ def _moved(draft: Draft) -> Iterator[Proposal]:
             text = draft.text(element)
             there = draft.append(text) if place is draft.root else draft.insert(place, text)
             cause, action = f"the place of the <{tag}>: in <{parent.tag}>", f"move the <{tag}> into <{place.tag}>"
-            yield Proposal((*draft.remove(element), *there), cause, action)
+            yield Proposal((*draft.remove(element), *there), cause, action, rank=MOVED)
 
 
 def _places(draft: Draft, element: Element, parent: Element) -> Iterator[Element]:
