@@ -42,13 +42,12 @@ def export(
 
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
     """
-    from grader.cli.progress import progress_display
     from grader.usecases.export import ExportRequest
     from grader.usecases.export import export as export_grades
 
     request = ExportRequest(
         target, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
     )
-    data, code = export_grades(request, progress_display, warn)
+    data, code = export_grades(request, warn)
     write_stdout(data)
     return code

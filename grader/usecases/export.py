@@ -16,14 +16,12 @@ from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
-from grader.classroom.run.hint_search import same_robot
 from grader.errors import GraderError
 from grader.files.reading import read_capped
 from grader.grading.rubric import Criterion
 from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
@@ -51,7 +49,7 @@ class ExportRequest:
     any_maximum: bool
 
 
-def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tuple[bytes, ExitCode]:
+def export(request: ExportRequest, warn: Warn) -> tuple[bytes, ExitCode]:
     """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_files(request)
     with Gradebook(request.gradebook) as book:
@@ -70,8 +68,7 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
         elif request.target == "csv":
             data = grades_csv(grades).encode()
         else:
-            search_hints(book, [grades.newest_rubric()], same_robot, HintOptions(), progress, warn)
-            data = class_summary(grades, OutputFormat.JSON, with_fixes=True).encode()
+            data = class_summary(grades, OutputFormat.JSON).encode()
     if request.output is None:
         return data, ExitCode.PASSED
     save_bytes(request.output, data, classes)
