@@ -8,7 +8,7 @@ from grader.report.formats import OutputFormat
 def stats(
     gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = OutputFormat.TERMINAL
 ) -> str:
-    """Show statistics of a class: grades, criteria, common mistakes, and the edits that would fix them.
+    """Show statistics of a class: grades, criteria, mistakes, fixes.
 
     Manual marks are included, late penalties are not; only the totals of the students in --format json include them. The share of
     a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the

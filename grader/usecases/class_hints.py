@@ -37,10 +37,10 @@ def search_hints(
     """Search the hints of the newest submissions that are not stored yet, once for each group, and store them."""
     if not os.access(book.path, os.W_OK):
         return
-    remove_old_hints(book)
     searches = [HintSearch(book, rubric, group, options.max_size) for rubric in rubrics]
     total = sum(len(search.wanted) for search in searches)
     if total:
+        remove_old_hints(book)
         _run(searches, total, options, progress)
     unavailable = sum(search.unavailable for search in searches)
     if unavailable:

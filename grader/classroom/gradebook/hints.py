@@ -20,7 +20,7 @@ WHERE grade.verdict = 'graded' AND grade.rubric = ? AND grade.version = ? ORDER 
 """
 _RUBRICS = "SELECT DISTINCT rubric FROM grade WHERE result IS NOT NULL AND version = ? ORDER BY rubric"
 _ROBOT = ("urdf", "robot")  # what a check examines that depends on the URDF alone
-_LOST = "fs"
+_FAILED = "f"
 
 
 class Mistaken(NamedTuple):
@@ -60,8 +60,8 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
         student, key, result, digest, urdf, robot, statuses, root, files, is_gone, marks, hints, record = row
         submission = submission_of(zlib.decompress(record).decode())
         robot_statuses = "".join(statuses[position] for position in of_robot)
-        is_package_wrong = not submission.is_single and any(statuses[position] in _LOST for position in of_package)
-        if not (is_package_wrong or any(letter in _LOST for letter in robot_statuses)):
+        is_package_wrong = not submission.is_single and any(statuses[position] == _FAILED for position in of_package)
+        if not (is_package_wrong or _FAILED in robot_statuses):
             continue
         paths, names, *_ = json.loads(files)
         content = ("file", urdf, statuses) if submission.is_single and urdf else ("digest", digest, statuses)
