@@ -95,7 +95,7 @@ def test_xacro_that_ros_2_loads_as_it_stands(sample: str, expected: list[str]) -
     """A launch file that reads the file runs xacro instead; a file on its own gets a name that says xacro."""
     [found] = search(SAMPLES[sample].open()).found
     assert texts(found.edits) == expected
-    assert found.gains == ("urdf-loads",)
+    assert list(found.gains) == ["urdf-loads"]
 
 
 def test_raw_xacro_with_another_mistake() -> None:
