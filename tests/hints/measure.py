@@ -12,9 +12,6 @@ from time import perf_counter
 from typing import NamedTuple
 
 from grader.grading.hints.words import message
-from grader.source import Source
-from grader.submission.submission import Submission
-from grader.submission.urdf import Read
 from tests.hints.mutants import mutants
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, Base, Hints, behaviour, differences, hints_for, text_after
@@ -51,7 +48,7 @@ class Verdict(NamedTuple):
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
         for found in self.hints.found:
-            lines.append(f"     + {message(found, 'edit', _source(self.hints.fixed))}")
+            lines.append(f"     + {message(found, 'edit', self.hints.fixed)}")
             lines.append(f"       {found.proposal.said} [{found.proposal.named}]")
         left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
@@ -108,10 +105,6 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
             mean(found.milliseconds for found in those),
         )
         yield f"{family:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
-
-
-def _source(submission: Submission) -> Source | None:
-    return submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
 
 
 def main() -> None:
