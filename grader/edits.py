@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from posixpath import commonprefix
 from typing import NamedTuple
 
 from grader import markup
@@ -28,7 +29,7 @@ class Proposal(NamedTuple):
     @property
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
-        return sum(100 + len(edit.old) + len(edit.new) for edit in self.edits)
+        return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
 
     @property
     def said(self) -> str:
@@ -47,6 +48,13 @@ class Proposal(NamedTuple):
 # The ranks of proposals: what is misplaced goes where it belongs, a value that the reference has, one that is computed from it, one
 # that is tried without knowing it, all values of a link at once, whole elements of the reference.
 MOVED, KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(6)
+
+
+def _changed(old: str, new: str) -> int:
+    """Return the number of characters that differ: without those that both begin or end with."""
+    start = len(commonprefix((old, new)))
+    end = len(commonprefix((old[start:][::-1], new[start:][::-1])))
+    return len(old) + len(new) - 2 * (start + end)
 
 
 def text_of(source: Source, start: int) -> str:

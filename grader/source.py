@@ -42,6 +42,14 @@ class Edit(NamedTuple):
     renamed: str = ""
 
 
+class Correction(NamedTuple):
+    """Edits that may correct a text, what is wrong, as a noun, and what to do."""
+
+    edits: tuple[Edit, ...]
+    cause: str
+    action: str
+
+
 class Source:
     """The text of one file, in which locations are computed on demand: most never are."""
 
@@ -123,8 +131,8 @@ class Source:
         del tag
         return xml
 
-    def corrections(self) -> "list[tuple[Edit, ...]]":
-        """Return the edits that may correct names of xacro which are not defined."""
+    def corrections(self) -> list[Correction]:
+        """Return the edits that may correct what xacro refuses: its XML, or names which are not defined."""
         return []
 
 

@@ -26,22 +26,28 @@ def answered(
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
     if submission.no_documents:
-        return pending(f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading")
+        message = f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading"
+        return pending(message, problem=f"the documents cannot be read: {submission.no_documents}")
     found = find_answer(submission.documents, files, places, question)
     unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
     passage = found.passage
     if passage is None:
         searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
-        return pending(f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}")
+        message = f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
+        return pending(message, problem="not found, but not every document was read" if found.unread else "not found")
     how = f" ({passage.how})" if passage.how else ""
+    problem = ""
     if passage.is_empty:
+        problem = "only the question is there"
         message = f"No answer was found {passage.where}: only the question is there{how}; needs manual grading"
     elif passage.is_certain:
         message = f"The answer {passage.where}{how}, needs manual grading"
     else:
+        problem = "perhaps"
         message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
-    return Outcome("pending", f"{question} {message}{unread}", passage.text, location=passage.location)
+    outcome = Outcome("pending", f"{question} {message}{unread}", passage.text, location=passage.location)
+    return outcome._replace(problem=problem)
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
@@ -57,12 +63,12 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
         return _pictures("needs manual grading: ", found.files)
     labels = enumerated([repr(name) for name in names[:3]], word="or")
     if found.perhaps:
-        return _pictures(
-            f"no picture or document is certain to be {labels}; needs manual grading, perhaps: ", found.perhaps
-        )
+        start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
+        return _pictures(start, found.perhaps)._replace(problem="perhaps")
     paths = [proof.file.path for proof in submission.proofs]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
-    return pending(f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading")
+    message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
+    return pending(message, problem="not found")
 
 
 def _pictures(start: str, exhibits: "tuple[Exhibit, ...]") -> Outcome:

@@ -24,7 +24,8 @@ class Outcome(NamedTuple):
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
     joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds nothing of
     that kind.
-    `problem` is the message of the problem of the file, at `location`, that the outcome reports, where its own message says more.
+    `problem` is the message of the problem of the file, at `location`, that the outcome reports, where its own message says more;
+    of an answer or a picture what is in doubt, in a few words.
     """
 
     status: Status
@@ -83,9 +84,9 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def pending(message: str, cause: str = "", at: AnyPlace = None) -> Outcome:
+def pending(message: str, cause: str = "", at: AnyPlace = None, *, problem: str = "") -> Outcome:
     """Return the outcome for a fact that needs manual grading; `cause` is the reason without what differs between students."""
-    return Outcome("pending", message, location=location_of(at), mistake=cause)
+    return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
 
 
 def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:

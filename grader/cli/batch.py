@@ -77,4 +77,4 @@ def batch(
         path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
         tuple(ignore_file or ()), reports, formats, csv,
     )  # fmt: skip
-    return grade_class(request, output_format, screen(), progress_display(), warn)
+    return grade_class(request, output_format, screen(), progress_display, warn)

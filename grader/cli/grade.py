@@ -39,6 +39,9 @@ def grade(
     answers: Annotated[
         bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
     ] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
+    ] = False,
     hints: Annotated[
         Level | None, typer.Option(metavar="LEVEL", help="The most that hints tell: none, place, cause or edit.")
     ] = None,
@@ -75,6 +78,7 @@ def grade(
             max_size,
             answers,
             tuple(arg or ()),
+            verbose,
             hints,
             fix,
         )
@@ -82,8 +86,8 @@ def grade(
             from grader.usecases.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
-        result = grade_and_save(request, warn)
-        text = render(result.report, output_format, result.base, screen())
+        result = grade_and_save(request, warn, TERMINAL.show_progress)
+        text = render(result.report, output_format, result.base, screen(), verbose=verbose)
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():
             annotate = write_stderr if output_format is not Format.GITHUB else None

@@ -5,7 +5,7 @@ import sys
 from contextlib import suppress
 
 from grader.report.screen import Screen, columns
-from grader.text import without_commands
+from grader.text import printable, without_commands
 from grader.usecases import Terminal
 from grader.usecases.writing import write_stdout
 
@@ -43,4 +43,20 @@ def ask(prompt: str) -> str | None:
         return None
 
 
-TERMINAL = Terminal(write_stdout, warn, screen, ask)
+class TransientLine:
+    """A line on standard error that the next text replaces; nothing unless that is a terminal."""
+
+    def __init__(self) -> None:
+        self._width = 0
+
+    def show(self, path: str) -> None:
+        """Show which file is being read; for an empty path remove the line."""
+        if sys.stderr is None or not sys.stderr.isatty():
+            return
+        text = f"grader: reading {printable(path)}"[: columns() - 1] if path else ""
+        if text or self._width:
+            write_stderr(without_commands(f"\r{' ' * self._width}\r{text}"))
+        self._width = len(text)
+
+
+TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show)

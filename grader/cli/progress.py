@@ -17,8 +17,8 @@ _LINE_SECONDS = 10.0
 
 
 @contextmanager
-def progress_display() -> Iterator[Callable[["Progress"], None]]:
-    """Show the progress of a run; yields the function that receives it."""
+def progress_display(work: str) -> Iterator[Callable[["Progress"], None]]:
+    """Show the progress of a pass over a class, whose work is named; yields the function that receives it."""
     began = last_line = time.monotonic()
 
     def print_line(progress: "Progress") -> None:
@@ -32,7 +32,7 @@ def progress_display() -> Iterator[Callable[["Progress"], None]]:
         yield print_line
         return
     with _bar() as bar:
-        task = bar.add_task("grading", total=None, rate="", found="")
+        task = bar.add_task(work, total=None, rate="", found="")
 
         def move(progress: "Progress") -> None:
             rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"

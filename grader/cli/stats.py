@@ -1,18 +1,18 @@
 """grader stats: statistics of a class."""
 
 from grader.cli.options import DueOption, FormatOption, GradebookOption
-from grader.cli.output import screen
+from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 
 
 def stats(
     gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = OutputFormat.TERMINAL
 ) -> str:
-    """Show statistics of a class: grades, criteria, common mistakes.
+    """Show statistics of a class: grades, criteria, mistakes, fixes.
 
     Manual marks are included, late penalties are not; only the totals of the students in --format json include them. The share of
     a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
-    rest of the grade.
+    rest of the grade. An edit is shown with the number of students who need it: it was tried on one of their robots.
 
     Examples:
 
@@ -20,6 +20,7 @@ def stats(
 
       grader stats --gradebook lab6.db --format json
     """
+    from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics
 
-    return class_statistics(gradebook, due, output_format, screen())
+    return class_statistics(gradebook, due, output_format, screen(), progress_display, warn)

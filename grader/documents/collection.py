@@ -6,7 +6,8 @@ import subprocess
 import sys
 import time
 from bisect import bisect_right
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from fnmatch import translate
 from math import ceil
 from typing import NamedTuple
@@ -18,6 +19,7 @@ from grader.errors import InputError
 from grader.files.tree import File, Tree
 
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
+NOTICE_SECONDS = 1.0  # of reading in all, before it is said what is being read
 MAX_LINES = 2000  # of one document
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
@@ -26,6 +28,7 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
+    r"|grader \d\S*, \S+: "
 )
 
 
@@ -66,10 +69,14 @@ class Unread(NamedTuple):
 
 
 class DocumentCollection:
-    """The documents of a submission. Each is read once; Word and PDF files share one budget of time."""
+    """The documents of a submission. Each is read once; Word and PDF files share one budget of time.
+
+    `show_progress` gets the path of a file that keeps the user waiting, and an empty text when that is read.
+    """
 
     def __init__(self, tree: Tree) -> None:
         self.tree = tree
+        self.show_progress: Callable[[str], None] = _show_nothing
         self._seconds = MAX_SECONDS
         self._converted = 0
         self._read_files: dict[str, Document | Unread | None] = {}
@@ -151,21 +158,45 @@ class DocumentCollection:
         ]
         began = time.monotonic()
         try:  # an interruption ends the process as well
-            out, err = subprocess.PIPE, subprocess.DEVNULL
-            done = subprocess.run(command, input=data, stdout=out, stderr=err, timeout=self._seconds, check=False)
+            code, text = self._run(command, data, file.path)
         except subprocess.TimeoutExpired:
             raise late from None
         except OSError:
             raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
         finally:
             self._seconds -= time.monotonic() - began
-        if converter.is_out_of_time(done.returncode):
+        if converter.is_out_of_time(code):
             raise late
-        if done.returncode == converter.MISSING:
+        if code == converter.MISSING:
             raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
-        if done.returncode:
+        if code:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
-        return done.stdout.decode("utf-8", "replace")
+        return text.decode("utf-8", "replace")
+
+    def _run(self, command: list[str], data: bytes, path: str) -> tuple[int, bytes]:
+        """Return the exit code and the output of a converter, and show the path of its file if the user has to wait."""
+        with subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        ) as process:
+            quiet = max(0.0, min(self._seconds, NOTICE_SECONDS - (MAX_SECONDS - self._seconds)))
+            try:
+                out = self._output(process, data, quiet, path)
+            except BaseException:  # time is up, or an interruption
+                process.kill()
+                raise
+            finally:
+                self.show_progress("")
+            return process.returncode, out
+
+    def _output(self, process: subprocess.Popen[bytes], data: bytes, quiet: float, path: str) -> bytes:
+        with suppress(subprocess.TimeoutExpired):
+            return process.communicate(data, quiet)[0]
+        self.show_progress(path)
+        return process.communicate(timeout=self._seconds - quiet)[0]
+
+
+def _show_nothing(path: str) -> None:
+    """Show no progress."""
 
 
 def _document(file: File, text: str) -> Document:

@@ -57,27 +57,10 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
-    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, *rest = data["submission"]
-    package = GradedPackage(*package) if package is not None else None
-    others = tuple(OtherCandidate(*file) for file in others)
-    submission = GradedSubmission(
-        identity,
-        path,
-        sha256,
-        package,
-        others,
-        tuple(ignored),
-        has_urdf,
-        verdict,
-        is_single,
-        unread,
-        rest == [True],
-        quote,
-    )
     evidence = {proof.id: proof for proof in rubric.evidence}
     uncertain = data.get("perhaps") or [()] * len(data["evidence"])  # records of earlier versions have none
     return Report(
-        submission,
+        _submission(data, quote),
         rubric,
         tuple(data["parts"]),
         tuple(_read_result(rubric, same, entry) for entry in data["results"]),
@@ -95,9 +78,34 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     )
 
 
+def submission_of(text: str) -> GradedSubmission:
+    """Return what a record says of its submission; the texts of its files are not in it."""
+    return _submission(json.loads(text))
+
+
 def has_evidence_only(text: str) -> bool:
     """Return whether a record is of a submission with pictures or documents, but without a URDF."""
     return json.loads(text)["submission"][-1] is True  # records of earlier versions end with a text
+
+
+def _submission(data: Any, quote: Quote | None = None) -> GradedSubmission:
+    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, *rest = data["submission"]
+    package = GradedPackage(*package) if package is not None else None
+    others = tuple(OtherCandidate(*file) for file in others)
+    return GradedSubmission(
+        identity,
+        path,
+        sha256,
+        package,
+        others,
+        tuple(ignored),
+        has_urdf,
+        verdict,
+        is_single,
+        unread,
+        rest == [True],
+        quote,
+    )
 
 
 def _exhibits(files: Any) -> tuple[Exhibit, ...]:

@@ -4,17 +4,19 @@ from collections.abc import Sequence
 from typing import Any
 
 from grader import __version__
+from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import AttentionList, Grades
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.rubric import Rubric
-from grader.report.json_data import exact, rounded, to_json
+from grader.report.json_data import edit, exact, rounded, to_json
 
 
 def render_class_json(
     rubric: Rubric,
     statistics: ClassStatistics,
+    fixes: Sequence[CommonFix],
     grades: Grades,
     looks: AttentionList,
     identical: Sequence[IdenticalWork],
@@ -32,6 +34,7 @@ def render_class_json(
             "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
             **({"run": run} if run is not None else {}),
             "statistics": _statistics(statistics),
+            "fixes": list(map(_fix, fixes)),
             "identical": [
                 {"students": list(work.students), "same_file": list(map(list, work.same_file))} for work in identical
             ],
@@ -62,6 +65,17 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "paths": list(grade.files.paths),
         "attempt": grade.attempt,
         "earlier": list(grade.earlier),
+    }
+
+
+def _fix(fix: CommonFix) -> dict[str, Any]:
+    """Return a change that several students need as plain data."""
+    return {
+        "action": fix.action,
+        "count": fix.count,
+        "criteria": list(fix.criteria),
+        "points": exact(fix.points),
+        "example": list(map(edit, fix.example)),
     }
 
 

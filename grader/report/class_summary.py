@@ -7,9 +7,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import AttentionList
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.report.class_fixes import print_fixes
 from grader.report.console import wrapped
 from grader.text import counted, enumerated, format_points, printable
 
@@ -23,6 +25,7 @@ _LOW_DISCRIMINATION = 0.2
 def render_class(
     title: str,
     statistics: ClassStatistics,
+    fixes: Sequence[CommonFix],
     looks: AttentionList,
     identical: Sequence[IdenticalWork],
     evidence_only: int,
@@ -53,6 +56,8 @@ def render_class(
         for failure in statistics.failures[:_MAX_FAILURES]:
             head = Text(f"{failure.count:>6}  ", style="bold")
             wrapped(console, Text(printable(f"{failure.criterion.id}: {failure.message}")), 8, head)
+    if fixes:
+        print_fixes(fixes[:_MAX_FAILURES], console)
     if identical:
         _print_identical(identical, console)
     if looks.total:

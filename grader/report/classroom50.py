@@ -11,8 +11,8 @@ from typing import Any
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
-from grader.report.findings import is_failure
 from grader.report.json_data import to_json
+from grader.report.order import is_failure
 from grader.report.plain_text import criterion_lines
 from grader.text import printable
 

@@ -16,22 +16,40 @@ _MAX_PROBLEMS = 30
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
     """Print text that keeps its indent when it wraps; `head` replaces the indent of the first line."""
+    put(console, block(console, text, indent, head))
+
+
+def block(console: Console, text: Text, indent: int, head: Text | None = None, most: int | None = None) -> Text:
+    """Return text that keeps its indent when it wraps; of more than `most` lines the first ones, with an ellipsis."""
     lines = text.wrap(console, max(8, console.width - indent))
     for line in lines:
         line.rstrip()
-    block = Text("\n" + " " * indent).join(lines)  # printed at once: a print costs more than a line
-    console.print((head or Text(" " * indent)) + block, overflow="ignore", no_wrap=True, crop=False)
+    kept = lines[:most]
+    if len(kept) < len(lines):
+        ellipsis = symbol(console, "\u2026", "...")
+        kept[-1].truncate(max(8, console.width - indent) - len(ellipsis))
+        kept[-1].append(ellipsis)
+    return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(kept)
 
 
-def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:
-    """Print the source line of a location, and underline the marked part."""
+def put(console: Console, text: Text) -> None:
+    """Print lines that are wrapped already, all at once: a print costs more than a line."""
+    console.print(text, overflow="ignore", no_wrap=True, crop=False)
+
+
+def excerpt_block(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> Text:
+    """Return the source line of a location, and a line that underlines the marked part."""
     number = str(where.line)
     line = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
-    mark, bar = ("\u2500", "\u2502") if _unicode(console) else ("-", "|")
+    mark, bar = symbol(console, "\u2500", "-"), symbol(console, "\u2502", "|")
     under = " " * line.start + mark * line.width
-    for gutter, text in ((number, Text(line.text)), (" " * len(number), Text(under, style=style))):
-        start = Text(f"{' ' * indent}{gutter} {bar} ", style="dim")
-        console.print(start + text, overflow="ignore", no_wrap=True, crop=False)
+    return Text.assemble(
+        (f"{' ' * indent}{number} {bar} ", "dim"),
+        line.text,
+        "\n",
+        (f"{' ' * (indent + len(number))} {bar} ", "dim"),
+        (under, style),
+    )
 
 
 def show_problems(
@@ -47,15 +65,11 @@ def show_problems(
         wrapped(console, prefix + Text(printable(problem.message)), len(head), head)
         source = source_of(where.path) if problem.severity == "error" else None
         if source is not None:
-            show_excerpt(console, source, where, min(len(head), console.width // 5))
+            put(console, excerpt_block(console, source, where, min(len(head), console.width // 5)))
     for text in first_lines([problem.code for problem in problems], _MAX_PROBLEMS)[_MAX_PROBLEMS:]:
         wrapped(console, Text(text), 2)
 
 
-def _unicode(console: Console) -> bool:
-    return console.encoding.lower().startswith("utf")
-
-
 def symbol(console: Console, fancy: str, plain: str) -> str:
     """Return a symbol, or its ASCII form if the terminal cannot show it."""
-    return fancy if _unicode(console) else plain
+    return fancy if console.encoding.lower().startswith("utf") else plain

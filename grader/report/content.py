@@ -1,15 +1,13 @@
-"""The content of a report, sentence by sentence, for every format to lay out. All of it is printable text."""
+"""The content of a report on the whole submission, for every format to lay out. All of it is printable text."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
-from itertools import groupby
-from typing import NamedTuple
 
 from grader.checks.manual import MANUAL_CHECKS
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import Report, Result
 from grader.problems import Problem
-from grader.report.locations import calls_text
-from grader.source import Location
+from grader.report.details import sentence
+from grader.report.order import failures
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
@@ -17,23 +15,9 @@ _VERDICTS = {
     "degraded": "ROS 2 loads the file, but drops content of it",
     "rejected": "ROS 2 rejects the file",
 }
-_MAX_LISTED = 12
+_MAX_LISTED, _MAX_FILES = 12, 2
+_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked manually")
-
-
-class Details(NamedTuple):
-    """The sentences of a report on a criterion, besides its id and points.
-
-    `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
-    with its answers. `location` is where to look and `expected` what should be, if the criterion failed.
-    """
-
-    sentences: tuple[str, ...]
-    answer: tuple[str, ...] = ()
-    model_answer: tuple[str, ...] = ()
-    location: Location | None = None
-    feedback: str = ""
-    expected: str = ""
 
 
 def score_text(report: Report) -> str:
@@ -41,28 +25,40 @@ def score_text(report: Report) -> str:
     return f"{format_points(report.score)} / {format_points(report.max_score)} points"
 
 
-def status_of(result: Result) -> str:
-    """Return the status of a criterion; a manual mark passes if it gives all points."""
-    if result.manual_mark is None:
-        return result.outcome.status
-    return "passed" if result.points >= result.criterion.points else "failed"
-
-
 def earned_text(results: tuple[Result, ...]) -> str:
     """Return the points of some criteria together: 8/14."""
     earned = sum((result.points for result in results), Decimal(0))
-    maximum = sum((result.criterion.points for result in results), Decimal(0))
-    return f"{format_points(earned)}/{format_points(maximum)}"
+    return f"{format_points(earned)}/{format_points(maximum(results))}"
+
+
+def maximum(results: Iterable[Result]) -> Decimal:
+    """Return the maximum of some criteria together."""
+    return sum((result.criterion.points for result in results), Decimal(0))
+
+
+def points_of(results: Iterable[Result]) -> str:
+    """Return the maximum of some criteria together: 14 points."""
+    return counted_points(maximum(results))
+
+
+def graded_line(report: Report) -> str:
+    """Return the version of the grader, the rubric, and the URDF, or the submission without one."""
+    graded = printable(report.submission.path or report.submission.id)
+    return f"grader {report.version}, {printable(report.rubric.id)}: {graded}"
 
 
 def summary(report: Report) -> str:
+    """Return the URDF, whether ROS 2 loads it, and how many criteria passed, failed, and so on."""
+    path = report.submission.path
+    return f"{f'{printable(path)}: ' if path is not None else ''}{verdict_and_counts(report)}"
+
+
+def verdict_and_counts(report: Report) -> str:
     """Return whether ROS 2 loads the URDF, and how many criteria passed, failed, and so on."""
     submission = report.submission
-    path = printable(submission.path or "")
-    urdf = f"{path}: not read" if submission.unread else "no URDF was submitted"
+    urdf = "the URDF could not be read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
-        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that cannot be determined statically"
-        urdf = f"{path}: {verdict}"
+        urdf = _VERDICTS[submission.verdict] if submission.verdict else "xacro that cannot be determined statically"
     statuses = ["marked manually" if result.manual_mark else result.outcome.status for result in report.results]
     counts = (f"{statuses.count(status)} {status}" for status in _STATUSES if status in statuses)
     return f"{urdf}; {', '.join(counts)}"
@@ -78,16 +74,30 @@ def package_line(report: Report) -> str:
 
 def pending_line(report: Report) -> str:
     """Return how many points need manual grading, and which automatic criteria are among them; empty if none do."""
-    if not report.pending:
-        return ""
     names = [printable(result.criterion.id) for result in undecided(report)]
     rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
-    return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading{rest}"
+    return f"{pending_points(report)}{rest}" if report.pending else ""
+
+
+def pending_points(report: Report) -> str:
+    """Return how many points need manual grading."""
+    return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading"
 
 
 def notes(report: Report) -> list[str]:
     """Return notes on how the submission was read."""
     return [f"Note: {printable(note)}" for note in report.notes]
+
+
+def first_ignored(report: Report) -> list[str]:
+    """Return the other candidates for grading in a line, and the first ignored file; of many how many more there are."""
+    others, ignored = report.submission.other_candidates, report.submission.ignored
+    lines = (
+        [f"Not graded: {enumerated([file.path for file in others], _MAX_FILES)} (--verbose says why)"] if others else []
+    )
+    more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
+    lines += [f"Ignored: {file}{more}" for file in ignored[:1]]
+    return list(map(printable, lines))
 
 
 def ignored_lines(report: Report) -> list[str]:
@@ -99,51 +109,40 @@ def ignored_lines(report: Report) -> list[str]:
 
 def undecided(report: Report) -> list[Result]:
     """Return the automatic criteria that need manual grading here, because their subject could not be read."""
-    return [
-        result for result in report.results if result.is_open and result.criterion.check.function not in MANUAL_CHECKS
-    ]
+    return [result for result in report.results if result.is_open and not is_manual(result)]
 
 
-def result_details(result: Result, report: Report) -> Details:
-    """Return the details of one criterion, whatever its status."""
+def is_manual(result: Result) -> bool:
+    """Return whether a criterion is always graded manually: a question or a picture."""
+    return result.criterion.check.function in MANUAL_CHECKS
+
+
+def pending_reason(result: Result) -> str:
+    """Return where the answer or the pictures are that need manual grading, or why a check cannot decide."""
     outcome = result.outcome
-    answers = (_lines(outcome.measured), _lines(result.criterion.answer)) if outcome.status == "pending" else ()
-    if result.manual_mark is not None:
-        comment = f": {_one_line(result.manual_mark.comment)}" if result.manual_mark.comment else ""
-        mark = sentence(f"Marked {f'by {result.manual_mark.by}' if result.manual_mark.by else 'manually'}{comment}")
-        if outcome.status == "pending":
-            return Details((mark,), *answers)
-        expected = _expected(result) if status_of(result) == "failed" else ""
-        return Details((mark, sentence(f"The check: {outcome.status}. {outcome.message}")), expected=expected)
-    if result.carried:  # the feedback would ask for a change of what is as it should be
-        return Details(
-            (sentence(outcome.message), result.why_given), location=outcome.location, expected=_expected(result)
-        )
-    if outcome.status == "skipped":
-        return Details((f"Skipped because {result.because} failed.",))
-    sentences = (sentence(outcome.message),)
-    if outcome.status == "pending":
-        return Details(sentences, *answers)
-    if outcome.status != "failed":
-        return Details(sentences, expected=_expected(result) if outcome.status == "errored" else "")
-    has_subject = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
-    feedback = _one_line(result.criterion.feedback) if has_subject else ""
-    return Details(sentences, location=outcome.location, feedback=feedback, expected=_expected(result))
+    if not is_manual(result):
+        return sentence(outcome.message)
+    where = ""
+    if isinstance(outcome.measured, tuple):
+        where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
+    elif outcome.location is not None:
+        path = outcome.location.path
+        where = path if path.lower().endswith(_WITHOUT_LINES) else f"{path}:{outcome.location.line}"
+    doubt = outcome.problem or ("" if where else "not found")
+    return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 
 
-def _expected(result: Result) -> str:
-    """Return what should be: the title of a criterion is never stated alone, because it would read as a fact."""
-    return f"Passes when: {sentence(result.criterion.title)}"
+def carried_text(cause: str, results: tuple[Result, ...]) -> str:
+    """Return which criteria fail only because of the mistake that another one counts, and have their points."""
+    names = enumerated([result.criterion.id for result in results])
+    fail = "fails" if len(results) == 1 else "fail"
+    return printable(f"Points given: {names} {fail} only because of the mistake that is already counted in {cause}.")
 
 
-def _one_line(text: str) -> str:
-    """Return a text of a rubric or a comment in one printable line."""
-    return printable(" ".join(text.split()))
-
-
-def _lines(text: object) -> tuple[str, ...]:
-    """Return the lines of an answer; none of the value of a criterion that is not a question."""
-    return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
+def skipped_text(cause: str, results: tuple[Result, ...]) -> str:
+    """Return which criteria are skipped because of another one, and their points."""
+    names = enumerated([result.criterion.id for result in results])
+    return printable(f"Skipped because {cause} failed: {names} ({points_of(results)}).")
 
 
 def other_problems(report: Report) -> Iterator[Problem]:
@@ -158,42 +157,17 @@ def other_problems_title(report: Report) -> str:
     return f"Other problems in the {'file' if report.submission.is_single else 'files'}"
 
 
-def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
-    """Yield the title of each part with its pieces of evidence, and whether files were found; then the other pictures."""
-    parts = {part.id: part.title for part in report.rubric.parts}
-    for part, exhibits in groupby(report.exhibits, key=lambda exhibits: exhibits.evidence.part):
-        yield printable(parts[part]), [(_exhibits_text(found), bool(found.files)) for found in exhibits]
-    if report.others:
-        yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
+def next_command(report: Report) -> str:
+    """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
+    failed = [failure.result for failure in failures(report) if failure.result.manual_mark is None]
+    first = next(iter((*failed, *undecided(report))), None)
+    return explain_command(first.criterion.id, report) if first is not None else ""
 
 
-def _exhibits_text(found: Exhibits) -> str:
-    """Return a piece of evidence with its files, or with those that are perhaps meant."""
-    files = ", ".join(exhibit.words for exhibit in found.files)
-    perhaps = enumerated([exhibit.words for exhibit in found.perhaps], _MAX_LISTED, "or")
-    return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
-
-
-def sentence(message: str) -> str:
-    """Return a message as a printable sentence, with a capital and a full stop."""
-    text = printable(message)
-    if text.split(" ")[0].isalpha():  # not an attribute, such as xyz="0 0"
-        text = text[:1].upper() + text[1:]
-    return text if text.endswith((".", "?")) else f"{text}."
-
-
-def location_text(where: Location) -> str:
-    """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
-    return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
-
-
-def advice(report: Report) -> str:
-    """Return the command that explains the first failed criterion; empty if none failed."""
-    first = next((result.criterion.id for result in report.results if result.outcome.status == "failed"), None)
-    if first is None:
-        return ""
-    robot = "; `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
-    return f"`{explain_command(first, report)}` explains the first failed criterion{robot}."
+def what_is_left(report: Report) -> str:
+    """Return what is left where no command follows; points may be lost by a manual mark."""
+    start = "No check failed" if failures(report) else "Nothing to fix"
+    return f"{start}: {pending_points(report)}." if report.pending else f"{start}."
 
 
 def explain_command(name: str, report: Report) -> str:

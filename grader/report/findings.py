@@ -7,11 +7,13 @@ from decimal import Decimal
 from functools import cache
 from typing import Literal, NamedTuple
 
-from grader.grading.report import Report, Result
-from grader.report.content import location_text, other_problems, result_details, sentence, undecided
+from grader.grading.report import Hint, Report
+from grader.report.content import other_problems, points_of, undecided
+from grader.report.details import location_text, result_details, sentence
 from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
+from grader.report.order import Failure, failures
 from grader.source import Location, Source
-from grader.text import counted_points, printable
+from grader.text import printable
 
 Level = Literal["error", "warning", "note"]
 _ORDER: tuple[Level, ...] = ("error", "warning", "note")
@@ -22,7 +24,7 @@ class Finding(NamedTuple):
 
     `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost` includes the
     points of criteria that are skipped because of it. `location` is None where the whole submission is meant; `fallback` is the
-    location for formats that require one. `fingerprint` does not depend on the number of the line.
+    location for formats that require one. `fingerprint` does not depend on the number of the line. `hints` are changes that fix it.
     """
 
     rule: str
@@ -32,13 +34,13 @@ class Finding(NamedTuple):
     location: RepositoryLocation | None
     fallback: RepositoryLocation
     fingerprint: str = ""
+    hints: tuple[Hint, ...] = ()
 
 
 def findings(report: Report, base: Base) -> list[Finding]:
     """Return the findings of a submission; `base` is where that is in its repository."""
     source_of = cache(report.submission.source)  # reads each file once
-    found = [_of_criterion(result, report, source_of, base) for result in report.results if is_failure(result)]
-    found.sort(key=lambda finding: -finding.lost)
+    found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
     found += _undecided(report, base)
     for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
         text = _text((printable(problem.message),), problem.location, base)
@@ -46,13 +48,6 @@ def findings(report: Report, base: Base) -> list[Finding]:
         found.append(Finding(problem.code, problem.severity, text, Decimal(0), location, location))
     seen: Counter[str] = Counter()
     return [finding._replace(fingerprint=_fingerprint(finding, seen)) for finding in found]
-
-
-def is_failure(result: Result) -> bool:
-    """Return whether a criterion failed or lost points; a manual mark overrides the check."""
-    if result.manual_mark is not None:
-        return result.points < result.criterion.points
-    return result.outcome.status in ("failed", "errored")
 
 
 def _fallback(report: Report, base: Base, *, of_package: bool) -> RepositoryLocation:
@@ -66,29 +61,25 @@ def _fallback(report: Report, base: Base, *, of_package: bool) -> RepositoryLoca
     )
 
 
-def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
+def _of_criterion(failure: Failure, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
+    result = failure.result
     criterion, details = result.criterion, result_details(result, report)
-    skipped = [
-        other.criterion.points
-        for other in report.results
-        if other.because == criterion.id and other.manual_mark is None
-    ]  # fmt: skip
-    lines = [*details.sentences, *filter(None, [details.feedback]), details.expected]
-    if skipped:
-        lines.append(f"Skipped because of it: {len(skipped)} more, {counted_points(sum(skipped, Decimal(0)))}.")
+    lines = [*details.sentences, *details.advice, details.expected]
+    if failure.skipped:
+        lines.append(f"Skipped because of it: {len(failure.skipped)} more, {points_of(failure.skipped)}.")
     where = details.location
     location = in_repository(where, source_of(where.path), base) if where is not None else None
     fallback = location or _fallback(report, base, of_package=criterion.check.subject == "package")
-    lost = sum(skipped, criterion.points - result.points)
     level: Level = "note" if result.why_given else "error"
-    return Finding(criterion.id, level, _text(tuple(lines), where, base), lost, location, fallback)
+    text = _text(tuple(lines), where, base)
+    return Finding(criterion.id, level, text, failure.lost, location, fallback, hints=details.hints)
 
 
 def _undecided(report: Report, base: Base) -> Iterator[Finding]:
     """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
     results = undecided(report)
     if results:
-        points = counted_points(sum((result.criterion.points for result in results), Decimal(0)))
+        points = points_of(results)
         reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
         names = ", ".join(result.criterion.id for result in results)
         text = "\n".join((*reasons, f"Could not be decided ({points}): {names}"))

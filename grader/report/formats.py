@@ -53,16 +53,23 @@ class OutputFormat(StrEnum):
     JSON = "json"
 
 
-def render(report: "Report", kind: Format, base: "Base | None" = None, screen: Screen | None = None) -> str:
+def render(
+    report: "Report",
+    kind: Format,
+    base: "Base | None" = None,
+    screen: Screen | None = None,
+    *,
+    verbose: bool = False,
+) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
-    `base` is where the submission is in its repository; without it its paths are the repository's. Raises InputError if the
-    environment does not say whose result it is (Classroom 50).
+    `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal` shows
+    everything only if `verbose`. Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
     module, _, name = kind.function.partition(":")
     function = getattr(import_module(f"grader.report.{module}"), name)
     if kind.needs == "console":
-        return draw(partial(function, report), screen)
+        return draw(partial(function, report, verbose=verbose), screen)
     text: str = function(report, *needed(kind, base))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 

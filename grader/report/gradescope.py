@@ -7,9 +7,9 @@ https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 from typing import Any
 
 from grader.grading.report import Report, Result
-from grader.report.findings import is_failure
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
+from grader.report.order import is_failure
 from grader.text import counted_points, printable
 
 

@@ -10,9 +10,10 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import other_problems, result_details, score_text
-from grader.report.findings import is_failure
+from grader.report.content import other_problems, score_text
+from grader.report.details import result_details
 from grader.report.locations import Base, archive_around
+from grader.report.order import is_failure
 from grader.report.plain_text import criterion_lines, problem_line, provenance, submission_lines
 from grader.text import format_points, printable
 

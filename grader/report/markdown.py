@@ -1,31 +1,23 @@
-"""A report as Markdown (CommonMark without extensions): for job summaries, comments and pages of an LMS.
+"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and pages of an LMS.
 
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
 
-import re
 from collections.abc import Iterator
-from itertools import groupby
 from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
+from grader.report.details import Details, location_text, result_details, status_of
+from grader.report.diff import diff_lines
+from grader.report.evidence import evidence
+from grader.report.markdown_text import code, escaped, fenced, folded
+from grader.report.order import Group, alike, groups, has_passed, in_order
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
-from grader.text import format_points, printable
+from grader.text import printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
-_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
-_ACTIVE = re.compile(
-    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
-    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",  # GitHub makes links of bare addresses
-    re.IGNORECASE,
-)
-_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
-# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
-_MENTION = re.compile(r"@|#(?=\d)")
-_FENCE = re.compile(r"`{3,}")
-_MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 
 
 def render_markdown(report: Report, *, answers: bool = True) -> str:
@@ -58,25 +50,42 @@ def overview_markdown(report: Report) -> str:
 
 def criterion_markdown(result: Result, report: Report) -> str:
     """Return the text about one criterion, besides its title and points."""
-    return "\n\n".join(_details(content.result_details(result, report), report, set(), answers=False))
+    return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
 
 
 def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
-    """Yield the report block by block."""
+    """Yield the report block by block, each of which can be the last one."""
     yield from _head(report)
-    titles = {part.id: part.title for part in report.rubric.parts}
-    shown: set[str] = set()
-    for part, of_part in groupby(report.results, key=lambda result: result.criterion.part):
-        results = tuple(of_part)
-        yield f"## {escaped(printable(titles[part]))} ({content.earned_text(results)})"
-        for about, of_group in groupby(results, key=lambda result: result.criterion.about):
-            group = tuple(of_group)
-            if about and about != titles[part]:
-                yield f"### {escaped(printable(about))} ({content.earned_text(group)})"
-            yield from (_item(result, report, shown, answers=answers) for result in group)
+    order, shown = in_order(report), set[str]()
+    if order.failures:
+        yield "## Failed"
+    for result, skipped in order.failures:
+        item = _item(result, report, shown, answers=answers)
+        text = escaped(content.skipped_text(result.criterion.id, skipped)) if skipped else ""
+        yield f"{item}\n\n{indent(text, '  ')}" if text else item
+    for cause, some in alike(order.skipped, lambda result: result.because or ""):
+        yield escaped(content.skipped_text(cause, some))
+    for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked)):
+        if results:
+            yield f"## {title}"
+            yield from (_item(result, report, shown, answers=answers) for result in results)
+    if order.passed:
+        yield "## Passed"
+    yield from filter(None, map(_passed, groups(report)))
     yield from _evidence(report)
     yield from _problems(report)
-    yield from filter(None, (content.advice(report),))
+    command = content.next_command(report)
+    yield f"Next: {code(command)}" if command else content.what_is_left(report)
+
+
+def _passed(group: Group) -> str:
+    """Return the criteria of a group that passed, folded below its points; empty if none did."""
+    lines = [
+        f"- {_start(result)} {escaped(printable(result.criterion.title))}"
+        for result in group.results
+        if has_passed(result)
+    ]
+    return folded(f"{printable(group.title)} {content.earned_text(group.results)}", lines) if lines else ""
 
 
 def _head(report: Report) -> Iterator[str]:
@@ -89,24 +98,24 @@ def _head(report: Report) -> Iterator[str]:
 
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
-    criterion, status = result.criterion, content.status_of(result)
-    start = f"- {_MARKS[status]} {format_points(result.points)}/{format_points(criterion.points)}"
-    title, name = escaped(printable(criterion.title)), code(criterion.id)
-    if status == "passed" and result.manual_mark is None:
-        return f"{start} {title}"
-    details = content.result_details(result, report)
-    is_title = not details.expected and status != "skipped"
+    criterion = result.criterion
+    details = result_details(result, report)
+    name = code(criterion.id) if details.expected else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
     blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
-    return "\n\n".join((f"{start} {title} ({name})" if is_title else f"{start} {name}", *blocks))
+    return "\n\n".join((f"- {_start(result)} {name}", *blocks))
 
 
-def _details(details: content.Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
+def _start(result: Result) -> str:
+    return f"{_MARKS[status_of(result)]} {content.earned_text((result,))}"
+
+
+def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """Yield the text about a criterion, block by block, without feedback that is shown already."""
     yield from map(escaped, details.sentences)
     if details.expected:
         yield escaped(details.expected)
     if details.location is not None:
-        yield code(content.location_text(details.location))
+        yield code(location_text(details.location))
         lines = list(excerpt_lines(details.location, report))
         if lines:
             yield fenced(lines)
@@ -114,13 +123,17 @@ def _details(details: content.Details, report: Report, shown: set[str], *, answe
         if lines:
             yield f"{title}:"
             yield fenced(lines)
-    if details.feedback and details.feedback not in shown:
+    for hint in details.hints:
+        yield f"**{escaped(hint.message)}**"
+        if hint.edits:
+            yield fenced(diff_lines(hint.edits, report.submission.source), "diff")
+    if details.feedback and not details.hints and details.feedback not in shown:
         shown.add(details.feedback)
         yield f"*{escaped(details.feedback)}*"
 
 
 def _evidence(report: Report) -> Iterator[str]:
-    for number, (part, lines) in enumerate(content.evidence(report)):
+    for number, (part, lines) in enumerate(evidence(report)):
         if number == 0:
             yield "## Evidence"
         yield f"{escaped(part)}:"
@@ -132,28 +145,3 @@ def _problems(report: Report) -> Iterator[str]:
     if problems:
         yield f"## {content.other_problems_title(report)}"
         yield from (f"- {escaped(problem_line(problem))}" for problem in problems)
-
-
-def escaped(text: str) -> str:
-    """Return one line of printable text that Markdown shows as it is."""
-    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
-    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
-    return _MENTION.sub("\\g<0>\u2060", plain)
-
-
-def code(text: str) -> str:
-    """Return printable text as inline code; as plain text if it has too many backticks."""
-    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
-    if longest >= _MAX_FENCE:
-        return escaped(text)
-    fence = "`" * (longest + 1)
-    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
-    return f"{fence}{space}{text}{space}{fence}"
-
-
-def fenced(lines: list[str]) -> str:
-    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
-    fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
-    if len(fence) > _MAX_FENCE:
-        return "\n".join(f"    {line}" for line in lines)
-    return "\n".join((f"{fence}text", *lines, fence))

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from grader.grading.report import Report, Result
 from grader.problems import Problem
 from grader.report import content
+from grader.report.details import location_text, result_details
+from grader.report.evidence import evidence
 from grader.report.locations import excerpt
 from grader.source import Location
 from grader.text import printable
@@ -19,7 +21,7 @@ def summary_lines(report: Report) -> list[str]:
 
 def note_lines(report: Report) -> list[str]:
     """Return notes on the whole submission: how it was read, other candidates, ignored files, evidence."""
-    shown = [f"Evidence, {part}: {text}" for part, lines in content.evidence(report) for text, _ in lines]
+    shown = [f"Evidence, {part}: {text}" for part, lines in evidence(report) for text, _ in lines]
     return [*content.notes(report), *content.ignored_lines(report), *shown]
 
 
@@ -29,14 +31,14 @@ def submission_lines(report: Report) -> list[str]:
 
 
 def criterion_lines(result: Result, report: Report) -> list[str]:
-    """Return the lines about one criterion: the finding, its place, the answer, the feedback."""
-    details = content.result_details(result, report)
+    """Return the lines about one criterion: the finding, its place, the answer, what to do."""
+    details = result_details(result, report)
     lines = list(details.sentences)
     if details.location is not None:
-        lines += [content.location_text(details.location), *excerpt_lines(details.location, report)]
+        lines += [location_text(details.location), *excerpt_lines(details.location, report)]
     if details.answer:
         lines += ["Found:", *(f"  {line}" for line in details.answer)]
-    return [*lines, details.feedback] if details.feedback else lines
+    return [*lines, *details.advice]
 
 
 def excerpt_lines(where: Location, report: Report) -> Iterator[str]:
@@ -51,7 +53,7 @@ def excerpt_lines(where: Location, report: Report) -> Iterator[str]:
 
 def problem_line(problem: Problem) -> str:
     """Return a problem with its code, severity and location."""
-    return f"{problem.code} {problem.severity} {content.location_text(problem.location)}: {printable(problem.message)}"
+    return f"{problem.code} {problem.severity} {location_text(problem.location)}: {printable(problem.message)}"
 
 
 def provenance(report: Report) -> str:

@@ -6,13 +6,15 @@ https://docs.github.com/code-security/reference/code-scanning/sarif-files/sarif-
 from typing import Any
 from urllib.parse import quote
 
-from grader.grading.report import Report
+from grader.grading.report import Hint, Report
 from grader.report.content import explain_command
 from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
-from grader.report.locations import Base, RepositoryLocation
+from grader.report.locations import Base, RepositoryLocation, archive_around
+from grader.report.order import alike
 from grader.report.plain_text import criterion_lines, submission_lines
 from grader.report.rubrics import EVERY_KIND
+from grader.source import Edit
 from grader.text import printable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -33,7 +35,7 @@ def render_sarif(report: Report, base: Base) -> str:
         },
         "columnKind": "unicodeCodePoints",
         "automationDetails": {"id": f"grader/{printable(report.rubric.id)}/"},
-        "results": [_result(finding, rules.index(finding.rule)) for finding in found[:_MAX_RESULTS]],
+        "results": [_result(finding, rules.index(finding.rule), base) for finding in found[:_MAX_RESULTS]],
         "properties": _properties(report, len(found)),
     }
     return to_json({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]})
@@ -64,21 +66,60 @@ def _described(name: str, title: str, text: str, advice: str, level: str, comman
     }
 
 
-def _result(finding: Finding, index: int) -> dict[str, Any]:
+def _result(finding: Finding, index: int, base: Base) -> dict[str, Any]:
+    fixes = [_fix(hint, base) for hint in finding.hints if _is_replacement(hint, base)]
     cost = {"properties": {"points": exact(finding.lost)}} if finding.lost else {}
     return {
         "ruleId": finding.rule,
         "ruleIndex": index,
         "level": finding.level,
-        "message": {"text": finding.text.replace("](", "] (")},  # no links in SARIF's syntax
+        "message": {"text": _plain(finding.text)},
         "locations": [{"physicalLocation": _physical(finding.location or finding.fallback)}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
+        **({"fixes": fixes} if fixes else {}),
         **cost,
     }
 
 
+def _is_replacement(hint: Hint, base: Base) -> bool:
+    """Return whether the edits of a hint replace text of files in the repository: SARIF renames no file."""
+    files = [edit.path for edit in hint.edits if not edit.renamed]
+    return bool(files) and len(files) == len(hint.edits) and not (base.archive or any(map(archive_around, files)))
+
+
+def _fix(hint: Hint, base: Base) -> dict[str, Any]:
+    changes = alike(hint.edits, lambda edit: edit.path)
+    return {
+        "description": {"text": _plain(hint.message)},
+        "artifactChanges": [
+            {"artifactLocation": _artifact(base.folder + path), "replacements": list(map(_replacement, edits))}
+            for path, edits in changes
+        ],
+    }
+
+
+def _replacement(edit: Edit) -> dict[str, Any]:
+    """Return an edit; the column after the old text counts from the last line break in it."""
+    *lines, last = edit.old.split("\n")
+    region = {
+        "startLine": edit.line,
+        "startColumn": edit.column,
+        "endLine": edit.line + len(lines),
+        "endColumn": len(last) + (1 if lines else edit.column),
+    }
+    return {"deletedRegion": region, "insertedContent": {"text": edit.new}}
+
+
+def _artifact(path: str) -> dict[str, str]:
+    return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": "%SRCROOT%"}
+
+
+def _plain(text: str) -> str:
+    """Return text without links in the syntax of SARIF's messages."""
+    return text.replace("](", "] (")
+
+
 def _physical(location: RepositoryLocation) -> dict[str, Any]:
-    uri = quote(location.path.encode("utf-8", "surrogateescape"))
     region: dict[str, Any] = {"startLine": 1}
     if location.line is not None:
         region = {
@@ -88,7 +129,7 @@ def _physical(location: RepositoryLocation) -> dict[str, Any]:
             "endColumn": max(location.end, location.column),
             **({"snippet": {"text": printable(location.meant)}} if location.meant else {}),
         }
-    return {"artifactLocation": {"uri": uri, "uriBaseId": "%SRCROOT%"}, "region": region}
+    return {"artifactLocation": _artifact(location.path), "region": region}
 
 
 def _properties(report: Report, count: int) -> dict[str, Any]:

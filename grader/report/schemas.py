@@ -132,6 +132,9 @@ _STATISTICS = _object(
         "failures": _array(_object({**_all(_TEXT, "criterion message"), "count": _COUNT})),
     }
 )
+_FIX = _object(
+    {"action": _TEXT, "count": _COUNT, "criteria": _array(_TEXT), "points": _POINTS, "example": _array(_EDIT)}
+)
 _STUDENT = _object(
     {
         **_all(_TEXT, "id name email reason"),
@@ -151,6 +154,7 @@ CLASS_SCHEMA = _document(
         "rubric": _RUBRIC,
         "run": _object(_all(_TOTAL, "total graded unchanged errored")),
         "statistics": _STATISTICS,
+        "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "needs_a_look": _TOTAL,
         "evidence_without_urdf": _TOTAL,

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from grader.report.screen import Screen
 
 Warn = Callable[[str], None]
+Progress = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path
 
 
 class Terminal(NamedTuple):
@@ -19,3 +20,4 @@ class Terminal(NamedTuple):
     warn: Warn
     screen: Callable[[], Screen]
     ask: Callable[[str], str | None]
+    show_progress: Progress

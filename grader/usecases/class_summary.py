@@ -6,13 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.classroom.gradebook.evidence_only import count_evidence_only
+from grader.classroom.gradebook.fixes import common_fixes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import identical_work
 from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.statistics import statistics
+from grader.classroom.run.hint_search import same_robot
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
+from grader.usecases import Warn
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
@@ -25,28 +29,41 @@ def read_deadline(text: str | None) -> datetime | None:
     return read_time(text) if text else None
 
 
-def class_statistics(gradebook: Path, due: str | None, kind: OutputFormat, screen: Screen) -> str:
-    """Return the summary of a gradebook's class. Raises InputError."""
+def class_statistics(
+    gradebook: Path, due: str | None, kind: OutputFormat, screen: Screen, progress: ProgressDisplay, warn: Warn
+) -> str:
+    """Return the summary of a gradebook's class with the edits that would gain points. Raises InputError."""
     with Gradebook(gradebook) as book:
-        return class_summary(Grades(book, read_deadline(due)), kind, screen)
+        grades = Grades(book, read_deadline(due))
+        search_hints(book, [grades.newest_rubric()], same_robot, HintOptions(), progress, warn)
+        return class_summary(grades, kind, screen, with_fixes=True)
 
 
 def class_summary(
-    grades: Grades, kind: OutputFormat, screen: Screen | None = None, done: "Progress | None" = None
+    grades: Grades,
+    kind: OutputFormat,
+    screen: Screen | None = None,
+    done: "Progress | None" = None,
+    *,
+    with_fixes: bool = False,
 ) -> str:
-    """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
+    """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded.
+
+    `with_fixes` shows the edits that would gain points, which takes a search for hints.
+    """
     rubric = grades.newest_rubric()
     found = statistics(grades.book, rubric)
     looks, identical = grades.needing_attention(_MAX_LISTED), identical_work(grades.book)
     evidence_only = count_evidence_only(grades.book, rubric)
+    fixes = common_fixes(grades.book, rubric) if with_fixes else ()
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, grades, looks, identical, run, evidence_only)
+        return render_class_json(rubric, found, fixes, grades, looks, identical, run, evidence_only)
     from grader.report.class_summary import render_class
 
     shown = 0 if rubric.without_urdf else evidence_only
-    return draw(partial(render_class, rubric.title, found, looks, identical, shown), screen)
+    return draw(partial(render_class, rubric.title, found, fixes, looks, identical, shown), screen)

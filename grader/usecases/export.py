@@ -68,7 +68,7 @@ def export(request: ExportRequest, warn: Warn) -> tuple[bytes, ExitCode]:
         elif request.target == "csv":
             data = grades_csv(grades).encode()
         else:
-            data = class_summary(grades, OutputFormat.JSON).encode()
+            data = class_summary(grades, OutputFormat.JSON, with_fixes=True).encode()
     if request.output is None:
         return data, ExitCode.PASSED
     save_bytes(request.output, data, classes)

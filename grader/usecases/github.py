@@ -39,7 +39,7 @@ def publish_report(report: "Report", base: "Base", annotate: Annotate | None, wa
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.github import command
-    from grader.report.markdown import escaped
+    from grader.report.markdown_text import escaped
 
     lines = [printable(line) for line in reason.splitlines()]
     annotate(command("error", None, "Nothing was graded", "\n".join(lines)))

@@ -13,7 +13,7 @@ from grader.errors import GraderError, InputError
 from grader.grading.levels import LEVELS, Level
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
-from grader.usecases import Warn
+from grader.usecases import Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
@@ -43,6 +43,7 @@ class GradeRequest:
     max_size: int
     answers: bool = False
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
+    verbose: bool = False
     hints: Level | None = None  # the most that hints tell; None for what the rubric allows
     fix: Path | None = None  # where to write the submission with the edits of all hints
 
@@ -95,10 +96,10 @@ def _read_save(text: str) -> tuple[Format, Path]:
     return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111  the shell expands no ~ after =; this never raises
 
 
-def grade_and_save(request: GradeRequest, warn: Warn) -> GradeResult:
+def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request)
-    result = grade_submission(request, warn)
+    result = grade_submission(request, warn, show_progress)
     save_reports(request, result, modes)
     if request.fix is not None and result.fix is not None:
         from grader.usecases.fix import write_fix  # late: few ask for it
@@ -115,7 +116,7 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
+def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
@@ -136,6 +137,8 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
         from grader.usecases.several_students import refusal  # late: few submissions are several
 
         raise refusal(request.path, submission.students, rubric, request.choice)
+    if not submission.is_single:
+        submission.documents.show_progress = show_progress
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:
@@ -199,7 +202,7 @@ def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
     _refuse_graded(request, os.path.join(request.path, result.report.submission.path or ""))  # noqa: PTH118  names
     for kind, file in request.saves:
-        save(file, render(result.report, kind, result.base), (request.path,), modes.get(file))
+        save(file, render(result.report, kind, result.base, verbose=request.verbose), (request.path,), modes.get(file))
 
 
 def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":

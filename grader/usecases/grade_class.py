@@ -1,20 +1,22 @@
 """Grade a class into a gradebook, and write its reports and grades."""
 
 import gc
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import remove_hints, rubrics_of
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings
+from grader.classroom.run.hint_search import same_content, same_robot
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import robot_hashes
 from grader.errors import InputError
@@ -25,6 +27,7 @@ from grader.report.screen import Screen
 from grader.submission.opening import open_submission
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases import Warn
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
 from grader.usecases.class_reports import write_reports
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.export import grades_csv
@@ -32,7 +35,6 @@ from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_sym
 
 _MAX_LINES = 10
 _REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
-ProgressDisplay = AbstractContextManager[Callable[[Progress], None]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,19 +92,35 @@ def grade_class(
                 str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size,
                 request.parts, handed_out,
             )  # fmt: skip
-            with progress as show:
+            with progress("grading") as show:
                 batch = Batch(book, rubric, settings, executor, show)
                 done = _run(batch, intake, warn)
             _warn_lines(batch.notes, warn)
             errored = f" ({done.errored} errored)" if done.errored else ""
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
+        with_fixes = _search_hints(request, kind, book, progress, warn)
         if request.reports is not None:
             with _processes(request.jobs, _REPORT_SECONDS) as executor:
                 count = write_reports(executor, request.gradebook, request.reports, request.report_formats, deadline)
             warn(f"{counted(count, 'report')} written to {printable_path(request.reports)}")
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
-        return class_summary(Grades(book, deadline), kind, screen, done)
+        return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes)
+
+
+def _search_hints(
+    request: ClassRequest, kind: OutputFormat, book: Gradebook, progress: ProgressDisplay, warn: Warn
+) -> bool:
+    """Search the hints of reports and of the class as JSON; return whether all were searched that statistics need."""
+    if request.force:
+        remove_hints(book)
+    options = HintOptions(request.jobs, request.timeout, request.max_size)
+    has_hints = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if request.reports is not None else []
+    if has_hints:
+        search_hints(book, has_hints, same_content, options, progress, warn)
+    if kind is OutputFormat.JSON:
+        search_hints(book, [Grades(book).newest_rubric()], same_robot, options, progress, warn)
+    return kind is OutputFormat.JSON
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:

@@ -20,7 +20,7 @@ from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
-_Shown = tuple[Report, str]  # the report that was shown last, and its text for a file, whatever the terminal's width
+_Shown = tuple[Report, str]  # the report that was shown last, and all of its text, whatever the terminal's width
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -43,7 +43,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     try:
         for has_changed in changes:
             try:
-                result = grade_submission(request, terminal.warn)
+                result = grade_submission(request, terminal.warn, terminal.show_progress)
             except (InputError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 if has_changed or str(error) != last_error:
@@ -52,7 +52,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
                 continue
             code, last_error = result.exit_code, ""
             save_reports(request, result, modes)
-            last = _show(result.report, last, terminal, has_changed=has_changed)
+            last = _show(result.report, last, terminal, verbose=request.verbose, has_changed=has_changed)
     except KeyboardInterrupt:
         if code is None:  # during the first grading
             raise
@@ -92,9 +92,9 @@ def _show_error(path: str, error: GraderError, warn: Warn) -> None:
         warn(line)
 
 
-def _show(report: Report, last: _Shown | None, terminal: Terminal, *, has_changed: bool) -> _Shown:
+def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool, has_changed: bool) -> _Shown:
     """Show what changed, then the whole report; of a report that is the same, one line at most."""
-    shown = report, render(report, Format.TERMINAL)
+    shown = report, render(report, Format.TERMINAL, verbose=True)
     if last is not None and shown[1] == last[1]:
         if has_changed:
             terminal.show(f"{unchanged_line(report)}\n")
@@ -102,7 +102,7 @@ def _show(report: Report, last: _Shown | None, terminal: Terminal, *, has_change
     screen = terminal.screen()
     lines = comparison_lines(last[0], report) if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
-    terminal.show(changes + render(report, Format.TERMINAL, screen=screen))
+    terminal.show(changes + render(report, Format.TERMINAL, screen=screen, verbose=verbose))
     return shown
 
 

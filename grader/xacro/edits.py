@@ -8,7 +8,6 @@ from grader import markup
 from grader.edits import merged, with_attribute
 from grader.names import closest
 from grader.source import Edit
-from grader.static_python.closed_values import text_of
 from grader.xacro.scopes import Place, Scope, literal
 from grader.xacro.solving import ComputedNumber, Evaluator, Ranked, as_number, definitions
 from grader.xacro.texts import PIECE, Texts
@@ -37,14 +36,14 @@ class Rewriter:
 
     def __init__(self, texts: Texts) -> None:
         self._evaluator = Evaluator(texts)
-        self._numbers: dict[tuple[str, int, int, int], ComputedNumber] = {}
+        self._numbers: dict[tuple[str, int, int, int, int], ComputedNumber] = {}
 
     def ways(self, place: Place, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
         """Return the ways to change an attribute at a place that the reader sees as `old`, the most plausible first."""
         text = written(place, attribute, place.scope or Scope())
         ways = islice(self._ways(text, old, new, 0), _MAX_WAYS) if text is not None else ()
         found = [edits for edits in map(edits_of, ways) if edits is not None]
-        if found and text is not None and self._evaluator.value(text.text, text.scope) is None:
+        if found and text is not None and self._evaluator.text(text.text, text.scope) is None:
             return found  # a name is misspelt
         source, start = place.source.element(place.tag)
         current = markup.attribute(source.text, start, attribute)
@@ -56,10 +55,10 @@ class Rewriter:
         """Return the ways to make a text another one after expansion."""
         if depth > _MAX_DEPTH:
             return []
-        value = self._evaluator.value(text.text, text.scope)
+        value = self._evaluator.text(text.text, text.scope)
         if value is None:
             return [*self._respelled(text), *self._repaired(text, new)]
-        if text_of(value) != old and not _same(text_of(value), old):
+        if not _same(value, old):
             return []  # a name has another value by now
         are_numbers = all(as_number(word) is not None for word in (*old.split(), *new.split()))
         if are_numbers and len(old.split()) == len(new.split()):
@@ -80,10 +79,8 @@ class Rewriter:
     def _repaired(self, text: Written, new: str) -> list[Way]:
         """Return the changes of an expression that fails which give the wanted value, as ${side} for ${-side}."""
         names, signs = self._evaluator.names(text.scope)
-        values = ((other, self._evaluator.value(other, text.scope)) for _, other in variants(text.text, names, signs))
-        return [
-            (Change(text, other),) for other, value in values if text_of(value) == new or _same(text_of(value), new)
-        ]
+        values = ((other, self._evaluator.text(other, text.scope)) for _, other in variants(text.text, names, signs))
+        return [(Change(text, other),) for other, value in values if value is not None and _same(value, new)]
 
     def _of_numbers(self, text: Written, old: list[str], new: list[str], depth: int) -> list[Way]:
         choices: list[list[Way]] = []
@@ -101,7 +98,7 @@ class Rewriter:
         position = 0
         for match in _TOKEN.finditer(text.text):
             part = text.part(*match.span())
-            words = text_of(self._evaluator.value(part.text, part.scope)).split()
+            words = (self._evaluator.text(part.text, part.scope) or "").split()
             end = position + len(words)
             found.append((Token(part, words), new[position:end]))
             position = end
@@ -112,7 +109,7 @@ class Rewriter:
         plain: Way = (Change(part, " ".join(wanted)),)
         if len(words) != 1:
             inner = self._of_name(part, " ".join(words), " ".join(wanted), depth)
-            return [*inner, plain]
+            return [*(inner or self._in_list(token, wanted)), plain]
         kept = Change(part, merged(part.text, wanted[0]))
         if "$" not in part.text:
             signed = [ranked for ranked in self._number(part).changes(float(wanted[0])) if "$" in ranked.change.new]
@@ -120,10 +117,16 @@ class Rewriter:
         changes = [*self._number(part).changes(float(wanted[0]))[: _MAX_WAYS - 1], Ranked(_LAST, kept)]
         return [(ranked.change,) for ranked in changes]
 
-    def _number(self, part: Written) -> ComputedNumber:
-        key = part.source.path, part.start, part.end, id(part.scope)
+    def _in_list(self, token: Token, wanted: list[str]) -> list[Way]:
+        """Return the ways to change one of the numbers that an expression gives, as ${colours['green']}."""
+        off = [index for index, pair in enumerate(zip(token.words, wanted, strict=True)) if not _same(*pair)]
+        changes = self._number(token.written, off[0]).changes(float(wanted[off[0]])) if len(off) == 1 else []
+        return [(ranked.change,) for ranked in changes]
+
+    def _number(self, part: Written, index: int = 0) -> ComputedNumber:
+        key = part.source.path, part.start, part.end, id(part.scope), index
         if key not in self._numbers:
-            self._numbers[key] = ComputedNumber(self._evaluator, part)
+            self._numbers[key] = ComputedNumber(self._evaluator, part, index)
         return self._numbers[key]
 
     def _of_name(self, text: Written, old: str, new: str, depth: int) -> list[Way]:
@@ -141,7 +144,7 @@ class Rewriter:
     def _of_text(self, text: Written, old: str, new: str, depth: int) -> list[Way]:
         """Return the ways to change one part of a text: one that is written out, or what a name stands for."""
         pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
-        values = [text_of(self._evaluator.value(piece.text, piece.scope)) for piece in pieces]
+        values = [self._evaluator.text(piece.text, piece.scope) or "" for piece in pieces]
         if "".join(values) != old:
             return []
         literals: list[Way] = []
@@ -159,7 +162,9 @@ class Rewriter:
 
 
 def _same(one: str, other: str) -> bool:
-    """Return whether two lists of numbers are the same."""
+    """Return whether two texts, or two lists of numbers, are the same."""
+    if one == other:
+        return True
     pairs = [(as_number(a), as_number(b)) for a, b in zip(one.split(), other.split(), strict=False)]
     return len(one.split()) == len(other.split()) and all(
         a is not None and b is not None and abs(a - b) < 1e-9 for a, b in pairs

@@ -70,6 +70,7 @@ class Expander:
             tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]
         ] = {}  # of macros, each with its calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
+        self._is_expanded = False
         self._handlers = handlers
         self._other = other
 
@@ -86,6 +87,7 @@ class Expander:
             self.content(source, out, scopes)
         except (OutOfSteps, RecursionError):
             self.leave_open(out, Undetermined("expanding this file takes too long"), source.place)
+        self._is_expanded = True
         return out
 
     def content(self, source: Node, out: Node, scopes: Scopes) -> None:
@@ -194,4 +196,6 @@ class Expander:
         return text
 
     def _load_yaml(self, name: Value) -> Value:
+        if self._is_expanded:
+            raise Undetermined("a YAML file is not read again for each edit")
         return read_yaml_values(self.files.read(self.files.path(str(name))), self.texts.constant)

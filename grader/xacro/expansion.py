@@ -10,15 +10,16 @@ from typing import NamedTuple
 
 from grader.markup import element_end
 from grader.problems import Problem
-from grader.source import Edit, Location, Source
+from grader.source import Correction, Edit, Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.edits import Rewriter
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
-from grader.xacro.spelling import corrections
+from grader.xacro.spelling import respelled
 from grader.xacro.tags import CALL, HANDLERS
+from grader.xacro.well_formed import well_formed
 from grader.xacro.written import with_parameters
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
@@ -84,9 +85,9 @@ class ExpandedSource(Source):
             return self._rewriter.ways(moved, "value", old, new)
         return self._rewriter.ways(node.place, attribute, old, new)
 
-    def corrections(self) -> list[tuple[Edit, ...]]:
-        """Return the edits that may correct names which are not defined."""
-        return corrections(self._expander.unknown)
+    def corrections(self) -> list[Correction]:
+        """Return the edits that may correct XML that is not well-formed, or names which are not defined."""
+        return [*well_formed(Source(self.path, self.text)), *respelled(self._expander.unknown)]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
         """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""

@@ -14,7 +14,7 @@ Children = list["Node | str"]
 _DECLARATION = re.compile(
     r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
 )
-_MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
+MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
@@ -48,7 +48,7 @@ def read_nodes(data: bytes, path: str, *, is_repaired: bool = False) -> Node:
     text = _decoded(data)
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
-        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
     root = parse_xml(xml.encode())
     definitions = root.getroottree().docinfo.internalDTD

@@ -31,6 +31,8 @@ class Place(NamedTuple):
         return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls))
 
 
+# Where a definition whose text is in an attribute has its name; a macro call has it in no value.
+_NAMED_IN = {"name": "name", "value": "name", "default": "name", "params": "params"}
 Key = tuple[str, int, str, str]
 
 
@@ -111,12 +113,12 @@ class Scope:
         return own + (self.parent.names() if self.parent is not None else [])
 
     def definitions(self) -> dict[str, tuple[Place, str] | None]:
-        """Return the names that are known here, each with the tag and attribute that define it; a parameter has none."""
+        """Return the names that are known here, each with the tag and attribute that define it where there is one."""
         found = self.parent.definitions() if self.parent is not None else {}
         for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
             if name.isidentifier():
-                is_tag = definition is not None and definition.attribute in ("name", "value", "default")
-                found[name] = (definition.place, "name") if definition is not None and is_tag else None
+                attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
+                found[name] = (definition.place, attribute) if definition is not None and attribute else None
         return found
 
     def blocks(self) -> dict[str, tuple[Place, str] | None]:

@@ -1,12 +1,12 @@
 """A number of the expanded file and the texts that it is computed from: which change of one of them gives another number."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 from grader.static_python.closed import Budget
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
@@ -18,7 +18,7 @@ _MAX_SITES = 10  # texts that one number is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_DIGITS = 6
 _NICE_DIGITS = 3  # more are no number that a student would write into an expression
-_ROUNDS = 8  # of the secant method
+_ROUNDS = 4  # of the secant method
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 
 
@@ -37,16 +37,12 @@ class Evaluator:
         self._budget = Budget(_MAX_STEPS)
         self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
 
-    def value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> Value:
-        """Return the value of a text; None if it has none, or no steps are left."""
+    def text(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
+        """Return what a text is in the expanded file; None if it has no value, or no steps are left."""
         try:
-            return self._texts.supposing(supposed or {}, self._budget).evaluate(text, scope)
+            return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
         except (ExpressionFails, Undetermined, RecursionError):
             return None
-
-    def number(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> float | None:
-        """Return the number that a text is; None if it is none."""
-        return as_number(self.value(text, scope, supposed))
 
     def arguments(self, text: str) -> list[Definition]:
         """Return the defaults of the arguments in a text."""
@@ -56,20 +52,18 @@ class Evaluator:
         """Return the names that have numbers in a scope, and those of the innermost macro that are 1 or -1."""
         if id(scope) not in self._known:
             found = dict.fromkeys(scope.names()[:_MAX_NAMES])
-            known = [name for name in found if self.number(f"${{{name}}}", scope) is not None]
-            own = [name for name in known if scope.parent is not None and name in scope.properties]
-            signs = [name for name in own if abs(self.number(f"${{{name}}}", scope) or 0.0) == 1.0]
-            self._known[id(scope)] = scope, (known, signs)
+            values = {name: as_number(self.text(f"${{{name}}}", scope)) for name in found}
+            own = scope.properties if scope.parent is not None else {}
+            signs = [name for name, value in values.items() if name in own and value in (1.0, -1.0)]
+            self._known[id(scope)] = scope, ([name for name, value in values.items() if value is not None], signs)
         return self._known[id(scope)][1]
 
 
-def as_number(value: Value) -> float | None:
-    """Return a value as a number; None if it is none."""
-    if not isinstance(value, str | int | float) or (isinstance(value, str) and "_" in value):
-        return None
+def as_number(text: str | None) -> float | None:
+    """Return a text as a number; None if it is none."""
     try:
-        return float(value)
-    except (ValueError, OverflowError):
+        return float(text) if text is not None and "_" not in text else None
+    except ValueError:
         return None
 
 
@@ -87,10 +81,11 @@ class Site(NamedTuple):
 
 
 class ComputedNumber:
-    """A number in an attribute, such as ${-length/4}."""
+    """A number in an attribute, such as ${-length/4}; one of several, where an expression gives a list of them."""
 
-    def __init__(self, evaluator: Evaluator, written: Written) -> None:
+    def __init__(self, evaluator: Evaluator, written: Written, index: int) -> None:
         self.written = written
+        self._index = index
         self._evaluator = evaluator
         self._memo: dict[tuple[Key | None, str], float | None] = {}
 
@@ -119,7 +114,8 @@ class ComputedNumber:
         """Return the number that another text at a site gives."""
         if (site.key, text) not in self._memo:
             root, supposed = (text, None) if site.key is None else (self.written.text, {site.key: text})
-            self._memo[site.key, text] = self._evaluator.number(root, self.written.scope, supposed)
+            words = (self._evaluator.text(root, self.written.scope, supposed) or "").split()[self._index :]
+            self._memo[site.key, text] = as_number(words[0]) if words else None
         return self._memo[site.key, text]
 
     def _varied(self, site: Site, wanted: float) -> Iterator[Ranked]:
@@ -143,25 +139,31 @@ class ComputedNumber:
         def of(number: float) -> float | None:
             return self._with(site, with_number(site.written.text, slot, repr(number)))
 
-        before, start = slot.value, of(slot.value)
-        x, slope = before + 1e-3 + abs(before) / 64, 0.0
-        for _ in range(_ROUNDS):
-            value = of(x)
-            if start is None or value is None or x == before:
-                return None
-            slope = (value - start) / (x - before)
-            if not slope:
-                return None
-            before, start, x = x, value, x + (wanted - value) / slope
-            if abs(wanted - value) <= 1e-9 * (1 + abs(wanted)):
-                break
-        for digits in range(1, _MAX_DIGITS + 1):
-            shown = decimal(before, digits)
-            if abs((float(shown) - before) * slope) <= 2 * (_TOLERANCE * abs(wanted) + 1e-6):
-                text = with_number(site.written.text, slot, shown)
-                if is_near(self._with(site, text), wanted):
-                    return text, digits
+        root = secant(of, slot.value, wanted)
+        if root is None and wanted:  # a divisor: 1/f is linear
+            root = secant(lambda number: 1.0 / (of(number) or 0.0), slot.value, 1.0 / wanted)
+        for digits in range(1, _MAX_DIGITS + 1) if root is not None else ():
+            text = with_number(site.written.text, slot, decimal(root or 0.0, digits))
+            if is_near(self._with(site, text), wanted):
+                return text, digits
         return None
+
+
+def secant(of: Callable[[float], float | None], start: float, wanted: float) -> float | None:
+    """Return where a function has the wanted value; None if a few steps of the secant method do not find it."""
+    before, x = start, start + 1e-3 + abs(start) / 64
+    try:
+        value, now = of(before), of(x)
+        for _ in range(_ROUNDS):
+            if value is None or now is None or now == value:
+                return None
+            before, x = x, x + (wanted - now) * (x - before) / (now - value)
+            value, now = now, of(x)
+            if now is not None and abs(wanted - now) <= 1e-9 * (1 + abs(wanted)):
+                return x
+    except (ZeroDivisionError, OverflowError):
+        pass
+    return None
 
 
 def decimal(value: float, digits: int) -> str:

@@ -6,15 +6,16 @@ from collections.abc import Iterable, Iterator
 
 from grader import markup
 from grader.names import closest
-from grader.source import Edit
+from grader.source import Correction, Edit
 from grader.xacro.scopes import Place, UnknownName
 
 _MAX_NAMES = 8
+_CAUSE = "a name that xacro does not know"
 
 Edits = tuple[Edit, ...]
 
 
-def corrections(unknown: Iterable[tuple[UnknownName, Place, str | None]]) -> list[Edits]:
+def respelled(unknown: Iterable[tuple[UnknownName, Place, str | None]]) -> list[Correction]:
     """Return the edits that may correct unknown names, each used in an attribute at a place, or by the tag itself."""
     uses = list(unknown)
     counts = Counter(name.name for name, _, _ in uses)
@@ -28,7 +29,7 @@ def corrections(unknown: Iterable[tuple[UnknownName, Place, str | None]]) -> lis
         if defined is not None:
             ways.append(_renamed(*defined, near, name))
         found += reversed(ways) if counts[name] > 1 else ways  # it is rare to misspell a name twice in the same way
-    return [edits for edits in dict.fromkeys(found) if edits]
+    return [Correction(edits, _CAUSE, "correct the name") for edits in dict.fromkeys(found) if edits]
 
 
 def _renamed(place: Place, attribute: str | None, old: str, new: str) -> Edits:

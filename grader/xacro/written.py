@@ -8,6 +8,7 @@ from grader import markup
 from grader.source import Edit, Source
 from grader.xacro.scopes import Definition, Place, Scope
 
+_MAX_LENGTH = 2_000  # of a text that is edited in parts
 _VALUE = re.compile(r'("[^"$]*")')
 
 
@@ -56,11 +57,11 @@ def edits_of(changes: Iterable[Change]) -> tuple[Edit, ...] | None:
 
 
 def written(place: Place, attribute: str, scope: Scope) -> Written | None:
-    """Return the value of an attribute; None where it is missing, or has entities, so that the text is not what is read."""
+    """Return the value of an attribute; None where it is missing, too long, or has entities, so that it is not what is read."""
     source, start = place.source.element(place.tag)
     found = markup.attribute(source.text, start, attribute)
     text = source.text[found.value_start : found.value_end] if found is not None else "&"
-    if found is None or "&" in text:
+    if found is None or "&" in text or len(text) > _MAX_LENGTH:
         return None
     return Written(source, found.value_start, text, scope, (found.start, found.end))
 

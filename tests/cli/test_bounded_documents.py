@@ -48,13 +48,13 @@ def test_a_slow_document_needs_manual_grading(
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 1.0)
-    assert run(["grade", str(write_submission(tmp_path / "alice"))]) == 0
+    assert run(["grade", "--verbose", str(write_submission(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     reason = "the Word and PDF files take longer than 1 s in all; needs manual grading"
     assert shown.count(reason) == 3
     assert f"Note: not searched for evidence: answers.docx was not read: {reason}" in shown
     assert "The answer in notes.md, from line 1, needs manual grading" in shown
-    assert "90 / 100 points" in shown
+    assert "90/100" in shown
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
@@ -137,4 +137,4 @@ def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     assert "0 graded, 2 unchanged" in again.stderr
     report = " ".join((tmp_path / "reports" / "alice.txt").read_text().split())
     reason = "grading it took longer than 4 s (--timeout raises the limit)"
-    assert report.count(f"The documents cannot be read: {reason}; needs manual grading") == 2
+    assert f"answer-floating-link and answer-launch-nodes (8): the documents cannot be read: {reason}" in report

@@ -2,12 +2,15 @@
 
 import json
 import tomllib
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
 
+from grader.cli.app import run as in_process
 from grader.grading.record import from_record, has_evidence_only, to_record
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import grader, urdf
@@ -69,8 +72,8 @@ def submitted(folder: Path, files: dict[str, bytes]) -> Path:
 
 
 def grade(path: Path, *more: object) -> str:
-    """Return what `grade` prints, with single spaces."""
-    done = run(("grade", path, *more))
+    """Return everything that `grade` can print, with single spaces."""
+    done = run(("grade", path, "--verbose", *more))
     assert done.stderr == b""
     return " ".join(done.stdout.decode().split())
 
@@ -131,6 +134,27 @@ def test_without_the_extra_one_line_says_what_was_not_searched(tmp_path: Path, m
     assert text.count(f"Note: not searched for evidence: {reason}") == 1
     assert "Step 8: the box on the ground: perhaps report.pdf (11 bytes)" in text
     assert "missing" not in text
+
+
+class _Terminal(StringIO):
+    """Standard error of a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(("stream", "seconds", "lines"), [(_Terminal, 0.0, 1), (_Terminal, 1e9, 0), (StringIO, 0.0, 0)])
+def test_a_document_that_takes_long_is_named(
+    stream: type[StringIO], seconds: float, lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a terminal, after a time; the line is removed before the report is printed."""
+    monkeypatch.setattr("grader.documents.collection.NOTICE_SECONDS", seconds)
+    monkeypatch.setenv("COLUMNS", "80")
+    path = submitted(tmp_path / "Ash", {"an\x1b swers.docx": docx("Task 1 step 15", "Two roots.")})
+    with redirect_stderr(stream()) as err, redirect_stdout(StringIO()):
+        in_process(["grade", str(path)])
+    text = "grader: reading an\\x1b swers.docx"
+    assert err.getvalue() == f"\r\r{text}\r{' ' * len(text)}\r" * lines
 
 
 def test_a_record_keeps_evidence(tmp_path: Path) -> None:

@@ -34,6 +34,17 @@ def test_saved_reports_equal_printed_ones(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json", "a.txt"]
 
 
+def test_verbose_shows_what_passed(tmp_path: Path) -> None:
+    """On standard output and in a saved report; without it there is a line for each group."""
+    saved = tmp_path / "a.txt"
+    whole = run(("grade", MISTAKEN, "--verbose", "--save", f"terminal={saved}")).stdout
+    assert saved.read_bytes() == whole
+    short = run(("grade", MISTAKEN)).stdout
+    assert (b"The lidar is shown in white" in whole, b"The lidar is shown in white" in short) == (True, False)
+    assert (b"\nThe lidar  5/11\n" in whole, "\u2717 The lidar 5/11\n".encode() in short) == (True, True)
+    assert whole.splitlines()[-3:] == short.splitlines()[-3:]  # score, summary, next command
+
+
 def test_the_urdf_that_the_rubric_expects_is_graded(tmp_path: Path) -> None:
     """The path takes precedence, then the name, then the shortest path; the report lists the others with the reason."""
     for name in ("box.urdf", "a/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf", "install/urdf/my_robot.urdf"):

@@ -65,4 +65,4 @@ def test_no_symlink_out_of_a_submission_is_followed(tmp_path: Path) -> None:
     (tmp_path / "sub/inner.urdf").write_bytes((ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes())
     (tmp_path / "sub/my_robot.urdf").unlink()
     (tmp_path / "sub/my_robot.urdf").symlink_to("inner.urdf")
-    assert "70 / 100 points" in elsewhere("grade", tmp_path / "sub").stdout
+    assert "70/100" in elsewhere("grade", tmp_path / "sub").stdout

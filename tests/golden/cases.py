@@ -55,6 +55,7 @@ def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]
 
 GOLDEN = (
     Golden("reference", ("grade", "submissions/reference"), 0),
+    Golden("reference-verbose", ("grade", "submissions/reference", "--verbose"), 0),
     Golden("reference-json", ("grade", "submissions/reference", "--format", "json"), 0),
     Golden("several-mistakes", ("grade", "submissions/several-mistakes/my_robot.urdf"), 1),
     Golden("several-mistakes-json", ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json"), 1),

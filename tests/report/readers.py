@@ -217,7 +217,6 @@ def gradescope_text(text: str) -> str:
 
 _FINDINGS = "it contains what to fix, one finding per line, and nothing else"
 _TESTS = "it has a test for each criterion, and no room for anything else"
-_ALIKE_LINES = "criteria in a row that are skipped, or wait, for one reason are one line"
 _NAMED = "of ten notices one names all that wait and all that are skipped"
 _PERSON = "it is for a person, who has started this grader and named this rubric"
 
@@ -240,10 +239,7 @@ READERS: Mapping[Format, FormatReader] = {
         str.splitlines,
         lambda _: None,  # its lines have no structure
         str,
-        {
-            **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE_LINES),
-            **dict.fromkeys(("rubric", "version"), _PERSON),
-        },
+        {"rubric": _PERSON},
     ),
     Format.MARKDOWN: FormatReader(read_markdown, markdown_structure, markdown_text),
     Format.JSON: FormatReader(read_report, json_structure, json_text),

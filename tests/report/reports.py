@@ -1,4 +1,4 @@
-"""Reports that no sample has: manual marks, fractions of points, errors of the grader."""
+"""Reports that no sample has: manual marks, fractions of points, errors of the grader, hints."""
 
 from dataclasses import replace
 from decimal import Decimal
@@ -6,8 +6,9 @@ from pathlib import Path
 
 from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
-from grader.grading.report import ManualMark, Report
+from grader.grading.report import Hint, ManualMark, Report
 from grader.grading.rubric import load_rubric
+from grader.source import Edit, Location
 from tests.samples import SAMPLES, opened
 
 _BOX = """
@@ -37,6 +38,31 @@ def half_points(folder: Path) -> Report:
     *others, last = report.results
     own = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
     return replace(report, results=(*others, own))
+
+
+AXLE = ("right-wheel-forward", "right-wheel-axis")  # that one edit makes pass
+LIFT = ("footprint-at-wheel-bottoms", "stands-on-ground")
+
+
+def hinted(report: Report | None = None) -> Report:
+    """Return the report on several mistakes, or a given one, with hints: one edit of one line, and two edits of two files."""
+    report = SAMPLES["several-mistakes"].grade() if report is None else report
+    where = report.submission.path or ""
+    rpy = Edit(where, 73, 34, 'rpy="1.57 0 0"', 'rpy="-1.57 0 0"')
+    xyz = Edit(where, 99, 15, 'xyz="0 0 0.05"', 'xyz="0 0 0.1"')
+    other = Edit("notes.txt", 1, 1, "", "a new file\n")
+    points = {result.criterion.id: result.criterion.points for result in report.results}
+    hints: dict[str, tuple[Hint, ...]] = {}
+    for names, message, edits in (
+        (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73): both pass, +7 points', (rpy,)),
+        (LIFT, "Raise the base by 50 mm: both pass, +7 points", (xyz, other)),
+    ):
+        hint = Hint(
+            message, Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}, edits
+        )
+        hints |= dict.fromkeys(names, (hint,))
+    results = tuple(result._replace(hints=hints.get(result.criterion.id, ())) for result in report.results)
+    return replace(report, results=results)
 
 
 def marked() -> Report:

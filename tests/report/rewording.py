@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.grading.report import GradedPackage, GradedSubmission, Report, Result
+from grader.grading.report import GradedPackage, GradedSubmission, Hint, Report, Result
 from grader.report.content import other_problems
 from grader.source import Location, Source
 from grader.submission.urdf import OtherCandidate
@@ -18,13 +18,14 @@ def recast(report: Report, words: Words) -> Report:
     def path() -> str:
         return f"a{printable(words())}"
 
+    hints: dict[str, Hint] = {}  # criteria with the same hint still have the same
     problems = tuple(
         replace(problem, message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
     )
     return replace(
         report,
         submission=_submission(report.submission, words, path),
-        results=tuple(_result(result, words, path) for result in report.results),
+        results=tuple(_result(result, words, path, hints) for result in report.results),
         problems=problems,
         notes=tuple(words() for _ in report.notes),
         exhibits=tuple(
@@ -52,8 +53,16 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
     )
 
 
-def _result(old: Result, words: Words, path: Words) -> Result:
+def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> Result:
     outcome = old.outcome
     where = Location(path(), 1, 2) if outcome.location is not None else None
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
-    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where))
+    hints = tuple(known.setdefault(hint.message, _hint(hint, words, path)) for hint in old.hints)
+    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where), hints=hints)
+
+
+def _hint(old: Hint, words: Words, path: Words) -> Hint:
+    edits = tuple(
+        edit._replace(path=f"{number}{path()}", old=words(), new=words()) for number, edit in enumerate(old.edits)
+    )
+    return old._replace(message=words(), edits=edits)

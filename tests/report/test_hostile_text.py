@@ -23,6 +23,7 @@ from grader.report.locations import Base
 from grader.submission.opening import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
+from tests.report.reports import hinted
 from tests.report.rewording import recast
 from tests.report.workflow_commands import commands
 from tests.robot.edge_cases import EDGE_CASES
@@ -103,8 +104,8 @@ def test_text_of_a_broken_file_stays_text() -> None:
 
 @cache
 def report_of(name: str) -> Report:
-    """Return a sample's report."""
-    return SAMPLES[name].grade()
+    """Return a sample's report, or one with hints."""
+    return hinted() if name == "hints" else SAMPLES[name].grade()
 
 
 @cache
@@ -114,7 +115,7 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
 
 
 @pytest.mark.parametrize("base", [Base(), Base("a b/"), Base(archive="a.zip")], ids=["folder", "below", "archive"])
-@pytest.mark.parametrize("name", ["several-mistakes", "pictures-only", "setup-as-created", "smart-quotes", "reference"])
+@pytest.mark.parametrize("name", ["hints", "pictures-only", "setup-as-created", "smart-quotes", "reference"])
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
 @example(["`" * 90 + "![x](y)"])
 @settings(max_examples=15)

@@ -10,7 +10,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
-from grader.report.markdown import code, cut_markdown, escaped, fenced, render_markdown
+from grader.report.content import earned_text
+from grader.report.markdown import cut_markdown, render_markdown
+from grader.report.markdown_text import code, escaped, fenced
+from grader.report.order import groups, in_order
 from grader.text import printable
 from tests.report.hostile import TEXT
 from tests.report.readers import read_as_github, read_markdown
@@ -18,10 +21,10 @@ from tests.report.reports import half_points
 from tests.samples import SAMPLES
 
 NOTICE = "The report is cut off here, because it is too long."
-ELEMENTS = {"div", "h1", "h2", "h3", "p", "ul", "li", "code", "pre", "em", "strong"}
+ELEMENTS = {"div", "h1", "h2", "p", "ul", "li", "code", "pre", "em", "strong", "details", "summary"}
+TITLES = ("Failed", "Needs manual grading", "Marked manually", "Passed", "Evidence")
 JOINER = "\u2060"  # prevents GitHub from finding a mention
-# A part or group with its points, a criterion with its mark and its points.
-GROUP, ITEM = re.compile(r".+ \([0-9.]+/[0-9.]+\)"), re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")
+ITEM = re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")  # a criterion with its mark and its points
 
 
 @cache
@@ -32,30 +35,52 @@ def report_of(name: str) -> Report:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_the_structure_is_that_of_the_report(name: str) -> None:
-    """The score is the only top heading; each part has one, each criterion is an item in its group; code is code."""
+    """The score is the only top heading; failures come first, costliest first, and what passed is folded below them."""
     report = report_of(name)
     root = read_as_github(render_markdown(report))
     (top,) = root.findall("h1")
     assert top.text_content() == f"{report.score} / {report.max_score} points: {report.rubric.title}"
-    more = ("Evidence", "Other problems in the file", "Other problems in the files")
-    parts = [heading.text_content() for heading in root.findall("h2")]
-    assert [part.rpartition(" (")[0] for part in parts if part not in more] == [
-        report.rubric.part(part).title for part in report.parts
+    titles = [
+        heading.text_content() for heading in root.findall("h2") if "Other problems" not in heading.text_content()
     ]
-    assert all(GROUP.fullmatch(heading.text_content()) for heading in root.findall("h3"))
+    assert titles == [title for title in TITLES if title in titles]
+    order = in_order(report)
     items = [element.text_content().strip().split("\n")[0] for element in root.iterfind(".//li")]
     criteria = [item for item in items if ITEM.fullmatch(item)]
-    for shown, result in zip(criteria, report.results, strict=True):
-        status = result.outcome.status
-        assert (result.criterion.title in shown) == (
-            status in ("passed", "pending")
-        )  # a failed title without its status would look like a fact
-        assert (result.criterion.id in shown) == (status != "passed")
+    listed = [*(failure.result for failure in order.failures), *order.pending]
+    for shown, result in zip(criteria, listed, strict=False):
+        # A failed title without its status would look like a fact.
+        assert (result.criterion.title in shown) == (result.outcome.status == "pending")
+        assert result.criterion.id in shown
+    assert criteria[len(listed) :] == [
+        f"\u2713 {result.points}/{result.points} {result.criterion.title}" for result in order.passed
+    ]
+    skipped = [result.criterion.id for result in report.results if result.outcome.status == "skipped"]
+    assert all(re.search(rf"Skipped because [^:]+:[^(]*\b{name}\b", root.text_content()) for name in skipped)
     assert {element.tag for element in root.iter()} <= ELEMENTS
     assert any(
         _plain(paragraph.text_content()).endswith(f"sha256 {report.rubric.sha256}")
         for paragraph in root.findall("p")[:4]
     )
+
+
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "footprint-missing"])
+def test_what_passed_is_folded_by_group(name: str) -> None:
+    """Each fold says what it is about and its points, and holds the criteria that passed and nothing else."""
+    report = report_of(name)
+    folds = read_as_github(render_markdown(report)).findall("details")
+    expected = {
+        f"{group.title} {earned_text(group.results)}": [
+            result.criterion.title for result in group.results if result.outcome.status == "passed"
+        ]
+        for group in groups(report)
+    }
+    assert {fold.find("summary").text_content() for fold in folds} == {
+        title for title, passed in expected.items() if passed
+    }
+    for fold in folds:
+        passed = expected[fold.find("summary").text_content()]
+        assert [item.text_content().strip().split(" ", 2)[2] for item in fold.iterfind("ul/li")] == passed
 
 
 def _plain(text: str) -> str:
@@ -67,7 +92,7 @@ def test_every_fence_is_closed(name: str) -> None:
     """Each block of code ends before the next paragraph."""
     for token in read_markdown(render_markdown(report_of(name))):
         if token.type == "fence":
-            assert token.info == "text"
+            assert token.info in ("text", "diff")
             assert not ITEM.search(token.content)
             assert "sha256" not in token.content
 
@@ -87,6 +112,7 @@ def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
         before, reported = _contents(whole), _contents(kept)
         assert reported == before[: len(reported)]
         assert read_as_github(text).findall("p")[-1].text_content().startswith(NOTICE)
+        assert text.count("<details>") == text.count("</details>")
     else:
         assert most < 200
 

@@ -1,4 +1,4 @@
-"""Every format contains the same facts, except those that its row of READERS excuses."""
+"""Every format contains the same facts, except those that its row of READERS excuses; the terminal shows all of them with `--verbose`."""
 
 import os
 import re
@@ -45,7 +45,12 @@ def facts(report: Report) -> Iterator[Fact]:
     keys = ('"max_score":', '"max-score":', '"maxScore":')
     yield Fact(
         "score",
-        (f"{score}/{most} points", f'"score":{score},"output', *(f'"score":{score},{key}{most}' for key in keys)),
+        (
+            f"{score}/{most} points",
+            f"{score}/{most}  {report.rubric.title}",
+            f'"score":{score},"output',
+            *(f'"score":{score},{key}{most}' for key in keys),
+        ),
     )
     yield Fact("rubric", (report.rubric.sha256,))
     yield Fact("version", (f"grader {report.version}", f'"version":"{report.version}"'))
@@ -68,7 +73,11 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
     if result.carried:
         yield Fact("carried", (result.why_given, f'"carried":"{result.carried}"'), name)
-    elif status == "failed" and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")):
+    elif (
+        status == "failed"
+        and not result.hints
+        and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot"))
+    ):
         yield Fact("feedback", (criterion.feedback,), name)
 
 
@@ -83,7 +92,7 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
     GitHub shows at most ten annotations of a type; the last one names the others.
     """
     with patch.dict(os.environ, {"COLUMNS": "500"}):
-        text = render(report, kind)
+        text = render(report, kind, verbose=True)
     shown = _plain(READERS[kind].text(text))
     reported = read_commands(text) if kind is Format.GITHUB else []
     named = {name for command in reported for name in command.data.partition("See the report for: ")[2].split(", ")} - {

@@ -68,7 +68,7 @@ def _texts(value: Any) -> Iterator[str]:
             yield from _texts(item)
     elif isinstance(value, dict):
         for key, item in value.items():
-            if key != "properties":
+            if key not in ("properties", "insertedContent"):  # which may be empty
                 yield from _texts(item)
 
 

@@ -1,7 +1,8 @@
 """Reports in the terminal: readable at any width, plain in a pipe, and never controlled by a student's text."""
 
+from dataclasses import replace
+from functools import cache
 from io import StringIO
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -9,17 +10,30 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from grader.grading.grade import grade
+from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
-from grader.report.console import show_excerpt
+from grader.report.console import excerpt_block, put
+from grader.report.content import earned_text
 from grader.report.inspection import Inspection, inspection_terminal, main_root
+from grader.report.order import Failure, groups, in_order
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source
 from grader.submission.opening import read_submission
 from grader.text import printable
-from tests.samples import SAMPLES
+from tests.samples import SAMPLES, opened
 
-ROOT = Path(__file__).parent.parent.parent
+URDF = "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+LIDAR = """\
+\u2717 lidar-frame  -6 points  my_robot.urdf:30:13
+  The frame 'lidar' is at 0.15 0 0.2 m in 'base_link'; it should be at 0.15 0
+  0.225 m (z 25 mm too small).
+  30 \u2502 <origin xyz="0.15 0 0.2"/>
+     \u2502         \u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500
+  The joint's origin places the lidar's frame, and every scan is measured from
+  that frame. The visual's origin moves only the shape. Halfway from the middle
+  to the front is 0.6 / 4; the top is the base's height plus half of the
+  lidar's."""
 RUBRIC = load_rubric("lab6")
 HOSTILE = (
     b'<robot name="[bold red]\x1b[31m"><link name="lidar\x1b]8;;http://x\x07"/>\n'
@@ -74,12 +88,144 @@ def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
     assert not any(line != line.rstrip() for line in lines)
 
 
-def test_the_score_comes_first() -> None:
-    """The first line has the points."""
-    report = SAMPLES["several-mistakes"].grade()
+def shown(report: Report, *, verbose: bool = False) -> str:
+    """Return a report at 80 columns."""
     out = StringIO()
-    render_terminal(report, Console(file=out, width=80))
-    assert out.getvalue().startswith(f"{report.score} / 70 points")
+    render_terminal(report, Console(file=out, width=80), verbose=verbose)
+    return out.getvalue()
+
+
+@cache
+def report_of(name: str) -> Report:
+    """Return a sample's report; `urdf` is that on the reference's URDF alone."""
+    return grade(RUBRIC, opened(URDF)) if name == "urdf" else SAMPLES[name].grade()
+
+
+def costs(report: Report) -> list[Failure]:
+    """Return the failures that cost points."""
+    return [failure for failure in in_order(report).failures if not failure.result.why_given]
+
+
+every_sample = pytest.mark.parametrize("name", [*SAMPLES, "urdf"])
+
+
+@every_sample
+def test_the_score_comes_last(name: str) -> None:
+    """Score, summary and the next command are the last lines, where the eye is when the command ends."""
+    report = report_of(name)
+    end = shown(report).splitlines()[-4:]
+    assert f"{report.score}/{report.max_score}  {report.rubric.title}" in end
+    assert end[-1].startswith("Next: grader explain " if report.counts("failed") else ("Nothing to fix", "Next: "))
+
+
+@every_sample
+def test_a_report_is_short(name: str) -> None:
+    """It has 25 lines, and ten more for each failure, with the empty line before that."""
+    report = report_of(name)
+    failed = costs(report)
+    text = shown(report)
+    assert len(text.splitlines()) <= 25 + 10 * len(failed)
+    for failure, lines in zip(failed, text.split("\n\n")[1:], strict=False):
+        assert lines.startswith(f"\u2717 {failure.result.criterion.id}  -")
+        assert len(lines.splitlines()) < 10
+
+
+@every_sample
+def test_failures_come_first_and_the_costliest_first(name: str) -> None:
+    """Each has what it costs, what is, where, the marked line, and what to do; what is skipped because of it counts."""
+    report = report_of(name)
+    text = shown(report)
+    assert [failure.lost for failure in costs(report)] == sorted(
+        (failure.lost for failure in costs(report)), reverse=True
+    )
+    said = set()
+    for failure, lines in zip(costs(report), text.split("\n\n")[1:], strict=False):
+        outcome, criterion = failure.result.outcome, failure.result.criterion
+        head, *rest = lines.splitlines()
+        assert f"-{failure.lost} point" in head
+        if outcome.location is not None:
+            assert f"{outcome.location.path}:{outcome.location.line}:{outcome.location.column}" in lines
+            assert any(set(line.strip()) == set("\u2502 \u2500") for line in rest)
+        words = " ".join(lines.split())
+        if len(rest) < 8:  # nothing is cut
+            assert printable(outcome.message)[1:] in words
+            has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
+            assert (" ".join(criterion.feedback.split()) in words) == (has_subject and criterion.feedback not in said)
+        said.add(criterion.feedback)
+        assert ("skipped because of it" in lines) == bool(failure.skipped)
+
+
+def test_the_marked_line_and_the_feedback() -> None:
+    """A whole failure, as a student reads it."""
+    assert shown(report_of("lidar-buried")).split("\n\n")[1] == LIDAR
+
+
+@every_sample
+def test_each_group_has_a_line(name: str) -> None:
+    """It has the points of the group; what only needs manual grading is listed above."""
+    report = report_of(name)
+    lines = shown(report).splitlines()
+    for group in groups(report):
+        points = f"{group.title} {earned_text(group.results)}"
+        status = "\u2713" if all(result.points == result.criterion.points for result in group.results) else ""
+        assert any(line.endswith(points) and line.startswith(status) for line in lines) != all(
+            result.is_open for result in group.results
+        )
+
+
+def test_what_needs_manual_grading_has_a_line_each() -> None:
+    """The name, the points, and where the answer or the picture is; without one, that it was not found."""
+    manual = shown(report_of("reference")).split("\n\n")[1]
+    assert manual.splitlines() == [
+        "10 points need manual grading",
+        "? evidence-webcam (2): evidence/Task3_Step3.png",
+        "? answer-floating-link (4): answers.md:9",
+        "? answer-launch-nodes (4): answers.md:16",
+    ]
+    assert "answer-launch-nodes (10): not found" in shown(report_of("pictures-only"))
+    undecided = shown(report_of("xacro-from-another-package"))
+    assert "left-wheel-gray and 17 more (40): The package" in undecided
+    assert undecided.splitlines()[-1] == "Next: grader explain urdf-loads"
+
+
+def test_answers_and_passed_criteria_are_shown_with_verbose() -> None:
+    """The short report has neither; what was found is the same."""
+    report = report_of("reference")
+    short, whole = shown(report), shown(report, verbose=True)
+    for words in ("The robot is gone.", "The base's box stands on the ground plane", "Task1_Step8.png"):
+        assert (words in short, words in whole) == (False, True)
+
+
+def test_an_error_that_is_carried_forward_is_one_line() -> None:
+    """It names the criteria that keep their points, and where the mistake is counted."""
+    report = report_of("base-half-sunk")
+    line = "Points given: lidar-on-top fails only because of the mistake that is already counted in base-on-ground."
+    assert line in " ".join(shown(report).split())
+    assert "\u2717 lidar-on-top" not in shown(report)
+    assert "\u2717 lidar-on-top  0 points" in shown(report, verbose=True)
+
+
+def test_a_skip_without_a_failure_is_shown() -> None:
+    """A manual mark may give the points of a criterion because of which others are skipped."""
+    report = report_of("links-without-joints")
+    results = tuple(
+        result._replace(manual_mark=ManualMark(result.criterion.points, "Ada", "seen in RViz"))
+        if result.criterion.id == "lidar-fixed"
+        else result
+        for result in report.results
+    )
+    text = shown(replace(report, results=results))
+    assert "Skipped because lidar-fixed failed: lidar-frame and lidar-on-top (8 points)." in text
+    assert "\u2713 lidar-fixed  1/1: Marked by Ada: seen in RViz." in text
+
+
+def test_other_problems_are_short() -> None:
+    """Of each kind of error and warning the first one; notes are counted."""
+    text = " ".join(shown(report_of("colour-0-255")).split())
+    assert 'URDF052 warning my_robot.urdf:6 and 2 more: cannot read rgba="0 153 0 255": 153 is outside' in text
+    assert shown(report_of("colour-0-255"), verbose=True).count("URDF052") == 3
+    assert "3 notes: --verbose shows them" in shown(report_of("cylinder-height"))
+    assert "did you mean 'length'?" in shown(report_of("cylinder-height"), verbose=True)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +242,8 @@ def test_the_score_comes_first() -> None:
 def test_the_location_is_underlined(line: str, column: int, underlined: str) -> None:
     """The marks are below the attribute or tag, from its first character to its last."""
     out = StringIO()
-    show_excerpt(Console(file=out, width=80), Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)
+    console = Console(file=out, width=80)
+    put(console, excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4))
     text, marks = out.getvalue().splitlines()
     start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
     assert text[start:end] == underlined
@@ -106,7 +253,8 @@ def test_a_long_line_is_cut_around_the_location() -> None:
     """The underlined text is in view, even far to the right."""
     out = StringIO()
     line = "<a>" * 500 + '<b c="d"/>'
-    show_excerpt(Console(file=out, width=60), Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)
+    console = Console(file=out, width=60)
+    put(console, excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4))
     text, marks = out.getvalue().splitlines()
     assert 'c="d"' in text
     assert max(len(text), len(marks)) <= 60

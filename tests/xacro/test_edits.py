@@ -81,6 +81,7 @@ def changes(document: Document, tag: str, attribute: str, new: str, which: int =
         ('<origin xyz="0 0 ${height/2}"/>', "origin", "xyz", "0 0 0.15", ['value="0.15"']),
         ('<box size="${size}"/>', "box", "size", "0.6 0.4 0.2", ['value="0.4"']),
         ('<box size="${size}"/>', "box", "size", "0.8 0.2 0.2", ['value="0.8 ${y} ${height}"']),
+        ("<a b=\"${dict(white='1 0.1 1')['white']}\"/>", "a", "b", "1 1 1", ["b=\"${dict(white='1 1 1')['white']}\""]),
         # an argument of a macro, a default, a block, a name with a parameter
         (WHEEL, "axis", "xyz", "0 0 0.1", ['reflect="2"']),
         (WHEEL, "axis", "xyz", "0 0 0.1", ['xyz="0 0 ${reflect*0.1}"']),
@@ -165,8 +166,10 @@ def test_an_element_that_is_inserted_in_a_macro_has_its_parameters() -> None:
          ["<xacro:whel|</xacro:whel>", 'name="wheel"']),
         ('<xacro:macro name="wheel" params="sde"><a/></xacro:macro><xacro:wheel side="left"/>',
          ['sde="left"', 'params="side"']),
-        (('<xacro:macro name="wheel" params="*orign"><xacro:insert_block name="origin"/></xacro:macro>'
-          '<xacro:wheel><origin/></xacro:wheel>'), ['name="orign"', 'params="*origin"']),
+        ('<xacro:macro name="w" params="*orign"><xacro:insert_block name="origin"/></xacro:macro><xacro:w><a/></xacro:w>',
+         ['name="orign"', 'params="*origin"']),
+        ('<xacro:macro name="w" params="mas:=1"><a b="${mass}"/></xacro:macro><xacro:w/>',
+         ['b="${mas}"', 'params="mass:=1"']),
         ('<xacro:include filename="parts/wheels.xacro"/>', ['filename="parts/wheel.xacro"']),
         ('<a b="${nothing_like_it}"/>', []),
     ],
@@ -174,11 +177,32 @@ def test_an_element_that_is_inserted_in_a_macro_has_its_parameters() -> None:
 def test_a_name_that_is_not_defined_is_corrected(body: str, expected: list[str]) -> None:
     """A misspelt property, macro, parameter, block or file is corrected where it is used, or where it is defined."""
     document = Document(robot(f"{SIZES}\n{body}"), {"urdf/parts/wheel.xacro": part("<a/>")})
-    ways = expand(document).source.corrections()
+    ways = [correction.edits for correction in expand(document).source.corrections()]
     assert sorted("|".join(edit.new for edit in way) for way in ways) == sorted(expected)
     for way in ways:
         changed = expand(after(document, way))
         assert len(changed.problems) < len(expand(document).problems), way
+
+
+NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+@pytest.mark.parametrize(
+    ("wrong", "expected"),
+    [
+        (('<?xml version="1.0"?>', '\n<?xml version="1.0"?>'), '<?xml version="1.0"?>\n<robot'),
+        (('<?xml version="1.0"?>', '<!-- mine -->\n<?xml version="1.0"?>'), '<?xml version="1.0"?>\n<!-- mine -->\n<robot'),
+        ((NAMESPACE, ""), f'<robot{NAMESPACE} name="r">'),
+    ],
+)  # fmt: skip
+def test_a_file_that_xacro_cannot_parse_is_corrected(wrong: tuple[str, str], expected: str) -> None:
+    """The prefix xacro is declared, and the declaration of XML is put at the start of the file."""
+    document = Document(robot(SIZES).replace(*wrong))
+    assert expand(document).problems
+    [correction] = expand(document).source.corrections()
+    corrected = after(document, correction.edits)
+    assert expected in corrected.text
+    assert not expand(corrected).problems
 
 
 def values(text: str) -> Iterator[tuple[str, str, str]]:
@@ -210,6 +234,13 @@ def test_an_edit_changes_one_attribute_and_nothing_else(seed: int, which: int, n
             if edits:
                 changed = set(values(now[path])) ^ set(values(text))
                 assert len({(element, attribute) for element, attribute, _ in changed}) <= len(edits)
+
+
+def test_a_yaml_file_is_not_read_again_for_each_edit() -> None:
+    """A value from a YAML file is replaced by the number; reading the file for each edit would take too long."""
+    body = f"{named('config', '${xacro.load_yaml(&quot;a.yaml&quot;)}')}<a b=\"${{config['x']}} 0\"/>"
+    document = Document(robot(body.replace("&quot;", "'")), {"urdf/a.yaml": "x: 0.5"})
+    assert changes(document, "a", "b", "0.3 0") == [['b="0.3 0"']]
 
 
 def test_hostile_expressions_take_a_bounded_number_of_steps() -> None:

@@ -17,6 +17,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFil
 from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.grading.hints.record import with_hints
 from grader.grading.record import Template, from_record
 from grader.grading.report import ManualMark, Report, Result
 from grader.grading.rubric import Criterion, Rubric
@@ -138,6 +139,8 @@ class Grades:
         record, template = self.book.record(grade.result)
         sources = SubmissionSources(grade.files, rubric)
         report = from_record(record, rubric, sources, self._template(grade.rubric, template))
+        hints = self.book.first("SELECT hints FROM hint WHERE result = ?", grade.result)
+        report = with_hints(report, hints[0]) if hints is not None else report
         marks = self._manual_marks(grade)
         return replace(report, results=_with_marks(report, marks)) if marks else report
 
@@ -188,5 +191,5 @@ def _with_marks(report: Report, marks: dict[str, ManualMark]) -> tuple[Result, .
     for criterion in report.rubric.criteria:
         if criterion.id in marks:
             result = results.get(criterion.id) or Result(criterion, not_submitted)
-            results[criterion.id] = result._replace(manual_mark=marks[criterion.id])
+            results[criterion.id] = result._replace(manual_mark=marks[criterion.id], hints=())
     return tuple(results[criterion.id] for criterion in report.rubric.criteria if criterion.id in results)

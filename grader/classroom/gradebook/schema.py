@@ -242,5 +242,13 @@ CREATE TABLE handed_out (                                          -- hashes of 
     | {"has_points": "IN ('p', 'c')", "columns": "\n    result.undecided, result.urdf, result.robot,"}
 )
 
+# Version 6 keeps the proven hints of a result: a result has one rubric, version and digest, so they are never outdated.
+_HINTS = """
+CREATE TABLE hint (
+    result INTEGER PRIMARY KEY REFERENCES result,
+    hints TEXT NOT NULL            -- JSON, see grading/hints/record.py; an empty list if none was found
+);
+"""
+
 # The first step makes version 1; each later one brings a gradebook to the next version. A step that was released never changes.
-STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES, _CARRIED_AND_IDENTICAL)
+STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES, _CARRIED_AND_IDENTICAL, _HINTS)

@@ -159,7 +159,8 @@ def result_of(
     statuses = [NOT_GRADED] * len(report.rubric.criteria)
     failures: list[Failure] = []
     causes: Counter[str] = Counter()
-    for criterion, outcome, *_, carried in report.results:
+    for result in report.results:
+        criterion, outcome, carried = result.criterion, result.outcome, result.carried
         statuses[criterion.position] = CARRIED if carried else STATUS_LETTERS[outcome.status]
         if outcome.status == "failed" and not carried:
             failures.append(failure_of(criterion, outcome))

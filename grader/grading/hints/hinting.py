@@ -26,14 +26,14 @@ class Hinted(NamedTuple):
     edits: Edits
 
 
-def hinted(report: Report, submission: Submission, level: Level) -> Hinted:
-    """Return a report with proven hints for the criteria that failed."""
+def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
+    """Return a report with proven hints for the criteria that failed; `keep_edits` keeps edits that the level does not show."""
     results = {result.criterion.id: result for result in report.results}
     search = Search(Trials(report.rubric, submission, results), *_reference(report.rubric)).run()
     hints = {
         name: hint
         for found in reversed(search.found)
-        for hint in [_hint(found, level, submission)]
+        for hint in [_hint(found, level, submission, keep_edits=keep_edits)]
         for name in found.gains
     }
     with_hints = [
@@ -53,11 +53,12 @@ def fixed(found: Hinted, submission: Submission) -> Fix:
     )
 
 
-def _hint(found: Found, level: Level, submission: Submission) -> Hint:
+def _hint(found: Found, level: Level, submission: Submission, *, keep_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
-    edits = found.edits if level == "edit" else ()
-    return Hint(message(found, level, submission.path), at, found.gains, edits, found.proposal.said)
+    edits = found.edits if keep_edits or level == "edit" else ()
+    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+    return Hint(message(found, level, source), at, found.gains, edits, found.proposal.said)
 
 
 def _reference(rubric: Rubric) -> tuple[Draft | None, Package | None]:

@@ -22,6 +22,7 @@ from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # edits of one step that are graded, to choose the best
 _MAX_FALLBACKS = 60
+_MAX_BYTES = 400_000  # of a file: nobody writes a larger one by hand
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
 Defects = tuple[int, ...]
@@ -101,7 +102,10 @@ def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
         for cause, proposals in _groups(reading, reference):
             if cause in given_up:
                 continue
-            if step := _best(trials, state, proposals) if trials.left > reserve else None:
+            if trials.left < reserve:
+                return
+            step = _best(trials, state, proposals)
+            if step is not None:
                 break
             given_up.add(cause)
         if step is None:
@@ -113,7 +117,9 @@ def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
 def _reading(state: State) -> Reading | None:
     """Return what ROS 2 loads; None of xacro that is loaded without xacro: its text is not what is wrong."""
     urdf = state.submission.urdf
-    if not isinstance(urdf, Read) or (urdf.as_it_stands is not None and b"xacro:" in urdf.data):
+    if not isinstance(urdf, Read) or len(urdf.data) > _MAX_BYTES:
+        return None
+    if urdf.as_it_stands is not None and b"xacro:" in urdf.data:
         return None
     return urdf.loaded
 

@@ -59,6 +59,8 @@ class Search:
 
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
+        if not self.trials.left:
+            return self
         try:
             self._load()
             for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):

@@ -5,15 +5,16 @@ from decimal import Decimal
 
 from grader.grading.hints.search import Found
 from grader.grading.levels import Level
-from grader.source import Edit
+from grader.source import Edit, Location, Source
 from grader.text import counted_points, enumerated
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: Found, level: Level, main: str | None) -> str:
-    """Return the hint in one line; `main` is the file whose name needs no mention."""
+def message(found: Found, level: Level, source: Source | None) -> str:
+    """Return the hint in one line; `source` is the URDF, whose name needs no mention."""
+    main = source.path if source is not None else None
     own = _own_edits(found)
     gains = {
         name: points for name, points in found.gains.items() if own or not any(name in one.gains for one in found.after)
@@ -30,7 +31,24 @@ def message(found: Found, level: Level, main: str | None) -> str:
     if own and found.after:
         text += f", with the edits for {_after(found)}"
     corrected = " with this corrected," if own and level != "edit" else ""
-    return f"{text}:{corrected} {_outcome(gains)}."
+    called = _calls(own, source) if source is not None else ""
+    return f"{text}{called}:{corrected} {_outcome(gains)}."
+
+
+def _calls(edits: list[Edit], source: Source) -> str:
+    """Return where the macros of xacro that edits are in are called, if that is more than once."""
+    calls = dict.fromkeys(call for edit in edits for call in source.calls(edit))
+    macros = {macro: [_at(place, source.path) for name, place in calls if name == macro] for macro, _ in calls}
+    uses = [
+        f"the macro {macro} is called in {enumerated(places, _MAX_NAMED)}"
+        for macro, places in macros.items()
+        if len(places) > 1
+    ]
+    return f" ({'; '.join(uses)})" if uses else ""
+
+
+def _at(place: Location, main: str | None) -> str:
+    return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
 
 
 def _own_edits(found: Found) -> list[Edit]:
@@ -75,7 +93,7 @@ def _change(edit: Edit, main: str | None) -> str:
 
 
 def _where(edit: Edit, main: str | None) -> str:
-    return f"line {edit.line}" if edit.path == main else f"{edit.path}, line {edit.line}"
+    return _at(Location(edit.path, edit.line, edit.column), main)
 
 
 def _quoted(text: str) -> str:

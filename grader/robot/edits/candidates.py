@@ -28,8 +28,8 @@ def proposals(
     """
     poses = Poses(draft.robot, reference.robot, anchors)
     found: dict[frozenset[object], Proposal] = {}
-    for edits in draft.source.corrections():
-        found[frozenset(edits)] = Proposal(edits, "a name that is not defined", "correct the name", "xacro")
+    for correction in draft.source.corrections():
+        found[frozenset(correction.edits)] = Proposal(*correction)
     for proposal in (*misplaced(draft), *other_units(draft)):
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):

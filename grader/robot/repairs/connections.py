@@ -1,5 +1,6 @@
 """Repairs of the tree: unknown links, links that are not connected, loops of joints."""
 
+from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
 
@@ -85,17 +86,13 @@ def root_repairs(site: Site) -> Iterator[Proposal]:
         link.get("name"): site.robots.reference.joint_of(link.get("name") or "")
         for link in site.robots.reference.links()
     }
+    children = Counter(end_of(joint, "child") for joint in draft.joints())
     for joint in draft.joints():
-        rivals = [other for other in draft.joints() if end_of(other, "child") == end_of(joint, "child")]
         end = child_of(joint, "child")
-        for root in roots if len(rivals) > 1 and end is not None else ():
-            for edits in draft.set(end, "link", root) if end is not None else ():
-                yield Proposal(
-                    edits,
-                    "the child of a joint",
-                    "correct the child",
-                    f"the joint of {root!r}" if wanted.get(root) is not None else "",
-                )
+        for root in roots if end is not None and children[end.get("link") or ""] > 1 else ():
+            of = f"the joint of {root!r}" if wanted.get(root) is not None else ""
+            for edits in draft.write(end, "link", root) if end is not None else ():
+                yield Proposal(edits, "the child of a joint", "correct the child", of)
     for root in roots:
         if wanted.get(root) is not None:
             yield from loose(draft, site.robots.reference, root)

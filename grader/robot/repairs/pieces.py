@@ -1,6 +1,5 @@
 """The tags and comments of a text that may not be XML, each with its extent, and how far TinyXML2 reads it."""
 
-import re
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -10,8 +9,9 @@ from grader.xml.tinyxml2.tags import MalformedTagError, read_tag
 # Tags that contain nothing, and are closed with />.
 LEAVES = frozenset(ATTRIBUTES) - frozenset(CHILDREN)
 
+_MAX_ERRORS = 500
+_MAX_TAG = 2000  # characters: what is longer is no tag
 _OTHER = {"<!--": "-->", "<![CDATA[": "]]>", "<?": "?>", "<!": ">"}
-_CLOSING_NAME = re.compile(r"</\s*([^\s>/]*)")
 
 
 class Piece(NamedTuple):
@@ -31,10 +31,11 @@ class Piece(NamedTuple):
 
 def pieces_of(text: str) -> Iterator[Piece]:
     """Yield the tags and comments of a text in order; a malformed tag ends at its >, or before the next tag."""
-    position = 0
-    while (start := text.find("<", position)) >= 0:
+    position = errors = 0
+    while errors < _MAX_ERRORS and (start := text.find("<", position)) >= 0:
         piece = _other(text, start) or _tag(text, start)
         yield piece
+        errors += piece.error is not None
         position = max(piece.end, start + 1)
 
 
@@ -66,10 +67,11 @@ def _extent(text: str, start: int) -> int:
         if end < 0 or text.find("<", position) < comment:
             break
         position = end + 3
-    closed, opened = text.find(">", position), text.find("<", position)
+    limit = position + _MAX_TAG
+    closed, opened = text.find(">", position, limit), text.find("<", position, limit)
     if closed >= 0 and (opened < 0 or closed < opened):
         return closed + 1
-    body = text[start : opened if opened >= 0 else len(text)]
+    body = text[start : opened if opened >= 0 else limit]
     return start + len(body.rstrip())
 
 
@@ -90,9 +92,9 @@ class Tree(NamedTuple):
         for piece in pieces:
             if piece.error is not None:
                 return cls(pieces, open_tags, None, piece.error)
+            is_begun = is_begun or piece.form != "other"
             if piece.form == "open":
                 open_tags.append(piece)
-                is_begun = True
             elif piece.form == "close":
                 if not open_tags:
                     break  # TinyXML2 stops here without an error

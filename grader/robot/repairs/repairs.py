@@ -1,7 +1,7 @@
 """The edits that undo one problem of a robot, by its kind and place, the most plausible first."""
 
 from collections.abc import Callable, Iterable, Iterator
-from itertools import chain, islice
+from itertools import chain
 
 from grader.edits import Proposal
 from grader.problems import Kind, Problem
@@ -19,6 +19,7 @@ from grader.robot.repairs.materials import colour_repairs, material_repairs
 from grader.robot.repairs.names import duplicate_repairs, limit_repairs, name_repairs, type_repairs
 from grader.robot.repairs.site import Robots, Site
 
+_MAX_PROBLEMS = 30  # that are tried for one step
 _MAX_PROPOSALS = 16  # of one problem
 
 Repair = Callable[[Site], Iterable[Proposal]]
@@ -86,7 +87,7 @@ _CAUSES = (catalogue.MISSPELT,)
 def repairable(problems: Iterable[Problem]) -> list[Problem]:
     """Return the problems that there are repairs for: first what ROS 2 ignores silently, then causes, then consequences."""
     found = [problem for problem in problems if problem.kind in _REPAIRS]
-    return sorted(found, key=lambda problem: (problem.kind not in _CAUSES, problem.kind.is_consequence))
+    return sorted(found, key=lambda problem: (problem.kind not in _CAUSES, problem.kind.is_consequence))[:_MAX_PROBLEMS]
 
 
 def repairs_of(robots: Robots, problem: Problem) -> list[Proposal]:
@@ -98,4 +99,6 @@ def repairs_of(robots: Robots, problem: Problem) -> list[Proposal]:
     for proposal in chain.from_iterable(repair(site) for repair in _REPAIRS[problem.kind]):
         if proposal.edits:
             found.setdefault(proposal.edits, proposal)
-    return list(islice(found.values(), _MAX_PROPOSALS))
+        if len(found) == _MAX_PROPOSALS:
+            break
+    return list(found.values())

@@ -16,11 +16,14 @@ from grader.robot.repairs.tags import tag_proposals
 from grader.robot.spelling import ATTRIBUTES
 from grader.source import Edit, Source
 from grader.xml import catalogue as xml_catalogue
+from grader.xml.tinyxml2.tags import REFERENCE
 
 _LOST = re.compile(rf"(?<![<\w/:.\-\"'=])(/?)({'|'.join(sorted(ATTRIBUTES, key=len, reverse=True))})\b(?=[^<>]*>)")
 _NEARLY_CLOSED = re.compile(r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)")
 _INSERTED = ('"', ">", "/>", "<", "=", "/", "'", " ")
+_DECLARATION = re.compile(r"""<\?xml\s+version\s*=\s*["']1\.[0-9]["']\s*(encoding\s*=\s*["'][^"']*["']\s*)?\?>""")
 _MAX_PLACES = 6
+_XACRO = "http://www.ros.org/wiki/xacro"
 
 
 def text_proposals(reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
@@ -32,8 +35,11 @@ def text_proposals(reading: Reading, reference: Draft | None) -> Iterator[Propos
         yield from _robot(source, tree, (reference.root.get("name") if reference is not None else None) or "robot")
     if not kinds.isdisjoint((xml_catalogue.SEVERAL_ROOTS, xml_catalogue.IGNORED_REST, catalogue.NO_LINKS)):
         yield from early_end_proposals(source)
-    if xml_catalogue.MISPLACED_DECLARATION in kinds:
-        yield from _declarations(source, tree.pieces)
+    is_strict = any(kind.is_before_ros for kind in kinds)  # xacro, which reads XML only
+    if is_strict:
+        yield from _well_formed(source, tree)
+    if xml_catalogue.MISPLACED_DECLARATION in kinds or is_strict:
+        yield from _declarations(source, tree.pieces, "" if is_strict else " \t\r\n")
     if xml_catalogue.UNTERMINATED in kinds or reading.root is None:
         yield from _comments(source, tree.pieces)
     yield from _with_brackets(source)
@@ -89,11 +95,27 @@ def _robot(source: Source, tree: Tree, name: str) -> Iterator[Proposal]:
         yield Proposal(tuple(edits), "the tag <robot>, which is missing", "add <robot>")
 
 
-def _declarations(source: Source, pieces: list[Piece]) -> Iterator[Proposal]:
-    """Move an XML declaration to the top; remove a second one, as of a file that was pasted in."""
+def _well_formed(source: Source, tree: Tree) -> Iterator[Proposal]:
+    """Write what XML needs and TinyXML2 does not: the namespace of xacro, a correct declaration, &amp; for &."""
+    text = source.text
+    root = next((piece for piece in tree.pieces if piece.name == "robot"), None)
+    if root is not None and "xmlns:xacro" not in root.text_in(text):
+        end = root.start + len("<robot")
+        edit = source.edit(root.start, end, f'<robot xmlns:xacro="{_XACRO}"')
+        yield Proposal((edit,), "the namespace of xacro, which is missing", "declare xmlns:xacro")
+    for piece in tree.pieces:
+        if piece.name == "<?" and not _DECLARATION.fullmatch(piece.text_in(text)):
+            edit = source.edit(piece.start, piece.end, '<?xml version="1.0"?>')
+            yield Proposal((edit,), "the XML declaration", 'write <?xml version="1.0"?>')
+    ampersands = tuple(source.edit(found.start(), found.end(), "&amp;") for found in REFERENCE.finditer(text))
+    yield Proposal(ampersands, "an & that is not escaped", "write &amp; for &")
+
+
+def _declarations(source: Source, pieces: list[Piece], blank: str) -> Iterator[Proposal]:
+    """Move an XML declaration to the top, before which only blank text may be; remove a second one, as of a pasted file."""
     text = source.text
     found = [piece for piece in pieces if piece.name == "<?"]
-    kept = next((piece for piece in found if not text[: piece.start].strip("\ufeff \t\r\n")), None)
+    kept = next((piece for piece in found if not text[: piece.start].strip(f"\ufeff{blank}")), None)
     edits = tuple(_without_line(source, piece) for piece in found if piece is not kept)
     start = int(text.startswith("\ufeff"))
     if kept is None and found and found[0] is pieces[0]:

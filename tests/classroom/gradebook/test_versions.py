@@ -19,7 +19,7 @@ from grader.usecases.export import grades_csv
 
 DATA = Path(__file__).parent / "data"
 # A class of five in two runs, with five marks: written by grader 0.1.0 with these schema versions, dumped as SQL.
-VERSIONS = (3, 4)
+VERSIONS = (3, 4, 5)
 TABLES = {
     "rubric": "rubric", "criterion": "criterion", "template": "template", "student": "student", "run": "run",
     "result": "result", "seen": "submission", "mark": "mark", "model_answer": "model_answer",

@@ -1,6 +1,7 @@
 """A plug-in check that misbehaves as the robot's name says, to test what a worker survives."""
 
 import ctypes
+import itertools
 import os
 import signal
 import sys
@@ -21,6 +22,8 @@ _RETURNED: dict[str, Any] = {
     "returns_objects": Outcome("passed", "fine", expected=(object(),)),  # type: ignore[arg-type]
     "returns_a_value_of_no_report": Outcome("passed", "fine", measured={1, 2}),  # type: ignore[arg-type]
 }
+
+_TIMES = itertools.count()  # how often a process has asked before: the second time it tries an edit
 
 
 class Unusual(BaseException):
@@ -68,6 +71,10 @@ def behaves(robot: Configuration) -> Outcome:
             eaten = [bytearray(2**27)]
             while True:
                 eaten.append(bytearray(2**27))
+        case "dies_when_tried" if next(_TIMES):
+            os.kill(os.getpid(), signal.SIGKILL)
+        case "hangs_when_tried" if next(_TIMES):
+            time.sleep(3600)
         case "raises":
             raise RuntimeError("as asked")
     return passed("nothing bad was asked for")

@@ -1,0 +1,77 @@
+"""The proven edits that would gain points in a class, grouped: how many students need the same change, with an example."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import PurePosixPath
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.hints import Mistaken, mistaken
+from grader.classroom.gradebook.reasons import manual_units
+from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.grading.hints.record import StoredHint, hints_from_record
+from grader.grading.rubric import Rubric
+from grader.source import Edit
+
+_MAX_FIXES = 20
+
+
+@dataclass(frozen=True, slots=True)
+class CommonFix:
+    """A change that several students need, and their number.
+
+    `criteria` pass with it and `points` are gained, mostly. `example` are the edits of one student, without the names of their files.
+    """
+
+    action: str
+    count: int
+    criteria: tuple[str, ...]
+    points: Decimal
+    example: tuple[Edit, ...]
+
+
+def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
+    """Return the changes that most students need, the most frequent first, as far as hints have been searched."""
+    counts: dict[str, Counter[tuple[str, ...]]] = {}
+    examples: dict[tuple[str, tuple[str, ...]], tuple[Mistaken, StoredHint, tuple[StoredHint, ...]]] = {}
+    for submission, example, hints in _with_hints(book, rubric):
+        given = _given(book, rubric, submission)
+        for stored in hints:
+            action, gained = stored.hint.action, tuple(stored.hint.gains)
+            if action and not given.issuperset(gained):
+                counts.setdefault(action, Counter())[gained] += 1
+                examples.setdefault((action, gained), (example, stored, hints))
+    fixes = []
+    for action, kinds in counts.items():
+        gained = min(kinds, key=lambda names: (-kinds[names], names))
+        example, stored, hints = examples[action, gained]
+        edits = tuple(_nameless(edit, example, rubric) for edit in stored.own_edits(hints))
+        fixes.append(CommonFix(action, kinds.total(), gained, sum(stored.hint.gains.values(), Decimal(0)), edits))
+    return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
+
+
+def _with_hints(book: Gradebook, rubric: Rubric) -> Iterator[tuple[Mistaken, Mistaken, tuple[StoredHint, ...]]]:
+    """Yield submissions, each with the first that has the same robot and the same failures, and with its hints."""
+    submissions = mistaken(book, rubric)
+    first = {one.robot: one for one in reversed(submissions) if one.hints is not None}
+    hints = {robot: hints_from_record(one.hints or "[]") for robot, one in first.items()}
+    for submission in submissions:
+        if submission.robot in first:
+            yield submission, first[submission.robot], hints[submission.robot]
+
+
+def _given(book: Gradebook, rubric: Rubric, submission: Mistaken) -> set[str]:
+    """Return the criteria whose points a manual mark gives."""
+    marks = manual_units(book, submission.student) if submission.has_marks else {}
+    return {row.id for row in rubric.criteria if marks.get(row.id) == int(row.points * UNITS_PER_POINT)}
+
+
+def _nameless(edit: Edit, example: Mistaken, rubric: Rubric) -> Edit:
+    """Return an edit with the path that the rubric gives the URDF, or a path in the package: folders may have students' names."""
+    if not edit.path:
+        return edit._replace(path=rubric.urdf)
+    package = example.submission.package
+    folder = f"{package.folder}/" if package is not None and package.folder else ""
+    is_inside = package is not None and edit.path.startswith(folder)
+    return edit._replace(path=edit.path[len(folder) :] if is_inside else PurePosixPath(edit.path).name)

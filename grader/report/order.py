@@ -1,0 +1,117 @@
+"""The criteria of a report in the order in which people read them: what to fix first, what is fine last."""
+
+from collections.abc import Callable, Iterable, Iterator
+from decimal import Decimal
+from itertools import groupby
+from typing import NamedTuple, TypeVar
+
+from grader.grading.report import Hint, Report, Result
+
+T = TypeVar("T")
+
+
+class Failure(NamedTuple):
+    """A criterion that failed or lost points, with the criteria that are skipped because of it."""
+
+    result: Result
+    skipped: tuple[Result, ...] = ()
+
+    @property
+    def lost(self) -> Decimal:
+        """The points that it costs, with those of the criteria that are skipped because of it."""
+        own = self.result.criterion.points - self.result.points
+        return sum((other.criterion.points for other in self.skipped), own)
+
+
+class Order(NamedTuple):
+    """All criteria of a report, each once.
+
+    `failures` has the costliest first, those whose error is carried forward last. `skipped` are those whose cause is no failure, because
+    a manual mark overrides it. `marked` have all their points by a manual mark.
+    """
+
+    failures: tuple[Failure, ...]
+    skipped: tuple[Result, ...]
+    pending: tuple[Result, ...]
+    marked: tuple[Result, ...]
+    passed: tuple[Result, ...]
+
+
+class Group(NamedTuple):
+    """The criteria about one thing, in the rubric's order."""
+
+    part: str
+    title: str
+    results: tuple[Result, ...]
+
+
+def in_order(report: Report) -> Order:
+    """Return the criteria of a report in the order in which people read them."""
+    failed = failures(report)
+    named = {failure.result.criterion.id for failure in failed}
+    rest = [result for result in report.results if not is_failure(result)]
+    skipped = tuple(result for result in rest if _is_skipped(result))
+    return Order(
+        failed,
+        tuple(result for result in skipped if result.because not in named),
+        tuple(result for result in rest if result.is_open),
+        tuple(result for result in rest if result.manual_mark is not None),
+        tuple(result for result in rest if has_passed(result)),
+    )
+
+
+def failures(report: Report) -> tuple[Failure, ...]:
+    """Return the criteria that failed or lost points, costliest first; equally costly ones in the rubric's order."""
+    skipped = [result for result in report.results if _is_skipped(result)]
+    found = [
+        Failure(result, tuple(other for other in skipped if other.because == result.criterion.id))
+        for result in report.results
+        if is_failure(result)
+    ]
+    return tuple(sorted(found, key=lambda failure: (bool(failure.result.why_given), -failure.lost)))
+
+
+def is_failure(result: Result) -> bool:
+    """Return whether a criterion failed or lost points; a manual mark overrides the check."""
+    if result.manual_mark is not None:
+        return result.points < result.criterion.points
+    return result.outcome.status in ("failed", "errored")
+
+
+def has_passed(result: Result) -> bool:
+    """Return whether a check passed, and no manual mark overrides it."""
+    return result.manual_mark is None and result.outcome.status == "passed"
+
+
+def _is_skipped(result: Result) -> bool:
+    return result.outcome.status == "skipped" and result.manual_mark is None
+
+
+def groups(report: Report) -> Iterator[Group]:
+    """Yield the criteria in the rubric's order, those about one thing together; the others under the title of their part."""
+    titles = {part.id: part.title for part in report.rubric.parts}
+    for (part, about), results in groupby(
+        report.results, lambda result: (result.criterion.part, result.criterion.about)
+    ):
+        yield Group(part, about or titles[part], tuple(results))
+
+
+def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[T, ...]]]:
+    """Return each value of a key with the items that have it, in the order of the first ones."""
+    found: dict[str, list[T]] = {}
+    for item in items:
+        found.setdefault(key(item), []).append(item)
+    return [(value, tuple(some)) for value, some in found.items()]
+
+
+def hints_of(result: Result, report: Report) -> tuple[Hint, ...]:
+    """Return the hints of a criterion; one that an earlier failure has names that failure, and has no edits."""
+    order = failures(report) if result.hints else ()
+    return tuple(_named(hint, result, order) for hint in result.hints)
+
+
+def _named(hint: Hint, result: Result, order: tuple[Failure, ...]) -> Hint:
+    first = next((failure.result for failure in order if hint in failure.result.hints), result)
+    if first.criterion.id == result.criterion.id:
+        return hint
+    return hint._replace(message=f"Fixed by the same edit as {first.criterion.id}.", edits=())

@@ -1,0 +1,134 @@
+"""Mistakes in xacro robots: the edit of the xacro with which everything passes again is found and proven."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from grader.edits import edited
+from grader.grading.grade import grade, open_reference
+from grader.grading.hints.search import Search
+from grader.grading.hints.trials import Trials
+from grader.robot.edits.draft import Draft
+from grader.source import Edit
+from grader.submission.editing import overlaid
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from tests.samples import LAB6, SAMPLES
+
+REFERENCE = open_reference(LAB6)
+INERTIALS = SAMPLES["equivalent-xacro-inertials"]
+MACROS = SAMPLES["equivalent-xacro-macros"]
+WHEEL = "my_robot/urdf/wheel.xacro"
+URDF = "my_robot/urdf/my_robot.urdf"
+
+
+def search(submission: Submission) -> Search:
+    """Return the finished search for edits of a submission."""
+    results = {result.criterion.id: result for result in grade(LAB6, submission).results}
+    assert isinstance(REFERENCE.urdf, Read)
+    return Search(Trials(LAB6, submission, results), Draft.of(REFERENCE.urdf.reading)).run()
+
+
+def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
+    """Return the sample with macros, or the one in a single file, with a mistake in a file; and the text of this file."""
+    submission = (MACROS if path != "" else INERTIALS).open()
+    assert submission.reopen is not None or path == ""
+    data = submission.everything.files[path].read(1 << 20) if path else submission.urdf.data  # type: ignore[union-attr]
+    text = data.decode().replace(old, new, 1)
+    assert text.encode() != data
+    if submission.reopen is None:
+        return read_submission(text.encode(), identity="student", path="my_robot.urdf.xacro"), text
+    return submission.reopen(overlaid(submission.everything, {path: text.encode()})), text
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new"),
+    [
+        ("", '"wheel_radius" value="0.1"', '"wheel_radius" value="0.01"'),
+        ("", '"length" value="0.6"', '"length" value="6"'),
+        ("", "${length/4}", "${length*4}"),
+        ("", '${-length/4} ${-width/2} 0" rpy="${-pi/2}', '${-length/4} ${-width/2} 0" rpy="${pi/2}'),
+        ("", "${height+0.05/2}", "${height-0.05/2}"),
+        ("", "${length/3} 0 ${-wheel_radius/2}", "${length/3} 0 ${wheel_radius/2}"),
+        ("", 'izz="${(1/2) * mass', 'izz="${(1/2) * mas'),
+        ("", 'name="inertial_box"', 'name="inertia_box"'),
+        (URDF, 'side="left" outward="1"', 'side="left" outward="-1"'),
+        (URDF, 'side="right"', 'side="rigth"'),
+        (URDF, 'xyz="-0.15 -0.2 0" rpy="${-pi/2} 0 0"', 'xyz="-0.15 -0.2 0" rpy="${pi/2} 0 0"'),
+        (URDF, 'filename="wheel.xacro"', 'filename="wheels.xacro"'),
+        (WHEEL, "outward * wheel_width / 2", "-outward * wheel_width / 2"),
+        (WHEEL, 'name="wheel_width"', 'name="wheel_with"'),
+        (WHEEL, 'name="${side}_wheel"', 'name="${side}_whel"'),
+        (WHEEL, 'type="continuous"', 'type="fixed"'),
+        (WHEEL, 'params="side outward', 'params="side outwards'),
+        (WHEEL, '      <axis xyz="0 0 1"/>\n', ""),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
+    """A wrong number, sign, operator, argument or name in xacro is undone by an edit of the xacro."""
+    submission, text = mutant(path, old, new)
+    found = search(submission)
+    assert not found.final.failed
+    [first] = found.found
+    names = {edit.path for edit in first.edits}
+    assert names <= {path or "my_robot.urdf.xacro", WHEEL}
+    for name in names & {path or "my_robot.urdf.xacro"}:
+        assert edited(text, name, first.edits) is not None
+
+
+def texts(edits: Sequence[Edit]) -> list[str]:
+    """Return what an edit writes, or the new name of its file."""
+    return [edit.renamed or edit.new for edit in edits]
+
+
+@pytest.mark.parametrize(
+    ("sample", "expected"),
+    [
+        ("raw-xacro", ["my_robot.urdf.xacro"]),
+        ("xacro-macro-for-wheels", ["my_robot.urdf.xacro"]),
+        ("xacro-in-urdf",
+         ["import xacro\n", "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()"]),
+    ],
+)  # fmt: skip
+def test_xacro_that_ros_2_loads_as_it_stands(sample: str, expected: list[str]) -> None:
+    """A launch file that reads the file runs xacro instead; a file on its own gets a name that says xacro."""
+    [found] = search(SAMPLES[sample].open()).found
+    assert texts(found.edits) == expected
+    assert list(found.gains) == ["urdf-loads"]
+
+
+def test_raw_xacro_with_another_mistake() -> None:
+    """Both are corrected, each by an edit of the file as it was submitted."""
+    text = SAMPLES["raw-xacro"].open().urdf.data.decode()  # type: ignore[union-attr]
+    wrong = text.replace("${base_height + wheel_width/2}", "${base_height - wheel_width/2}")
+    submission = read_submission(wrong.encode(), identity="student", path="my_robot.urdf")
+    found = search(submission)
+    assert not found.final.failed
+    assert {edit.path for edit in found.final.edits} == {"my_robot.urdf"}
+    assert 'xyz="${base_length/4} 0 ${base_height + wheel_width/2}"' in texts(found.final.edits)
+
+
+LAUNCH = "my_robot/launch/my_robot_rviz.launch.py"
+READ = "    with open(os.path.join(share, 'my_robot.urdf')) as file:\n        robot_description = file.read()\n"
+PATH = "os.path.join(share, 'my_robot.urdf')"
+
+
+@pytest.mark.parametrize(
+    ("reading", "expected"),
+    [
+        (f"    robot_description = open({PATH}, 'r').read()\n", f"xacro.process_file({PATH}).toxml()"),
+        (f"    path = {PATH}\n    file = open(path)\n    robot_description = file.read()\n",
+         "xacro.process_file(path).toxml()"),
+        (f"    from launch.substitutions import Command\n    robot_description = Command(['cat ', {PATH}])\n", "xacro"),
+    ],
+)  # fmt: skip
+def test_a_launch_file_runs_xacro(reading: str, expected: str) -> None:
+    """However the launch file reads the text, it can read the expansion."""
+    submission = SAMPLES["xacro-in-urdf"].open()
+    text = submission.everything.files[LAUNCH].read(1 << 20).decode()
+    assert READ in text
+    assert submission.reopen is not None
+    found = search(submission.reopen(overlaid(submission.everything, {LAUNCH: text.replace(READ, reading).encode()})))
+    assert texts(found.found[0].edits)[-1] == expected
+    assert not found.final.failed
