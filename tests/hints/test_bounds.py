@@ -1,0 +1,56 @@
+"""The search for hints ends: large and hostile robots cost a bounded number of steps, and no more time than those."""
+
+import pytest
+
+from grader.submission.opening import read_submission
+from tests.hints.trials import BASES, graded, search_for
+from tests.processor_time import processor_time
+
+REFERENCE = BASES["reference"].text
+MANY = 150
+LOST = REFERENCE.replace("0.15 0 0.225", "0.15 0 0.2")
+
+
+def _chain(start: str, count: int) -> str:
+    """Return links, each fixed to the one before."""
+    return "".join(
+        f'<link name="c{i}"/><joint name="j{i}" type="fixed"><parent link="{f"c{i - 1}" if i else start}"/>'
+        f'<child link="c{i}"/><origin xyz="0.0001 0 0" rpy="0.001 0 0"/></joint>\n'
+        for i in range(count)
+    )
+
+
+def _with(added: str, text: str = LOST) -> str:
+    return text.replace("</robot>", f"{added}</robot>")
+
+
+_LIDAR_PARENT = '<parent link="base_link"/>\n    <child link="lidar"/>'
+_MATERIALS = "".join(f'<material name="m{i}"><color rgba="0 0 0 1"/></material>\n' for i in range(MANY))
+_JOINTS = "".join(f'<joint name="q{i}"><parent link="b{i}"/><child link="lidr{i}"/></joint>' for i in range(MANY))
+
+HOSTILE = {
+    "links apart": _with(_chain("base_link", MANY)),
+    "links between": _with(_chain("base_link", MANY)).replace(
+        _LIDAR_PARENT, _LIDAR_PARENT.replace("base_link", f"c{MANY - 1}")
+    ),
+    "materials": _with(_MATERIALS).replace('<material name="white"/>', '<material name="whte"/>'),
+    "joints of unknown links": _with(_JOINTS),
+    "visuals": LOST.replace(
+        "</visual>", "</visual>" + '<visual><geometry><sphere radius="10"/></geometry></visual>' * MANY
+    ),
+    "numbers": LOST.replace('0.15 0 0.2"', f'0.15 0 0.2{" 0" * 100 * MANY}"'),
+    "misspelt attributes": LOST.replace("<visual>", "<visual>" + '<orign xz="1 2 3" ryp="0 0 0"/>' * MANY, 1),
+    "nested": _with("<link><visual>" * 200 + "</visual></link>" * 200),
+    "long names": LOST.replace('"lidar"', f'"{"lidar" * 10 * MANY}"'),
+    "commas": REFERENCE.replace('xyz="', 'xyz="0,') + "<!-- -->" * MANY,
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_large_robot_is_searched_in_bounded_time(name: str) -> None:
+    """Hundreds of anything that a search looks at take little more than a second."""
+    submission = read_submission(HOSTILE[name].encode(), identity="student", path="my_robot.urdf")
+    results = graded(submission)
+    assert any(result.is_lost for result in results.values())
+    with processor_time(1.5):
+        search_for(submission, results)
