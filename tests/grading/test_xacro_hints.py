@@ -62,6 +62,8 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         (WHEEL, 'name="${side}_wheel"', 'name="${side}_whel"'),
         (WHEEL, 'type="continuous"', 'type="fixed"'),
         (WHEEL, 'params="side outward', 'params="side outwards'),
+        (WHEEL, 'link="base_link"/>\n      <child link="${side}_wheel"', 'link="${side}_wheel"/>\n      <child link="base_link"'),
+        (WHEEL, "${outward * wheel_width / 2}", "${wheel_width / 2}"),
         (WHEEL, '      <axis xyz="0 0 1"/>\n', ""),
     ],
 )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from grader import markup
 from grader.edits import merged, text_of, with_attribute, with_child, with_element, with_sibling, without_element
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
@@ -72,6 +73,17 @@ class Draft:
             return ways
         source, start = self.source.element(tag)
         return [(with_attribute(source, start, attribute, merged(old, escaped(value))),)]
+
+    def exchange(self, one: Element, other: Element, attribute: str) -> Edits:
+        """Return the edits that exchange what two elements have in an attribute, as it is written."""
+        places = [self.source.element(self._tags[element]) for element in (one, other)]
+        found = [(source.text, markup.attribute(source.text, start, attribute)) for source, start in places]
+        values = [text[it.value_start : it.value_end] for text, it in found if it is not None]
+        if len(values) < len(places):
+            return ()
+        return tuple(
+            with_attribute(*place, attribute, value) for place, value in zip(places, reversed(values), strict=True)
+        )
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""

@@ -80,11 +80,7 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         return
     parent, child = end_of(own, "parent"), end_of(own, "child")
     if parent and child:
-        ends = [child_of(own, role) for role in _ENDS]
-        edits = [
-            draft.set(end, "link", name)[0] for end, name in zip(ends, (child, parent), strict=True) if end is not None
-        ]
-        yield Proposal(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child", of, link)
+        yield exchanged(draft, own, of, link)
     if other is None:
         if own.get("type") != "fixed":
             yield from (
@@ -101,6 +97,13 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         yield from joint_end(draft, own, role, end_of(other, role), link)
     for tag in ("origin", "axis", "limit", "mimic", "dynamics"):
         yield from inner(draft, reference, own, other, tag, of, link)
+
+
+def exchanged(draft: Draft, joint: Element, of: str, link: str) -> Proposal:
+    """Return the exchange of a joint's parent and child, as they are written."""
+    one, two = (child_of(joint, role) for role in _ENDS)
+    edits = draft.exchange(one, two, "link") if one is not None and two is not None else ()
+    return Proposal(edits, "parent and child, which are exchanged", "exchange parent and child", of, link)
 
 
 def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> Iterator[Proposal]:
@@ -123,12 +126,13 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
 
 def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     """Connect a link that no joint has as its child: one whose name the joint misspells, or one without a joint."""
-    of = f"the joint of {link!r}"
+    of, other = f"the joint of {link!r}", reference.joint_of(link)
     for found in draft.joints():
         child = end_of(found, "child")
         if draft.link(child) is None:
             yield from joint_end(draft, found, "child", link, link)
-    other = reference.joint_of(link)
+        elif other is not None and (child, end_of(found, "parent")) == (end_of(other, "parent"), link):
+            yield exchanged(draft, found, of, link)
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
