@@ -56,11 +56,21 @@ def as_in_reference(draft: Draft, reference: Draft, link: str) -> Iterator[Propo
     if joint is None or other is None or draft.link(link) is None:
         return
     yield Proposal(
-        draft.replace(joint, reference.text(other)), "the joint", "correct the joint", f"the link {link!r}", link
+        draft.replace(joint, reference.text(other)),
+        "the joint",
+        "correct the joint",
+        f"the link {link!r}",
+        link,
+        is_rewrite=True,
     )
     own, wanted = draft.link(link), reference.link(link)
     if own is not None and wanted is not None:
         edits = (*draft.replace(joint, reference.text(other)), *draft.replace(own, reference.text(wanted)))
         yield Proposal(
-            edits, "the joint and what it moves", "correct the joint and the visual", f"the link {link!r}", link
+            edits,
+            "the joint and what it moves",
+            "correct the joint and the visual",
+            f"the link {link!r}",
+            link,
+            is_rewrite=True,
         )

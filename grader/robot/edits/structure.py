@@ -136,7 +136,8 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
-            yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint", of, link)
+            edits = draft.replace(same, reference.text(other))
+            yield Proposal(edits, "the joint", "correct the joint", of, link, is_rewrite=True)
         yield Proposal(
             draft.append(reference.text(other)), "the joint, which is missing", f"add the joint of {link!r}", "", link
         )
