@@ -208,10 +208,10 @@ def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
 
 
-def _promise(results: Results) -> Callable[[Option], tuple[Decimal, int]]:
-    def key(option: Option) -> tuple[Decimal, int]:
+def _promise(results: Results) -> Callable[[Option], tuple[Decimal, bool, int]]:
+    def key(option: Option) -> tuple[Decimal, bool, int]:
         points = sum((results[name].criterion.points for name in option.passes), Decimal(0))
-        return -points, option.proposal.size
+        return -points, option.proposal.is_blind, option.proposal.size
 
     return key
 
