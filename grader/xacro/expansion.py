@@ -6,22 +6,21 @@ same, so that one defect does not hide another.
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.markup import element_end
 from grader.problems import Problem
 from grader.source import Correction, Edit, Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
-from grader.xacro.edits import Rewriter
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
-from grader.xacro.spelling import respelled
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xacro.well_formed import well_formed
-from grader.xacro.written import with_parameters
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
+
+if TYPE_CHECKING:
+    from grader.xacro.edits import Rewriter
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
 
@@ -49,7 +48,7 @@ _STEPS_OF_READING, _ELEMENTS_OF_READING = 200, 100  # of a short file
 
 
 class ExpandedSource(Source):
-    """The text of a xacro file, whose start tags are those of the expanded elements."""
+    """The text of a xacro file, whose start tags are those of the expanded elements. Edits are imported late: grading needs none."""
 
     def __init__(self, source: Source, nodes: list[Node], expander: Expander) -> None:
         super().__init__(source.path, source.text)
@@ -87,6 +86,9 @@ class ExpandedSource(Source):
 
     def corrections(self) -> list[Correction]:
         """Return the edits that may correct XML that is not well-formed, or names which are not defined."""
+        from grader.xacro.spelling import respelled
+        from grader.xacro.well_formed import well_formed
+
         return [*well_formed(Source(self.path, self.text)), *respelled(self._expander.unknown)]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
@@ -102,11 +104,15 @@ class ExpandedSource(Source):
 
     def adapted(self, tag: int, xml: str) -> str:
         """Return the text of an element that is inserted in the one with this index: in a macro, with its parameters in names."""
+        from grader.xacro.written import with_parameters
+
         scope = self._nodes[tag].place.scope
         return with_parameters(xml, scope) if scope is not None else xml
 
     @cached_property
     def _rewriter(self) -> "Rewriter":
+        from grader.xacro.edits import Rewriter
+
         return Rewriter(self._expander.texts)
 
 

@@ -48,6 +48,7 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         ("", '"wheel_radius" value="0.1"', '"wheel_radius" value="0.01"'),
         ("", '"length" value="0.6"', '"length" value="6"'),
         ("", "${length/4}", "${length*4}"),
+        ("", 'xyz="0 0 ${height/2}"', 'xyz="0 0.1 ${height/2}"'),
         ("", '${-length/4} ${-width/2} 0" rpy="${-pi/2}', '${-length/4} ${-width/2} 0" rpy="${pi/2}'),
         ("", "${height+0.05/2}", "${height-0.05/2}"),
         ("", "${length/3} 0 ${-wheel_radius/2}", "${length/3} 0 ${wheel_radius/2}"),
@@ -62,6 +63,8 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         (WHEEL, 'name="${side}_wheel"', 'name="${side}_whel"'),
         (WHEEL, 'type="continuous"', 'type="fixed"'),
         (WHEEL, 'params="side outward', 'params="side outwards'),
+        (WHEEL, 'link="base_link"/>\n      <child link="${side}_wheel"', 'link="${side}_wheel"/>\n      <child link="base_link"'),
+        (WHEEL, "${outward * wheel_width / 2}", "${wheel_width / 2}"),
         (WHEEL, '      <axis xyz="0 0 1"/>\n', ""),
     ],
 )  # fmt: skip

@@ -122,6 +122,17 @@ class Draft:
                 found.setdefault(self.source.tag(tag, attribute), (element, attribute))
         return found
 
+    def exchange(self, one: Element, other: Element, attribute: str) -> Edits:
+        """Return the edits that exchange what two elements have in an attribute, as it is written."""
+        places = [self.source.element(self._tags[element]) for element in (one, other)]
+        found = [(source.text, markup.attribute(source.text, start, attribute)) for source, start in places]
+        values = [text[it.value_start : it.value_end] for text, it in found if it is not None]
+        if len(values) < len(places):
+            return ()
+        return tuple(
+            with_attribute(*place, attribute, value) for place, value in zip(places, reversed(values), strict=True)
+        )
+
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
         tag = self._tags[parent]

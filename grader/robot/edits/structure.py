@@ -126,13 +126,10 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
 
 
 def exchanged_ends(draft: Draft, own: Element, of: str, link: str) -> Iterator[Proposal]:
-    """Exchange the parent and the child of a joint."""
-    ends = [child_of(own, role) for role in _ENDS]
-    names = [end_of(own, role) for role in reversed(_ENDS)]
-    edits: Edits = ()
-    for end, name in zip(ends, names, strict=True):
-        edits += draft.set(end, "link", name)[0] if end is not None and name else ()
-    if len(edits) > 1:
+    """Exchange the parent and the child of a joint, as they are written."""
+    parent, child = (child_of(own, role) for role in _ENDS)
+    if parent is not None and child is not None and end_of(own, "parent") and end_of(own, "child"):
+        edits = draft.exchange(parent, child, "link")
         yield Proposal(edits, "parent and child{}, which are exchanged", "exchange parent and child{}", of, link)
 
 
@@ -156,15 +153,17 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
 
 def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     """Connect a link that no joint has as its child: one whose name the joint misspells, or one without a joint."""
+    of, other = f"the joint of {link!r}", reference.joint_of(link)
     for found in draft.joints():
         child = end_of(found, "child")
         if draft.link(child) is None:
             yield from joint_end(draft, found, "child", link, link)
-    other = reference.joint_of(link)
+        elif other is not None and (child, end_of(found, "parent")) == (end_of(other, "parent"), link):
+            yield from exchanged_ends(draft, found, of, link)
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
-            yield from exchanged_ends(draft, same, f"the joint of {link!r}", link)
+            yield from exchanged_ends(draft, same, of, link)
             yield from joint_end(draft, same, "child", link, link)
             whole = draft.replace(same, reference.text(other))
             yield Proposal(whole, "the joint", "correct the joint{}", f"the link {link!r}", link, TOGETHER)
