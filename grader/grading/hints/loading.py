@@ -167,10 +167,11 @@ def _score(state: State) -> Decimal:
 
 
 def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
-    """Return steps with those that do the same as one."""
-    groups: dict[tuple[str, str], list[Proposal]] = {}
+    """Return steps with those that correct the same mistake as one; what is added for one link stays apart."""
+    groups: dict[tuple[str, str, str], list[Proposal]] = {}
     for proposal in proposals:
-        groups.setdefault((proposal.cause, proposal.action), []).append(proposal)
+        added_for = proposal.of or proposal.link if not any(edit.old for edit in proposal.edits) else ""
+        groups.setdefault((proposal.cause, proposal.action, added_for), []).append(proposal)
     return [_together(group) for group in groups.values()]
 
 
