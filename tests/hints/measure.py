@@ -12,7 +12,6 @@ from time import perf_counter
 from typing import NamedTuple
 
 from grader.grading.hints.words import message
-from grader.submission.urdf import Read
 from tests.hints.mutants import mutants
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, Base, Hints, behaviour, differences, hints_for, text_after
@@ -48,10 +47,8 @@ class Verdict(NamedTuple):
     def told(self) -> str:
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
-        urdf = self.hints.submission.urdf
-        source = urdf.reading.source if isinstance(urdf, Read) else None
         for found in self.hints.found:
-            lines.append(f"     + {message(found, 'edit', source)}")
+            lines.append(f"     + {message(found, 'edit', self.hints.submission)}")
             lines.append(f"       {found.proposal.said} [{found.proposal.named}]")
         left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])

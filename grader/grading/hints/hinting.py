@@ -57,8 +57,7 @@ def _hint(found: Found, level: Level, submission: Submission, *, keep_edits: boo
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
     edits = found.edits if keep_edits or level == "edit" else ()
-    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
-    return Hint(message(found, level, source), at, found.gains, edits, found.proposal.said)
+    return Hint(message(found, level, submission), at, found.gains, edits, found.proposal.said)
 
 
 def _reference(rubric: Rubric) -> tuple[Draft | None, Package | None]:

@@ -6,15 +6,18 @@ from decimal import Decimal
 from grader.grading.hints.search import Found
 from grader.grading.levels import Level
 from grader.source import Edit, Location, Source
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: Found, level: Level, source: Source | None) -> str:
-    """Return the hint in one line; `source` is the URDF, whose name needs no mention."""
-    main = source.path if source is not None else None
+def message(found: Found, level: Level, submission: Submission) -> str:
+    """Return the hint in one line; the name of the URDF needs no mention."""
+    main = submission.path
+    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
     own = _own_edits(found)
     gains = {
         name: points for name, points in found.gains.items() if own or not any(name in one.gains for one in found.after)
@@ -22,7 +25,7 @@ def message(found: Found, level: Level, source: Source | None) -> str:
     if not own:
         text = f"The edits for {_after(found)} together"
     elif level == "edit":
-        changes = _moves(own, main) or [_change(edit, main) for edit in own[:_MAX_NAMED]]
+        changes = _moves(own, main) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
         changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
         text = enumerated(changes, _MAX_NAMED + 1)
     else:
@@ -81,12 +84,15 @@ def _moves(edits: list[Edit], main: str | None) -> list[str]:
     return [f"move {_quoted(old.old)} ({_where(old, main)}) to the place after {_where(new, main)}"]
 
 
-def _change(edit: Edit, main: str | None) -> str:
-    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, main)
+def _change(edit: Edit, submission: Submission) -> str:
+    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, submission.path)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
+    if edit.path != submission.path and edit.path not in submission.everything.files:
+        return f"create `{edit.path}` (--fix writes it)"
     if not edit.old:
-        return f"insert {new} (after {where})"
+        is_line, is_below = edit.new.endswith("\n"), edit.new.lstrip(" \r").startswith("\n")
+        return f"insert {new} ({'before ' if is_line else 'after ' if is_below else ''}{where})"
     if not edit.new:
         return f"remove {old} ({where})"
     return f"change {old} to {new} ({where})"

@@ -34,7 +34,7 @@ def proposals(
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
         for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
-            if proposal.edits and all(edit.old != edit.new or edit.renamed for edit in proposal.edits):
+            if any(edit.old.split() != edit.new.split() for edit in proposal.edits):
                 found.setdefault(frozenset(proposal.edits), proposal)
     lines = {(place.path, place.line) for place in places}
     return sorted(

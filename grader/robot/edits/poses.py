@@ -65,7 +65,7 @@ class Poses:
         targets = [link] if self.reference.robot.has_link(link) else carried
         for target in targets:
             inner = _pose(self.robot, target, link)
-            for anchor in dict.fromkeys((parent, *self._anchors)):
+            for anchor in dict.fromkeys((parent, *self._near(link))):
                 wanted, own = _pose(self.reference, target, anchor), _pose(self.robot, parent, anchor)
                 if wanted and own and inner and not self._is_above(link, anchor):
                     yield own.inverse() @ wanted @ inner.inverse()
@@ -74,12 +74,16 @@ class Poses:
     def _centres(self, link: str, frame: str) -> Iterator[Transform]:
         """Yield the pose of the reference's visual of a link in a frame of the robot: of its parent, or its own."""
         shown = self.reference.robot.link(link).visuals if self.reference.robot.has_link(link) else ()
-        apart = [anchor for anchor in self._anchors if not self._is_above(link, anchor)]
+        apart = [anchor for anchor in self._near(link) if not self._is_above(link, anchor)]
         for anchor in (*apart, *([link] if frame == link else [])):
             wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, frame, anchor)
             if shown and wanted is not None and own is not None:
                 yield own.inverse() @ placed_by(wanted, shown[0].origin)
                 return
+
+    def _near(self, link: str) -> list[str]:
+        """Return the anchors, first those that carry a link: others may be misplaced themselves."""
+        return sorted(self._anchors, key=lambda anchor: not self._is_above(anchor, link))
 
     def _is_above(self, link: str, other: str) -> bool:
         """Return whether a link carries another one, or is it: then it cannot be measured from there."""
@@ -93,7 +97,7 @@ class Poses:
     def _axis(self, link: str) -> Iterator[Values]:
         """Yield the axis with which the link turns in the reference's direction."""
         other = self.reference.parent_joints.get(link)
-        for anchor in self._anchors:
+        for anchor in self._near(link):
             wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, link, anchor)
             if other is not None and other.axis is not None and wanted is not None and own is not None:
                 direction = own.unrotate(wanted.rotate(other.axis))

@@ -106,15 +106,7 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     if own is None:
         yield from loose(draft, reference, link)
         return
-    parent, child = end_of(own, "parent"), end_of(own, "child")
-    if parent and child:
-        ends = [child_of(own, role) for role in _ENDS]
-        edits = [
-            draft.set(end, "link", name)[0] for end, name in zip(ends, (child, parent), strict=True) if end is not None
-        ]
-        yield Proposal(
-            sum(edits, ()), "parent and child{}, which are exchanged", "exchange parent and child{}", of, link
-        )
+    yield from exchanged_ends(draft, own, of, link)
     if other is None:
         if own.get("type") != "fixed":
             yield from (
@@ -131,6 +123,17 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         yield from joint_end(draft, own, role, end_of(other, role), link)
     for tag in ("origin", "axis", "limit", "mimic", "dynamics"):
         yield from inner(draft, reference, own, other, tag, of, link)
+
+
+def exchanged_ends(draft: Draft, own: Element, of: str, link: str) -> Iterator[Proposal]:
+    """Exchange the parent and the child of a joint."""
+    ends = [child_of(own, role) for role in _ENDS]
+    names = [end_of(own, role) for role in reversed(_ENDS)]
+    edits: Edits = ()
+    for end, name in zip(ends, names, strict=True):
+        edits += draft.set(end, "link", name)[0] if end is not None and name else ()
+    if len(edits) > 1:
+        yield Proposal(edits, "parent and child{}, which are exchanged", "exchange parent and child{}", of, link)
 
 
 def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> Iterator[Proposal]:
@@ -161,6 +164,7 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
+            yield from exchanged_ends(draft, same, f"the joint of {link!r}", link)
             yield from joint_end(draft, same, "child", link, link)
             whole = draft.replace(same, reference.text(other))
             yield Proposal(whole, "the joint", "correct the joint{}", f"the link {link!r}", link, TOGETHER)
