@@ -1,9 +1,11 @@
 """Reports with hints, and submissions with the edits of all hints."""
 
 from dataclasses import replace
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
+from grader.files.reading import read_capped
 from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
 from grader.grading.hints.trials import Edits, Trials
@@ -11,12 +13,15 @@ from grader.grading.hints.words import message
 from grader.grading.levels import Level
 from grader.grading.report import Fix, Hint, Report
 from grader.grading.rubric import Rubric
-from grader.package.package import Package
 from grader.robot.edits.draft import Draft
+from grader.robot.reader import read_urdf
 from grader.source import Location
 from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
+
+if TYPE_CHECKING:
+    from grader.package.package import Package
 
 
 class Hinted(NamedTuple):
@@ -29,7 +34,8 @@ class Hinted(NamedTuple):
 def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
     """Return a report with proven hints for the criteria that failed; `keep_edits` keeps edits that the level does not show."""
     results = {result.criterion.id: result for result in report.results}
-    search = Search(Trials(report.rubric, submission, results), *_reference(report.rubric)).run()
+    reference = _Reference(report.rubric)
+    search = Search(Trials(report.rubric, submission, results), reference.draft, reference.package).run()
     hints = {
         name: hint
         for found in reversed(search.found)
@@ -60,13 +66,28 @@ def _hint(found: Found, level: Level, submission: Submission, *, keep_edits: boo
     return Hint(message(found, level, submission), at, found.gains, edits, found.proposal.said)
 
 
-def _reference(rubric: Rubric) -> tuple[Draft | None, Package | None]:
-    """Return the robot and the package of a rubric's reference solution, as far as they can be read."""
-    if not rubric.reference:
-        return None, None
-    try:
-        reference = open_reference(rubric)
-    except InputError:
-        return None, None
-    urdf = reference.urdf
-    return Draft.of(urdf.reading) if isinstance(urdf, Read) else None, reference.package
+class _Reference:
+    """The reference solution of a rubric, of which no more is read than is needed."""
+
+    def __init__(self, rubric: Rubric) -> None:
+        self._rubric = rubric
+
+    @cached_property
+    def _submission(self) -> Submission | None:
+        try:
+            return open_reference(self._rubric) if self._rubric.reference else None
+        except InputError:
+            return None
+
+    @property
+    def draft(self) -> Draft | None:
+        """The robot."""
+        file = self._rubric.path.parent / self._rubric.reference / self._rubric.urdf
+        if self._rubric.reference and file.is_file():
+            return Draft.of(read_urdf(read_capped(file), self._rubric.urdf))
+        urdf = self._submission.urdf if self._submission is not None else None
+        return Draft.of(urdf.reading) if isinstance(urdf, Read) else None
+
+    def package(self) -> "Package | None":
+        """Return the package."""
+        return self._submission.package if self._submission is not None else None

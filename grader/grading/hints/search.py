@@ -1,21 +1,22 @@
 """Search the edits that make failed criteria pass: single ones first, then pairs, within a budget of gradings."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import REWRITTEN, TRIED, Proposal
-from grader.grading.hints.loading import repaired
 from grader.grading.hints.targets import targets_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined
 from grader.grading.rubric import Criterion
-from grader.package.edits.candidates import package_proposals
-from grader.package.package import Package
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
+from grader.robot.reader import Reading
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
+
+if TYPE_CHECKING:
+    from grader.package.package import Package
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_PAIRS = 60
@@ -47,11 +48,13 @@ class Option(NamedTuple):
 class Search:
     """The search for one submission; `found` are proven edits, `final` the submission with those that fit together."""
 
-    def __init__(self, trials: Trials, reference: Draft | None, package: Package | None = None) -> None:
-        """`reference` and `package` are those of the rubric's reference solution."""
+    def __init__(
+        self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]" = lambda: None
+    ) -> None:
+        """`reference` and `package` are the robot and the package of the rubric's reference solution."""
         self.trials = trials
         self.reference = reference
-        self.package = package
+        self._package = package
         self.found: list[Found] = []
         self.final = trials.start
         self._known: dict[Edits, list[Option]] = {}
@@ -95,6 +98,11 @@ class Search:
 
     def _load(self) -> None:
         """Repair a URDF that ROS 2 rejects, or drops content of: the rest of the search goes on from there."""
+        urdf = self.final.submission.urdf
+        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and not _has_remains(urdf.loaded):
+            return
+        from grader.grading.hints.loading import repaired  # late: most robots load
+
         repair = repaired(self.trials, self.reference)
         self.found += [Found(*hint) for hint in repair.hints]
         self.final = repair.final
@@ -113,8 +121,12 @@ class Search:
         """Return edits for criteria."""
         criteria = [self._criteria[name] for name in names]
         about_urdf = any(criterion.check.subject == "urdf" for criterion in criteria)
-        wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
-        found = package_proposals(state.submission.package, self.package, wanted)
+        found: list[Proposal] = []
+        if any(criterion.check.subject not in ("urdf", "robot") for criterion in criteria):
+            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
+
+            wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
+            found += package_proposals(state.submission.package, self._package(), wanted)
         found += raw_xacro_proposals(state.submission) if about_urdf else ()
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
@@ -244,6 +256,16 @@ class Search:
                     break
             else:
                 self._add(_UNION, self.final.edits, name, tuple(self.found))
+
+
+def _has_remains(reading: Reading) -> bool:
+    """Return whether a file that ROS 2 loads has problems, or text between its tags."""
+    texts = (
+        (text for element in reading.root.iter() for text in (element.text, element.tail))
+        if reading.root is not None
+        else ()
+    )
+    return bool(reading.problems) or any(text and not text.isspace() for text in texts)
 
 
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:

@@ -1,0 +1,214 @@
+"""Hints of grader grade: their levels, the files that --fix writes, and what --watch says about them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.grading.hints.search import Search
+from grader.grading.levels import LEVELS
+from grader.report.comparison import taken_hints
+from tests.command_line import run
+from tests.samples import ROOT, SAMPLES
+
+MISTAKES = ROOT / "submissions/several-mistakes/my_robot.urdf"
+REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
+
+
+def graded(*arguments: object) -> dict[str, Any]:
+    """Return the report of a submission as JSON."""
+    data: dict[str, Any] = json.loads(run(("grade", *arguments, "--format", "json")).stdout)
+    return data
+
+
+def hints(*arguments: object) -> dict[str, list[dict[str, Any]]]:
+    """Return the hints of each criterion that has some."""
+    return {result["id"]: result["hints"] for result in graded(*arguments)["results"] if result["hints"]}
+
+
+def lab(folder: Path, level: str) -> Path:
+    """Return a copy of the rubric of lab 6 with another level of hints."""
+    text = (ROOT / "rubrics/lab6.toml").read_text()
+    assert 'hints = "edit"' in text
+    text = text.replace('hints = "edit"', f'hints = "{level}"' if level else "")
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/').replace("answers =", "# answers =")
+    (folder / "lab.toml").write_text(text)
+    return folder / "lab.toml"
+
+
+def test_a_hint_gives_the_edit_and_what_it_gains() -> None:
+    """Criteria that one edit makes pass have the same hint."""
+    found = hints(MISTAKES)
+    [hint] = found["right-wheel-forward"]
+    assert found["right-wheel-axis"] == [hint]
+    assert hint["edits"][0] == ROLL
+    assert hint["gains"] == {"right-wheel-forward": 6, "right-wheel-axis": 1}
+    assert hint["verified"] is True
+    assert hint["message"] == (
+        'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73) and change `xyz="0 0 0.025"` to `xyz="0 0 -0.025"` (line 65): '
+        "right-wheel-forward and right-wheel-axis pass, +7 points."
+    )
+
+
+def test_no_hints_for_what_passes() -> None:
+    """A flawless robot has none."""
+    assert hints(REFERENCE) == {}
+
+
+@pytest.mark.parametrize(
+    ("level", "says"),
+    [
+        ("place", 'Look at `rpy="1.57 0 0"` (line 73): with this corrected, right-wheel-forward'),
+        ("cause", "Look at the sign of the roll of the joint of 'right_wheel' and the sign of z"),
+        ("edit", 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"`'),
+    ],
+)
+def test_levels(level: str, says: str) -> None:
+    """Each level says more; only the last one has the edit, in no format below it."""
+    [hint] = hints(MISTAKES, "--hints", level)["right-wheel-forward"]
+    assert hint["message"].startswith(says)
+    assert bool(hint["edits"]) == (level == "edit")
+    for kind in ("terminal", "markdown", "github", "junit", "sarif", "gradescope", "codeclimate"):
+        text = run(("grade", MISTAKES, "--hints", level, "--format", kind)).stdout.decode()
+        assert ("-1.57" in text) == (level == "edit"), kind
+
+
+def test_level_none() -> None:
+    """It has no hints, and searches none."""
+    assert hints(MISTAKES, "--hints", "none") == {}
+
+
+@pytest.mark.parametrize("wanted", LEVELS)
+@pytest.mark.parametrize("allowed", ["", *LEVELS])
+def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path: Path) -> None:
+    """--hints lowers the level of the rubric, whose default is cause."""
+    level = min(allowed or "cause", wanted, key=LEVELS.index)
+    found = hints(MISTAKES, "--rubric", lab(tmp_path, allowed), "--hints", wanted)
+    expected = hints(MISTAKES, "--hints", level)
+    assert {name: [hint["message"] for hint in some] for name, some in found.items()} == {
+        name: [hint["message"] for hint in some] for name, some in expected.items()
+    }
+
+
+def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
+    """It gets full marks, and only the lines of the edits differ."""
+    done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
+    assert done.returncode == 1
+    assert b"42 -> 70 of 70 points" in done.stderr
+    assert run(("grade", tmp_path / "fixed.urdf")).returncode == 0
+    before, after = MISTAKES.read_bytes().split(b"\n"), (tmp_path / "fixed.urdf").read_bytes().split(b"\n")
+    differing = [number for number, pair in enumerate(zip(before, after, strict=True), 1) if pair[0] != pair[1]]
+    assert differing == [6, 39, 65, 73, 99]
+
+
+def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
+    """Each file is written under its path in the submission."""
+    submission = ROOT / "submissions/setup-as-created"
+    (tmp_path / "in").mkdir()
+    for name in ("my_robot/setup.py", "my_robot/urdf/my_robot.urdf"):
+        assert (submission / name).is_file()
+    copy = tmp_path / "in"
+    for file in submission.rglob("*"):
+        if file.is_file() and file.name != "expected.toml":
+            target = copy / file.relative_to(submission)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(file.read_bytes())
+    urdf = copy / "my_robot/urdf/my_robot.urdf"
+    urdf.write_text(urdf.read_text().replace("0 0.6 0 1", "0 1 0 1"))
+    done = run(("grade", copy, "--fix", tmp_path / "fixed.urdf"))
+    assert done.returncode == 2
+    assert b"the edits change 2 files" in done.stderr
+    (tmp_path / "out").mkdir()
+    run(("grade", copy, "--fix", tmp_path / "out"))
+    written = sorted(path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*"))
+    assert written == ["my_robot/setup.py", "my_robot/urdf/my_robot.urdf"]
+    assert "0 0.6 0 1" in (tmp_path / "out/my_robot/urdf/my_robot.urdf").read_text()
+
+
+@pytest.mark.parametrize("kind", ["same", "symlink", "hard link", "inside"])
+def test_fix_never_overwrites_what_is_graded(kind: str, tmp_path: Path) -> None:
+    """Neither by its name, nor by a link, nor another file of the folder that is graded."""
+    graded_file = tmp_path / "lab" / "robot.urdf"
+    graded_file.parent.mkdir()
+    graded_file.write_bytes(MISTAKES.read_bytes())
+    path, target = graded_file, graded_file
+    if kind == "symlink":
+        target = tmp_path / "link.urdf"
+        target.symlink_to(graded_file)
+    elif kind == "hard link":
+        target = tmp_path / "hard.urdf"
+        target.hardlink_to(graded_file)
+    elif kind == "inside":
+        path, target = graded_file.parent, graded_file.parent / "other.txt"
+        target.write_text("mine")
+    done = run(("grade", path, "--fix", target))
+    assert done.returncode == 2
+    assert done.stderr.decode().count("\n") == 1
+    assert graded_file.read_bytes() == MISTAKES.read_bytes()
+    assert kind != "inside" or target.read_text() == "mine"
+
+
+def test_fix_of_nothing(tmp_path: Path) -> None:
+    """Nothing is written where nothing is to be fixed."""
+    done = run(("grade", REFERENCE, "--fix", tmp_path / "fixed.urdf"))
+    assert done.returncode == 0
+    assert b"no edit to make" in done.stderr
+    assert not (tmp_path / "fixed.urdf").exists()
+
+
+@pytest.mark.parametrize("arguments", [("--hints", "cause"), ("--watch",)])
+def test_fix_needs_edits(arguments: tuple[str, ...], tmp_path: Path) -> None:
+    """It is refused below the level edit, and with --watch, which never ends."""
+    done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf", *arguments))
+    assert done.returncode == 2
+    assert done.stderr.startswith(b"grader: --")
+    assert not (tmp_path / "fixed.urdf").exists()
+
+
+def test_a_rubric_that_shows_no_edits_writes_no_fix(tmp_path: Path) -> None:
+    """The level of the rubric counts, whatever --hints says."""
+    done = run(("grade", MISTAKES, "--rubric", lab(tmp_path, "cause"), "--fix", tmp_path / "f.urdf", "--hints", "edit"))
+    assert done.returncode == 2
+    assert b"the rubric lab6 allows cause" in done.stderr
+
+
+def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The report has no hints then, and standard error says so."""
+
+    def fail(self: Search) -> Search:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(Search, "run", fail)
+    done = run(("grade", MISTAKES, "--format", "json"))
+    assert done.returncode == 1
+    assert json.loads(done.stdout)["score"] == 42
+    assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
+
+
+def test_a_hint_that_was_taken_is_named() -> None:
+    """It is taken if its edit is in the file, and what it gains passes now."""
+    from dataclasses import replace
+
+    from grader.grading.grade import grade
+    from grader.grading.hints.hinting import hinted
+    from grader.submission.opening import read_submission
+
+    sample = SAMPLES["several-mistakes"]
+    submission = sample.open()
+    before = hinted(sample.grade(), submission, "edit").report
+    text = MISTAKES.read_text()
+    green = text.replace("0 1 0 1", "0 0.6 0 1")
+    after = grade(sample.rubric, read_submission(green.encode(), identity="a", path="my_robot.urdf"))
+    assert taken_hints(before, after) == [
+        'hint taken: Change `rgba="0 1 0 1"` to `rgba="0 0.6 0 1"` (line 6): base-green passes, +6 points.'
+    ]
+    otherwise = text.replace("0 1 0 1", "0.0 0.60 0 1")
+    assert (
+        taken_hints(
+            before, grade(sample.rubric, read_submission(otherwise.encode(), identity="a", path="my_robot.urdf"))
+        )
+        == []
+    )
+    assert taken_hints(replace(after), after) == []
