@@ -1,7 +1,8 @@
 """Measure the hints: python -m tests.hints.measure [--count 100] [--seed 1] [--bad] [BASE...], or --samples, or --students.
 
 Every mutant of the correct robots that loses points is searched. For each family it prints how many have a verified hint
-(`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`).
+(`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`), and how many
+have a hint that changes the line of the mistake (`there`).
 """
 
 import argparse
@@ -19,12 +20,13 @@ from tests.samples import SAMPLES
 
 
 class Marks(NamedTuple):
-    """Whether there is a hint, and whether all hints lead to full marks, to the same robot, and to the same text."""
+    """Whether there is a hint, and all lead to full marks, to the same robot, to the same text; and one is at the mistake."""
 
     has_hint: bool
     is_full: bool
     is_same: bool
     is_undo: bool
+    is_there: bool
 
 
 class Verdict(NamedTuple):
@@ -36,19 +38,21 @@ class Verdict(NamedTuple):
     is_undo: bool
     differs: tuple[str, ...]
     milliseconds: float
+    place: tuple[str, int] = ("", 0)  # path and line of the mistake, where they are known
 
     @property
     def marks(self) -> "Marks":
         """What the hints achieve, from little to much."""
         full = self.hints.is_full
-        return Marks(bool(self.hints.found), full, full and not self.differs, self.is_undo)
+        lines = {(edit.path, edit.line) for found in self.hints.found for edit in found.edits}
+        return Marks(bool(self.hints.found), full, full and not self.differs, self.is_undo, self.place in lines)
 
     @property
     def told(self) -> str:
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
         for found in self.hints.found:
-            lines.append(f"     + {message(found, 'edit', self.hints.fixed)}")
+            lines.append(f"     + {message(found, 'edit', self.hints.submission)}")
             lines.append(f"       {found.proposal.said} [{found.proposal.named}]")
         left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
@@ -66,7 +70,8 @@ def verdicts(base: Base, count: int | None, random: Random) -> Iterator[Verdict]
         if hints.lost:
             differs = differences(expected, behaviour(hints.fixed))
             is_undo = hints.is_full and text_after(base, hints) == base.text
-            yield Verdict(mutant.family, f"{base.name} {mutant.change}", hints, is_undo, tuple(differs), milliseconds)
+            label, place = f"{base.name} {mutant.change}", (base.path, mutant.line)
+            yield Verdict(mutant.family, label, hints, is_undo, tuple(differs), milliseconds, place)
 
 
 def of_samples() -> Iterator[Verdict]:
@@ -97,9 +102,9 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
     for verdict in found:
         families.setdefault(verdict.family, []).append(verdict)
         families.setdefault("all", []).append(verdict)
-    yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'steps':>8}{'ms':>8}"
+    yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'there':>8}{'steps':>8}{'ms':>8}"
     for family, those in sorted(families.items(), key=lambda pair: mean(found.marks.is_full for found in pair[1])):
-        shares = "".join(f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(4))
+        shares = "".join(f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(5))
         steps, time = (
             mean(found.hints.steps for found in those),
             mean(found.milliseconds for found in those),

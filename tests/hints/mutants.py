@@ -18,9 +18,10 @@ _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", 
 
 
 class Mutant(NamedTuple):
-    """A text with one mistake: its family, and the change in words."""
+    """A text with one mistake: its family, the line of the mistake, and the change in words."""
 
     family: str
+    line: int
     change: str
     text: str
 
@@ -75,7 +76,7 @@ def mutants(text: str) -> Iterator[Mutant]:
         if mutant not in seen:
             seen.add(mutant)
             line = text.count("\n", 0, start) + 1
-            yield Mutant(family, f"line {line}: {_short(text[start:end])} -> {_short(new)}", mutant)
+            yield Mutant(family, line, f"line {line}: {_short(text[start:end])} -> {_short(new)}", mutant)
 
 
 Change = tuple[str, int, int, str]  # the family, two offsets, and the text that comes between them

@@ -4,7 +4,7 @@ from random import Random
 
 import pytest
 
-from tests.hints.measure import verdicts
+from tests.hints.measure import of_samples, of_students, verdicts
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, hints_for
 
@@ -16,17 +16,26 @@ def test_single_mistakes_get_hints_that_undo_them() -> None:
     """At least 95 % of the mutants have a verified hint, and 90 % become a robot that behaves like the correct one."""
     found = [verdict for base in BASES.values() for verdict in verdicts(base, _MUTANTS, Random(14))]
     assert len(found) >= 100
-    assert sum(bool(verdict.hints.found) for verdict in found) >= 0.95 * len(found)
+    assert sum(verdict.marks.has_hint for verdict in found) >= 0.95 * len(found)
     assert sum(verdict.marks.is_same for verdict in found) >= 0.90 * len(found)
+    values = [verdict for verdict in found if not verdict.family.startswith("element")]
+    assert sum(verdict.marks.is_there for verdict in values) >= 0.90 * len(values)
+
+
+def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
+    """All but those in which a whole file is missing or empty."""
+    left = {verdict.label for verdict in of_samples() if not verdict.marks.is_full}
+    assert left <= {"empty-urdf", "pictures-only", "no-launch-folder", "no-package-xml"}
 
 
 def test_mistakes_of_students_get_hints_that_lead_to_full_marks() -> None:
-    """At least 95 % of mistakes that cost points have a verified hint, and 90 % lose nothing with all edits."""
-    found = [hints_for(mistake.base.changed(mistake.text)) for mistake in MISTAKES.values()]
-    costly = [hints for hints in found if hints.lost]
+    """At least 95 % of mistakes that cost points lose nothing with all edits, and 90 % become the correct robot."""
+    found = list(of_students())
+    costly = [verdict for verdict in found if verdict.hints.lost]
     assert len(costly) >= 75
-    assert sum(bool(hints.found) for hints in costly) >= 0.95 * len(costly)
-    assert sum(hints.is_full for hints in costly) >= 0.90 * len(costly)
+    assert sum(verdict.marks.has_hint for verdict in costly) >= 0.95 * len(costly)
+    assert sum(verdict.marks.is_full for verdict in costly) >= 0.95 * len(costly)
+    assert sum(verdict.marks.is_same for verdict in costly) >= 0.90 * len(costly)
 
 
 def test_a_link_without_name_gets_its_name() -> None:

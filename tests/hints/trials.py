@@ -34,6 +34,7 @@ class Hints(NamedTuple):
     `fixed` is the submission with all edits, `left` are the criteria that still lose points then.
     """
 
+    submission: Submission
     lost: tuple[str, ...]
     found: list[Found]
     fixed: Submission
@@ -60,7 +61,9 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     search = search_for(submission, results, rubric)
     budget = Trials(rubric, submission, results).left
     fixed = with_edits(submission, search.final.edits)
-    return Hints(_lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left)
+    return Hints(
+        submission, _lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left
+    )
 
 
 def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> Search:
