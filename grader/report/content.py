@@ -132,11 +132,10 @@ def pending_reason(result: Result) -> str:
     return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 
 
-def carried_text(cause: str, results: tuple[Result, ...]) -> str:
-    """Return which criteria fail only because of the mistake that another one counts, and have their points."""
+def carried_text(results: tuple[Result, ...]) -> str:
+    """Return which criteria fail only because of a mistake that is counted elsewhere, and have their points."""
     names = enumerated([result.criterion.id for result in results])
-    fail = "fails" if len(results) == 1 else "fail"
-    return printable(f"Points given: {names} {fail} only because of the mistake that is already counted in {cause}.")
+    return printable(f"{names} {'fails' if len(results) == 1 else 'fail'}. {results[0].why_given}")
 
 
 def skipped_text(cause: str, results: tuple[Result, ...]) -> str:

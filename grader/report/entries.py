@@ -55,6 +55,7 @@ def show_failure(failure: Failure, page: Page) -> None:
     room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *hints, *skipped)
     message = _fitted([_message(details, result)], max(room, _MIN_MESSAGE), console)
     reasons = _fitted(_reasons(details, result, page), room - _height(*message), console)
+    page.shown.update(" ".join(text.plain.split()) for text in reasons)  # one that is cut is shown again
     console.print()
     put(console, Text("\n").join((*head, *message, *excerpt, *hints, *reasons, *skipped)))
 
@@ -79,15 +80,15 @@ def _message(details: Details, result: Result) -> Text:
 
 
 def _excerpt(details: Details, page: Page) -> Iterator[Text]:
-    source = page.report.submission.source(details.location.path) if details.location is not None else None
-    if source is not None and details.location is not None:
-        yield excerpt_block(page.console, source, details.location, INDENT)
+    where = details.location
+    source = page.report.submission.source(where.path) if where is not None else None
+    if where is not None and source is not None and source.line(where.line).strip():
+        yield excerpt_block(page.console, source, where, INDENT)
 
 
 def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
     """Yield the feedback where there is no hint, and what should be where the message does not say it; on a full page both."""
     if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
-        page.shown.add(details.feedback)
         yield Text(details.feedback, "italic")
     if details.expected and (page.is_verbose or result.outcome.expected is None):
         yield Text(details.expected, "dim")
@@ -100,11 +101,14 @@ def _skipped(failure: Failure, page: Page) -> Text:
 
 
 def _fitted(texts: Iterable[Text], room: int, console: Console) -> list[Text]:
-    """Return texts in lines, as many as there is room for."""
+    """Return texts in as many lines as there is room for; one is cut only if two lines of it remain."""
     fitted: list[Text] = []
     for text in texts:
         left = room - _height(*fitted)
-        if left > 0:
+        whole = block(console, text, INDENT)
+        if _height(whole) <= left:
+            fitted.append(whole)
+        elif left > 1:
             fitted.append(block(console, text, INDENT, most=left))
     return fitted
 
