@@ -12,7 +12,7 @@ from grader.robot.shapes import bounding_radius
 from grader.robot.transforms import Transform, Vector, minus, rotation_from_rpy
 
 _SAME = 2e-3  # metres
-_ROUND = 3e-4
+_STEP, _ROUND = 5e-4, 2e-4  # metres, radians
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UP = 2  # the component z
 
@@ -33,12 +33,12 @@ class Poses:
             yield from self._axis(link)
             return
         for frame in self._frames(link, joint.parent):
-            yield _rounded(frame.translation if attribute == "xyz" else frame.rpy)
+            yield from _round(frame.translation if attribute == "xyz" else frame.rpy)
         if attribute == "xyz":
             for centre in self._centres(link, joint.parent):
                 for visual in self._visuals(link)[:1]:
                     offset = Transform(rotation_from_rpy(joint.origin.rpy)).rotate(visual.origin.xyz)
-                    yield _rounded(minus(centre.translation, offset))
+                    yield from _round(minus(centre.translation, offset))
 
     def visual(self, link: str, index: int, attribute: str) -> Iterator[Values]:
         """Yield the values of a visual's origin with which it is where the reference shows it, if that is at its frame."""
@@ -46,7 +46,7 @@ class Poses:
         for pose in self._centres(link, link) if index < len(shown) else ():
             shape = shown[index].geometry
             if isinstance(shape, Mesh) or hypot(*pose.translation) <= bounding_radius(shape) + _SAME:
-                yield _rounded(pose.translation if attribute == "xyz" else pose.rpy)
+                yield from _round(pose.translation if attribute == "xyz" else pose.rpy)
 
     def is_shown_right(self, link: str) -> bool:
         """Return whether what a link shows is where the reference shows it."""
@@ -109,12 +109,11 @@ class Poses:
         return self.robot.robot.link(link).visuals if self.robot.robot.has_link(link) else ()
 
 
-def _rounded(values: Values) -> Values:
-    """Return values in few digits: those of a robot that is built by hand are round."""
-    return tuple(
-        next(short for short in (round(value, 3), round(value, 4)) if abs(short - value) < _ROUND) + 0.0
-        for value in values
-    )
+def _round(values: Values) -> Iterator[Values]:
+    """Yield values in few digits: those of a robot that is built by hand are round, and others only happen to fit."""
+    short = tuple(round(round(value / _STEP) * _STEP, 4) + 0.0 for value in values)
+    if all(abs(value - other) < _ROUND for value, other in zip(values, short, strict=True)):
+        yield short
 
 
 def _pose(robot: Configuration, link: str, relative_to: str) -> Transform | None:
