@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from posixpath import commonprefix
+from os.path import commonprefix
 from typing import NamedTuple
 
 from grader import markup
@@ -32,6 +32,11 @@ class Proposal(NamedTuple):
         return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
 
     @property
+    def is_expected(self) -> bool:
+        """Return whether it is made from the reference, and is no rewriting."""
+        return self.rank < TOGETHER and self.rank != TRIED
+
+    @property
     def said(self) -> str:
         """The change in words: "negate the roll of the joint of 'right_wheel'"."""
         return self._completed(self.action)
@@ -45,15 +50,16 @@ class Proposal(NamedTuple):
         return text.replace("{}", f" of {self.of}" if self.of else "")
 
 
-# The ranks of proposals: what is misplaced goes where it belongs, a value that the reference has, one that is computed from it, one
-# that is tried without knowing it, all values of a link at once, whole elements of the reference.
-MOVED, KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(6)
+# The ranks of proposals: what is misplaced goes where it belongs; a value that the reference has; one that puts the link where the
+# reference has it, and that a family of mistakes explains; one that is tried without knowing it; one that only fits; all values of
+# a link at once; whole elements of the reference.
+MOVED, KNOWN, SOLVED, TRIED, FITTED, TOGETHER, REWRITTEN = range(7)
 
 
 def _changed(old: str, new: str) -> int:
     """Return the number of characters that differ: without those that both begin or end with."""
-    start = len(commonprefix((old, new)))
-    end = len(commonprefix((old[start:][::-1], new[start:][::-1])))
+    start = len(commonprefix((old, new)))  # noqa: RUF071  of texts, not of paths
+    end = len(commonprefix((old[start:][::-1], new[start:][::-1])))  # noqa: RUF071
     return len(old) + len(new) - 2 * (start + end)
 
 

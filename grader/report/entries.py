@@ -10,7 +10,8 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import Details, location_text, result_details, status_of
+from grader.report.details import Details, location_text, result_details, short_hint, status_of
+from grader.report.diff import diff_lines
 from grader.report.order import Failure
 from grader.text import printable, signed_points
 
@@ -22,6 +23,7 @@ _SYMBOLS = {
     "pending": ("?", "?"),
     "errored": ("!", "!"),
 }
+_CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
 
@@ -48,13 +50,11 @@ def show_failure(failure: Failure, page: Page) -> None:
     result, console = failure.result, page.console
     details = result_details(result, page.report)
     head, excerpt = [_head(failure, details, console)], [*_excerpt(details, page)]
-    hints = [
-        block(console, Text(hint.message, "bold"), INDENT) for hint in details.hints[: None if page.is_verbose else 1]
-    ]
     skipped = [_skipped(failure, page)] if failure.skipped else []
-    room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *hints, *skipped)
-    message = _fitted([_message(details, result)], max(room, _MIN_MESSAGE), console)
-    reasons = _fitted(_reasons(details, result, page), room - _height(*message), console)
+    room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *skipped)
+    hints = [*_hints(details, room - _MIN_MESSAGE, page)]
+    message = _fitted([_message(details, result)], max(room - _height(*hints), _MIN_MESSAGE), console)
+    reasons = _fitted(_reasons(details, result, page), room - _height(*hints, *message), console)
     page.shown.update(" ".join(text.plain.split()) for text in reasons)  # one that is cut is shown again
     console.print()
     put(console, Text("\n").join((*head, *message, *excerpt, *hints, *reasons, *skipped)))
@@ -84,6 +84,17 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
     source = page.report.submission.source(where.path) if where is not None else None
     if where is not None and source is not None and source.line(where.line).strip():
         yield excerpt_block(page.console, source, where, INDENT)
+
+
+def _hints(details: Details, room: int, page: Page) -> Iterator[Text]:
+    """Yield the first hint, without its edits if there is no room for them; on a full page all hints, with the lines that change."""
+    for hint in details.hints[: None if page.is_verbose else 1]:
+        whole = block(page.console, Text(hint.message, "bold"), INDENT)
+        is_short = _height(whole) > room and bool(hint.edits and hint.action)
+        yield block(page.console, Text(short_hint(hint), "bold"), INDENT) if is_short else whole
+        if page.is_verbose:
+            lines = diff_lines(hint.edits, page.report.submission.source)
+            yield from (block(page.console, Text(line, _CHANGES.get(line[0], "dim")), 2 * INDENT) for line in lines)
 
 
 def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:

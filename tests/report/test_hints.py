@@ -61,6 +61,27 @@ def test_a_hint_is_never_cut() -> None:
     assert "wrong\u2026" in text
 
 
+def test_a_hint_without_room_is_described() -> None:
+    """What it changes and which criteria pass; the lines that change are in the whole report."""
+    report = hinted()
+    change = "Change " + " ".join(f"part{number}" for number in range(80))
+    results = tuple(
+        result._replace(hints=tuple(hint._replace(message=change, action="negate the roll") for hint in result.hints))
+        for result in report.results
+    )
+    short, whole = (
+        render(replace(report, results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
+    )
+    words = (
+        "Negate the roll (1 edit): right-wheel-forward and right-wheel-axis pass, +7 points. --verbose shows what to"
+    )
+    assert words in " ".join(short.split())
+    assert "part79" not in short
+    assert "part79." in whole
+    assert '    +      <origin xyz="-0.15 -0.2 0" rpy="-1.57 0 0" />\n' in whole
+    assert all(len(lines.splitlines()) < 10 for lines in short.split("\n\n")[1:8])
+
+
 def test_a_manual_mark_leaves_no_hint() -> None:
     """What a person has graded is not to be changed."""
     report = hinted()

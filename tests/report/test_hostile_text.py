@@ -59,6 +59,7 @@ def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:
 def assert_harmless(report: Report, base: Base, expected: Mapping[Format, Any] | None = None) -> None:
     """Assert that every format is valid, harmless, and has the same structure as with harmless text."""
     expected = harmless_structures(report, base) if expected is None else expected
+    is_harmless(render(report, Format.TERMINAL, base, verbose=True))
     for kind in Format:
         text = render(report, kind, base)
         is_harmless(text, kind)

@@ -5,7 +5,7 @@ from decimal import Decimal
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.edits import REWRITTEN, TRIED, Proposal
+from grader.edits import FITTED, REWRITTEN, Proposal
 from grader.grading.hints.targets import targets_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined
 from grader.grading.rubric import Criterion
@@ -153,7 +153,7 @@ class Search:
         lost = state.failed
         for option in self._options(state, wanted, lost):
             options.append(option)
-            is_enough = len(option.passes) == len(lost) and option.proposal.rank <= TRIED
+            is_enough = len(option.passes) == len(lost) and option.proposal.rank <= FITTED
             if is_enough and self._proven(state, option.proposal, wanted[0]):
                 break
         return options
@@ -161,8 +161,8 @@ class Search:
     def _best_of(self, state: State, name: str, options: Sequence[Option], ranks: range) -> Proposal | None:
         """Return a single edit, or two where these gain more; else all values of a link, or whole elements of the reference."""
         passing = [option for option in options if name in option.passes]
-        single = [option for option in passing if option.proposal.rank <= TRIED]
-        whole = [option for option in passing if TRIED < option.proposal.rank in ranks]
+        single = [option for option in passing if option.proposal.rank <= FITTED]
+        whole = [option for option in passing if FITTED < option.proposal.rank in ranks]
         best = self._best(state, name, single)
         more = [option for option in single if best is None or _promised(state.results, option) > best.gain]
         two = self._repaired(state, name, more)
@@ -188,13 +188,13 @@ class Search:
 
     def _repaired(self, state: State, name: str, options: Iterable[Option]) -> "_Proven | None":
         """Return two edits: the first makes a criterion pass and others fail, which the second repairs."""
-        likely = [option for option in options if option.proposal.rank < TRIED]
+        likely = [option for option in options if option.proposal.is_expected]
         for option in sorted(likely, key=lambda option: _promise(state.results, option))[:_MAX_REPAIRED]:
             first = option.proposal
             middle = self.trials.applied(state, first.edits)
             broken = [middle.lost] if middle is not None and middle.lost else []
             for second in self._options(middle, broken, broken) if middle is not None and broken else ():
-                if second.passes and second.proposal.rank <= TRIED:
+                if second.passes and second.proposal.rank <= FITTED:
                     edits = joined(state.submission, first.edits, second.proposal.edits)
                     proven = self._proven(state, _pair_of(first, second.proposal, edits), name)
                     if proven is not None:
@@ -211,7 +211,7 @@ class Search:
         plausible = [
             option.proposal
             for option in options
-            if option.proposal.rank < TRIED and option.proposal.link in (*links.shown, *links.moved)
+            if option.proposal.is_expected and option.proposal.link in (*links.shown, *links.moved)
         ]
         pairs = (pair for pair in combinations(plausible, 2) if pair[0].link == pair[1].link)
         for _, (first, second) in zip(range(_MAX_PAIRS), pairs, strict=False):
@@ -240,6 +240,7 @@ class Search:
         if state is None or state.lost:
             return False
         gains = gained(start.results, state.results)
+        edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed)
         if name in gains:
             self.found.append(Found(proposal, edits, gains, after))
         return name in gains

@@ -12,6 +12,7 @@ from grader.robot.shapes import bounding_radius
 from grader.robot.transforms import Transform, Vector, minus, rotation_from_rpy
 
 _SAME = 2e-3  # metres
+_ROUND = 3e-4
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UP = 2  # the component z
 
@@ -109,7 +110,11 @@ class Poses:
 
 
 def _rounded(values: Values) -> Values:
-    return tuple(round(value, 4) + 0.0 for value in values)
+    """Return values in few digits: those of a robot that is built by hand are round."""
+    return tuple(
+        next(short for short in (round(value, 3), round(value, 4)) if abs(short - value) < _ROUND) + 0.0
+        for value in values
+    )
 
 
 def _pose(robot: Configuration, link: str, relative_to: str) -> Transform | None:

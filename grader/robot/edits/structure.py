@@ -222,7 +222,7 @@ def inner(
     if wanted is None:
         if found is not None and tag not in ("origin", "axis"):
             yield Proposal(
-                draft.remove(found), f"the <{tag}>{{}}, which should not be there", f"remove the <{tag}>{{}}", of, link
+                draft.remove(found), f"an error in the <{tag}>{{}}", f"correct or remove the <{tag}>{{}}", of, link
             )
     elif found is None:
         yield Proposal(

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.edits import KNOWN, SOLVED, TOGETHER, TRIED, Proposal
+from grader.edits import FITTED, KNOWN, SOLVED, TOGETHER, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import BLIND, COMPONENTS, Change, HalfLength, Slot, Values, is_close, named, written
 from grader.robot.edits.poses import Poses, halves_of_joint, halves_of_visual
@@ -50,7 +50,7 @@ def _proposals(draft: Draft, found: Sequence[Number], halves: tuple[HalfLength, 
         for wanted, rank in number.wanted:
             if not is_close(slot.attribute, slot.values, wanted):
                 change, is_named = named(slot, wanted)
-                yield from _changed(draft, number, change, link, KNOWN if is_named else rank)
+                yield from _changed(draft, number, change, link, SOLVED if is_named and rank > SOLVED else rank)
         for family in BLIND:
             for change in family(slot):
                 yield from _changed(draft, number, change, link, TRIED)
@@ -163,7 +163,7 @@ def _of(owner: Element | None, tag: str, attribute: str) -> tuple[Values, ...]:
 def _wanted(attribute: str, known: Iterable[Values], solved: Iterable[Values]) -> tuple[tuple[Values, int], ...]:
     """Return expected values with their ranks, each once."""
     found: list[tuple[Values, int]] = []
-    for values, rank in (*((values, KNOWN) for values in known), *((values, SOLVED) for values in solved)):
+    for values, rank in (*((values, KNOWN) for values in known), *((values, FITTED) for values in solved)):
         if not any(is_close(attribute, values, other) for other, _ in found):
             found.append((values, rank))
     return tuple(found)
