@@ -13,9 +13,10 @@ from time import perf_counter
 from typing import NamedTuple
 
 from grader.grading.hints.words import message
+from tests.hints.behaviour import behaviour, differences
 from tests.hints.mutants import mutants
 from tests.hints.students import MISTAKES
-from tests.hints.trials import BASES, Base, Hints, behaviour, differences, hints_for, text_after
+from tests.hints.trials import BASES, Base, Hints, hints_for, text_after
 from tests.samples import SAMPLES
 
 

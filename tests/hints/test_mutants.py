@@ -62,6 +62,12 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
     [
         ("outer-face-y", ('xyz="-0.15 0.25 0"', 'xyz="-0.15 -0.25 0"')),
         ("mount-of-the-wheel-wrong-side", ('xyz="-0.15 -0.2 0"', 'xyz="-0.15 0.2 0"')),
+        ("mount-wrong-x", ('xyz="0.3 0 0.2"', 'xyz="0.15 0 0.2"')),
+        ("mount-typo", ('link="rigth_mount"', 'link="right_mount"')),
+        ("pasted-joint-keeps-child", ('link="left_wheel"', 'link="right_wheel"')),
+        ("both-wheels-one-name", ('name="left_wheel"', 'name="right_wheel"')),
+        ("colour-called-colour", ("<colour", "<color")),
+        ("xacro-macro-outward", ('outward="1"', 'outward="-1"')),
         ("mount-of-the-wheel-turned", ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')),
     ],
 )
