@@ -92,6 +92,17 @@ def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path:
     }
 
 
+def test_a_rubric_without_a_reference(tmp_path: Path) -> None:
+    """What its criteria say, and families of mistakes, are tried all the same."""
+    rubric = lab(tmp_path, "edit")
+    kept = [line for line in rubric.read_text().splitlines() if not line.startswith("reference")]
+    rubric.write_text("\n".join(kept))
+    edits = {name: some[0]["edits"][0]["new"] for name, some in hints(MISTAKES, "--rubric", rubric).items()}
+    assert edits["base-green"] == 'rgba="0 0.6 0 1"'
+    assert edits["lidar-frame"] == 'xyz="0.15 0 0.225"'
+    assert edits["right-wheel-forward"] == 'xyz="0 0 -1"'
+
+
 def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
     """It gets full marks, and only the lines of the edits differ."""
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))

@@ -9,12 +9,14 @@ from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
+from grader.robot.edits.families import Values
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
+_NUMBERS = ("xyz", "size", "radius", "length", "colour")  # arguments of checks
 NO_TARGETS = Targets((), ())
 
 
@@ -54,9 +56,21 @@ class Proposing:
             places = [
                 result.outcome.location for result in state.results.values() if result.outcome.location is not None
             ]
-            found += proposals(draft, reference, shown, moved, anchors, places)
+            found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria))
         return found
 
 
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
+
+
+def _given(criteria: Iterable[Criterion]) -> dict[str, dict[str, Values]]:
+    """Return the numbers that the arguments of criteria give for links."""
+    given: dict[str, dict[str, Values]] = {}
+    for criterion in criteria:
+        for name in _NUMBERS:
+            value = criterion.arguments.get(name)
+            if value is not None and isinstance(link := criterion.arguments.get("link"), str):
+                numbers = tuple(value) if isinstance(value, list | tuple) else (value,)
+                given.setdefault(link, {})[name] = tuple(map(float, numbers))
+    return given

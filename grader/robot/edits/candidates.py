@@ -1,16 +1,18 @@
 """The edits of a robot that may undo a mistake, the most plausible first."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grader.edits import KNOWN, REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
-from grader.robot.edits.families import written
+from grader.robot.edits.families import Values, written
+from grader.robot.edits.materials import coloured
 from grader.robot.edits.misplaced import misplaced
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
 from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
 from grader.source import Location
 
+_NOTHING: Mapping[str, Mapping[str, Values]] = {}
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
@@ -21,12 +23,13 @@ def proposals(
     moved: Sequence[str],
     anchors: Sequence[str],
     places: Iterable[Location] = (),
+    given: Mapping[str, Mapping[str, Values]] = _NOTHING,
 ) -> list[Proposal]:
     """Return edits of what links show, and of the parent joints of the links that are `moved`: those at the places of failures first.
 
-    `anchors` are the links in whose frames poses are measured.
+    `anchors` are the links in whose frames poses are measured, and `given` are expected numbers of links, by attribute.
     """
-    poses = Poses(draft.robot, reference.robot, anchors)
+    poses = Poses(draft.robot, reference.robot, anchors, given)
     found: dict[frozenset[object], Proposal] = {}
     for correction in draft.source.corrections():
         found[frozenset(correction.edits)] = Proposal(*correction)
@@ -54,6 +57,8 @@ def _of_link(
     if is_shown:
         yield from visual_values(draft, reference, poses, link)
         yield from moved_offsets(draft, poses, link)
+        for colour in poses.given(link, "colour") if reference is draft else ():
+            yield from coloured(draft, link, colour)
     yield from structure_proposals(draft, reference, link, is_moved=is_moved)
     if is_moved:
         yield from together(draft, reference, poses, link)

@@ -5,7 +5,7 @@ from itertools import islice
 
 from grader.edits import Proposal
 from grader.robot.edits.draft import Draft, child_of
-from grader.robot.edits.families import Slot, named, written
+from grader.robot.edits.families import Slot, Values, named, written
 from grader.robot.edits.values import values_of
 from grader.robot.model import Material
 from grader.xml.parsing import Element
@@ -87,6 +87,20 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
                 Proposal(edits, "the colour", f"set the colour{{}} to {colour}", of, link)
                 for edits in draft.set(inside, "rgba", colour)
             )
+
+
+def coloured(draft: Draft, link: str, colour: Values) -> Iterator[Proposal]:
+    """Give the material of a link the channels that a criterion expects."""
+    own = draft.link(link)
+    used = next(own.iter("material"), None) if own is not None else None
+    defined = draft.material(used.get("name") or "") if used is not None else None
+    inside = child_of(defined, "color") if defined is not None else None
+    given = values_of(inside.get("rgba") or "") if inside is not None else ()
+    if inside is not None and len(given) >= len(colour):
+        wanted = (*colour, *given[len(colour) :])
+        change, _ = named(Slot("rgba", given), wanted)
+        for edits in draft.set(inside, "rgba", written(wanted)):
+            yield Proposal(edits, change.cause, change.action, f"the visual of {link!r}", link)
 
 
 def _is_alike_text(definition: Element, wanted: Material) -> bool:

@@ -1,6 +1,6 @@
 """The origins and axes that put a link where the reference has it, whatever frames the robot uses."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
 
 from grader.errors import MissingElement, NotDecided
@@ -20,9 +20,21 @@ _UP = 2  # the component z
 class Poses:
     """A robot and the reference, each with its joints at 0; `anchors` are links in whose frames the lab measures."""
 
-    def __init__(self, robot: Robot, reference: Robot, anchors: Sequence[str]) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        reference: Robot,
+        anchors: Sequence[str],
+        given: Mapping[str, Mapping[str, Values]],
+    ) -> None:
         self.robot, self.reference = Configuration(robot), Configuration(reference)
         self._anchors = anchors
+        self._given = given
+
+    def given(self, link: str, name: str) -> tuple[Values, ...]:
+        """Return the numbers that a criterion expects of a link."""
+        values = self._given.get(link, {}).get(name)
+        return (values,) if values is not None else ()
 
     def joint(self, link: str, tag: str, attribute: str) -> Iterator[Values]:
         """Yield the values of a joint's origin or axis with which the link's frame, or what it shows, is right."""

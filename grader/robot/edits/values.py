@@ -117,12 +117,16 @@ def _of_joint(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterat
     of = f"the joint of {link!r}"
     turns = joint.get("type") not in ("fixed", "floating")
     for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), *((("axis", "xyz"),) if turns else ())):
+        known = (
+            *_of(other, tag, attribute),
+            *(poses.given(link, "xyz") if (tag, attribute) == ("origin", "xyz") else ()),
+        )
         yield Number(
             joint,
             tag,
             attribute,
             of,
-            _wanted(_slot_name(tag, attribute), _of(other, tag, attribute), poses.joint(link, tag, attribute)),
+            _wanted(_slot_name(tag, attribute), known, poses.joint(link, tag, attribute)),
         )
 
 
@@ -141,7 +145,7 @@ def _of_visuals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iter
         for name in ("size", "radius", "length", "scale") if shape is not None else ():
             if shape is not None and shape.get(name) is not None:
                 values = like.get(name) if like is not None else None
-                known = (values_of(values),) if values is not None else ()
+                known = (*((values_of(values),) if values is not None else ()), *poses.given(link, name))
                 yield Number(shape, "", name, of, _wanted(name, known, ()))
 
 
