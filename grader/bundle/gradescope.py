@@ -40,7 +40,19 @@ def autograder_zip(rubric: Rubric) -> bytes:
     files["requirements.txt"] = "".join(f"{requirement}\n" for requirement in needed).encode()
     if not rubric.is_shipped:
         files[_RUBRIC] = rubric.data
+    files |= _reference(rubric, f"{_PACKAGE.name}/rubrics" if rubric.is_shipped else "")
     return _zip_of(files)
+
+
+def _reference(rubric: Rubric, folder: str) -> dict[str, bytes]:
+    """Return the files of the reference solution, by which hints are found; none where it is not below the rubric's folder."""
+    root = rubric.path.parent
+    place = root / rubric.reference
+    if not rubric.reference or rubric.hints == "none" or ".." in PurePosixPath(rubric.reference).parts:
+        return {}
+    paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
+    own = (path for path in paths if not any(part.startswith(".") or part == "__pycache__" for part in path.relative_to(root).parts))
+    return {str(PurePosixPath(folder, *path.relative_to(root).parts)): path.read_bytes() for path in own}
 
 
 def _zip_of(files: dict[str, bytes]) -> bytes:

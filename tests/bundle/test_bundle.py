@@ -47,8 +47,10 @@ def test_the_files(bundle: Path) -> None:
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
     rendered = {name for name in names if name.startswith("grader/")}
-    assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
-    assert [name for name in names if "rubrics/" in name] == RUBRICS
+    reference = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6").rglob("*") if path.is_file()}
+    assert reference
+    assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
+    assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
     assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
     assert list(names) == sorted(names)
 

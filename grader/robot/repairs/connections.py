@@ -36,6 +36,9 @@ def end_repairs(site: Site) -> Iterator[Proposal]:
             if attribute != "link":
                 edits = site.draft.rename_attribute(end, attribute, "link")
                 yield own.propose(edits, "the name of the attribute link", "correct the name of the attribute link")
+        is_known = bool(given) and site.robots.reference.link(given or "") is not None
+        if given and is_known:  # the joint has the right name, and the link another one
+            yield from _link_repairs(site, given)
         near = closest(given or "", links)
         names = dict.fromkeys([*([near] if near else []), *_plausible(own, role)])
         for name in names:
@@ -46,7 +49,7 @@ def end_repairs(site: Site) -> Iterator[Proposal]:
             )
             for edits in ways:
                 yield own.propose(edits, f"the name of the {role}", f"correct the name of the {role}")
-        if given:
+        if given and not is_known:
             yield from _link_repairs(site, given)
     yield own.propose(site.draft.remove(joint), "a joint that connects nothing", "remove the joint")
 
