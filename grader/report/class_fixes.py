@@ -11,6 +11,7 @@ from grader.report.console import wrapped
 from grader.source import Edit
 from grader.text import counted, counted_points, enumerated, printable
 
+_NOTE = "Tried on each different robot: the criteria pass, nothing that passed fails."
 _INDENT = 8
 _MAX_EDITS, _MAX_LINES, _MAX_NAMED = 4, 6, 4
 _MAX_WIDTH = 200  # characters of a line of a student's file
@@ -20,6 +21,7 @@ def print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
     """Print edits with the number of students who need them. Text of submissions is never interpreted as markup."""
     console.print()
     console.print(Text("Edits that would fix the most", style="bold"))
+    wrapped(console, Text(_NOTE, style="dim"), 2)
     for fix in fixes:
         who = Text(f"{counted(fix.count, 'student')}: ", style="bold")
         wrapped(console, who + Text(printable(fix.action)), 4, Text("  "))

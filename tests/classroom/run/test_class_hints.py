@@ -125,6 +125,7 @@ def saved(top: Path, name: str) -> Done:
 def test_a_class_is_grouped_by_the_proven_edit(graded: Path) -> None:
     """Each change with the number of students, the most frequent first, with its diff, its criteria and points."""
     assert section(saved(graded, "stats.txt")) == (
+        "  Tried on each different robot: the criteria pass, nothing that passed fails.\n"
         "  5 students: negate the roll of the joint of 'right_wheel'\n"
         '        - rpy="1.57 0 0"\n'
         '        + rpy="-1.57 0 0"\n'
@@ -210,12 +211,12 @@ def test_a_manual_mark_settles_a_criterion(top: Path) -> None:
 def test_text_of_students_is_escaped(tmp_path: Path) -> None:
     """Comments in an element that is replaced neither colour the terminal, nor reverse it, nor command a runner."""
     sneaky = "<!-- [red]\u202e\n::error::x -->"
-    text = (ROOT / "submissions/wheel-typo-0.0025/my_robot.urdf").read_text(encoding="utf-8")
-    at = text.index("<visual>", text.index('<link name="left_wheel"')) + len("<visual>")
+    text = (ROOT / "submissions/caster-a-cylinder/my_robot.urdf").read_text(encoding="utf-8")
+    at = text.index("<geometry>", text.index('<link name="caster_wheel"')) + len("<geometry>")
     make(tmp_path / "class", {"ash.urdf": text[:at] + sneaky + text[at:]})
     batch(tmp_path)
     shown, as_json = section(stats(tmp_path)), stats(tmp_path, "--format", "json").stdout
-    assert "- <visual><!-- [red]\\u202e" in shown
+    assert "- <geometry><!-- [red]\\u202e" in shown
     assert not re.search(r"^\s*::", shown, re.MULTILINE)
     for output in (shown, as_json):
         assert "\u202e" not in output
