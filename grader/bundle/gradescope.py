@@ -51,7 +51,11 @@ def _reference(rubric: Rubric, folder: str) -> dict[str, bytes]:
     if not rubric.reference or rubric.hints == "none" or ".." in PurePosixPath(rubric.reference).parts:
         return {}
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
-    own = (path for path in paths if not any(part.startswith(".") or part == "__pycache__" for part in path.relative_to(root).parts))
+    own = (
+        path
+        for path in paths
+        if not any(part.startswith(".") or part == "__pycache__" for part in path.relative_to(root).parts)
+    )
     return {str(PurePosixPath(folder, *path.relative_to(root).parts)): path.read_bytes() for path in own}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
-from grader.grading.levels import LEVELS, Level
+from grader.grading.levels import Level
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
 from grader.usecases import Progress, Warn
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from grader.grading.report import Fix, Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
-    from grader.submission.submission import Submission
 
 _DEFAULT_RUBRIC = "lab6"  # of the command line
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
@@ -102,7 +101,7 @@ def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -
     result = grade_submission(request, warn, show_progress)
     save_reports(request, result, modes)
     if request.fix is not None and result.fix is not None:
-        from grader.usecases.fix import write_fix  # late: few ask for it
+        from grader.usecases.hints import write_fix  # late: few ask for it
 
         warn(write_fix(request.fix, request.path, result.report, result.fix))
     return result
@@ -143,30 +142,13 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
-    report, fix = _with_hints(request, report, submission, warn)
+    fix = None
+    if report.has_failures or request.fix is not None or request.hints is not None:
+        from grader.usecases.hints import with_hints  # late: many submissions lose nothing
+
+        report, fix = with_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
     base = _base_of(request.path, is_single=submission.is_single)
     return GradeResult(report, base, exit_code(report, threshold), fix)
-
-
-def _with_hints(
-    request: GradeRequest, report: "Report", submission: "Submission", warn: Warn
-) -> "tuple[Report, Fix | None]":
-    """Return the report with hints, and the edits of all of them if they are to be written. Raises InputError."""
-    allowed = report.rubric.hints
-    level = allowed if request.hints is None else min(allowed, request.hints, key=LEVELS.index)
-    if request.fix is not None and level != "edit":
-        cause = f"the rubric {report.rubric.id} allows" if level == allowed else "--hints asks for"
-        raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
-    if level == "none" or not (report.has_failures or request.fix is not None):
-        return report, None
-    from grader.grading.hints.hinting import fixed, hinted  # late: many submissions lose nothing
-
-    try:
-        found = hinted(report, submission, level)
-    except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
-        warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
-        return report, None
-    return found.report, fixed(found, submission) if request.fix is not None else None
 
 
 def remove_reports(request: GradeRequest) -> dict[Path, int]:

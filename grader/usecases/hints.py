@@ -1,12 +1,38 @@
-"""grader grade --fix: write the submission with the edits of all hints, never over the files that are graded."""
+"""Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes their edits."""
 
 import os
 from pathlib import Path
 
 from grader.errors import InputError
+from grader.grading.hints.hinting import fixed, hinted
+from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
+from grader.submission.submission import Submission
 from grader.text import counted, format_points, printable, printable_path
+from grader.usecases import Warn
 from grader.usecases.writing import save_bytes
+
+
+def with_hints(
+    report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
+) -> tuple[Report, Fix | None]:
+    """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
+
+    The rubric's level is the highest. Raises InputError where edits are to be written, but not shown.
+    """
+    allowed = report.rubric.hints
+    level = allowed if wanted is None else min(allowed, wanted, key=LEVELS.index)
+    if is_fixed and level != "edit":
+        cause = f"the rubric {report.rubric.id} allows" if level == allowed else "--hints asks for"
+        raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
+    if level == "none" or not (report.has_failures or is_fixed):
+        return report, None
+    try:
+        found = hinted(report, submission, level)
+    except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
+        warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
+        return report, None
+    return found.report, fixed(found, submission) if is_fixed else None
 
 
 def write_fix(target: Path, graded: str, report: Report, fix: Fix) -> str:
