@@ -11,6 +11,7 @@ from grader.robot.model import Material
 from grader.xml.parsing import Element
 
 _MAX_NAMES = 4  # materials that may be meant
+_CLOSE = 0.01  # of a channel
 
 
 def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
@@ -21,72 +22,80 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     wanted = next((shown.material for shown in expected[:1] if shown.material is not None), None)
     if visual is None or wanted is None:
         return
-    of, used = f"the visual of {link!r}", child_of(visual, "material")
-    for known in islice((found for found in draft.robot.materials if _is_alike(found, wanted)), _MAX_NAMES):
-        if used is None:
-            yield Proposal(
-                draft.insert(visual, f'<material name="{known.name}"/>'),
-                "the material{}, which is missing",
-                "name the material{}",
-                of,
-                link,
-            )
-        elif used.get("name") != known.name:
-            yield from (
-                Proposal(edits, "the name of the material", "correct the name of the material{}", of, link)
-                for edits in draft.set(used, "name", known.name)
-            )
-    name = (used.get("name") if used is not None else None) or wanted.name
+    used = child_of(visual, "material")
+    found = _missing(draft, visual, wanted) if used is None else _used(draft, used, wanted)
+    yield from (proposal._replace(of=f"the visual of {link!r}", link=link) for proposal in found)
+
+
+def _missing(draft: Draft, visual: Element, wanted: Material) -> Iterator[Proposal]:
+    """Name a material with the expected colour, or define one in the visual."""
+    cause = "the material{}, which is missing"
+    for known in _alike(draft, wanted):
+        yield Proposal(draft.insert(visual, f'<material name="{known.name}"/>'), cause, "name the material{}")
+    yield Proposal(draft.insert(visual, _definition(wanted.name, wanted)), cause, "add the material{}")
+
+
+def _used(draft: Draft, used: Element, wanted: Material) -> Iterator[Proposal]:
+    """Correct the name that a visual uses, the definition of that name, or its colour."""
+    name = used.get("name") or wanted.name
+    cause, action = "the name of the material", "correct the name of the material{}"
+    others = [known.name for known in _alike(draft, wanted)] + ([wanted.name] if len(used) else [])
+    for other in dict.fromkeys(others):
+        if other != used.get("name"):
+            yield from (Proposal(edits, cause, action) for edits in draft.set(used, "name", other))
     for found in draft.root.iterchildren("material"):
-        if found.get("name") != name and _is_alike_text(found, wanted):
+        if found.get("name") != name and _is_alike(_channels(found), wanted):
             for edits in draft.set(found, "name", name):
-                yield Proposal(edits, "the name of the material's definition", f"call the material {name!r}", "", link)
-    colour = " ".join(f"{channel:g}" for channel in wanted.rgba)
-    definition = f'<material name="{name}">\n  <color rgba="{colour}"/>\n</material>'
-    defined = draft.material(name)
-    if used is None:
-        yield Proposal(
-            draft.insert(visual, definition), "the material{}, which is missing", "add the material{}", of, link
-        )
-        return
-    if name != wanted.name and len(used):
-        for edits in draft.set(used, "name", wanted.name):
-            yield Proposal(edits, "the name of the material", "correct the name of the material{}", of, link)
+                yield Proposal(
+                    edits, "the name of a definition", "correct the name of the definition of the material{}"
+                )
     if name != wanted.name and draft.material(wanted.name) is None:
-        second = definition.replace(f'"{name}"', f'"{wanted.name}"', 1)
-        edits = (*draft.set(used, "name", wanted.name)[0], *draft.insert(draft.root, second))
-        yield Proposal(edits, "the material", "name another material{}, and define it", of, link)
-    yield Proposal(
-        draft.insert(draft.root, definition),
-        f"the material {name!r}{{}}, which is not defined under <robot>",
-        "define the material{}",
-        of,
-        link,
+        definition = draft.insert(draft.root, _definition(wanted.name, wanted))
+        edits = (*draft.set(used, "name", wanted.name)[0], *definition)
+        yield Proposal(edits, "the material", "name another material{}, and define it")
+    cause = "the material{}, which is not defined under <robot>"
+    yield Proposal(draft.insert(draft.root, _definition(name, wanted)), cause, "define the material{}")
+    defined = draft.material(name)
+    for found in dict.fromkeys(found for found in (defined, used) if found is not None):
+        if found is defined or len(found):
+            yield from _colours(draft, found, wanted)
+
+
+def _colours(draft: Draft, definition: Element, wanted: Material) -> Iterator[Proposal]:
+    """Give a definition the expected colour; its opacity stays if that is enough."""
+    inside, colour = child_of(definition, "color"), written(wanted.rgba)
+    if inside is None:
+        edits = draft.insert(definition, f'<color rgba="{colour}"/>')
+        yield Proposal(edits, "the colour{}, which is missing", "add the colour{}")
+        return
+    given = _channels(definition)
+    change, is_named = named(Slot("rgba", given), wanted.rgba)
+    if is_named:
+        for edits in draft.set(inside, "rgba", written(change.values)):
+            yield Proposal(edits, change.cause, change.action)
+    for text in dict.fromkeys((written((*wanted.rgba[:3], *given[3:4])), colour)):
+        if len(text.split()) == len(wanted.rgba) and inside.get("rgba") != text:
+            for edits in draft.set(inside, "rgba", text):
+                yield Proposal(edits, "the colour", f"set the colour{{}} to {text}")
+
+
+def _alike(draft: Draft, wanted: Material) -> Iterator[Material]:
+    return islice((known for known in draft.robot.materials if _is_alike(known.rgba, wanted)), _MAX_NAMES)
+
+
+def _definition(name: str, wanted: Material) -> str:
+    return f'<material name="{name}">\n  <color rgba="{written(wanted.rgba)}"/>\n</material>'
+
+
+def _channels(definition: Element) -> Values:
+    colour = child_of(definition, "color")
+    return values_of(colour.get("rgba") or "") if colour is not None else ()
+
+
+def _is_alike(channels: Values, wanted: Material) -> bool:
+    return len(channels) == len(wanted.rgba) and all(
+        abs(a - b) < _CLOSE for a, b in zip(channels, wanted.rgba, strict=True)
     )
-    for found in (found for found in (defined, used) if found is not None and (found is defined or len(found))):
-        inside = child_of(found, "color")
-        if inside is None:
-            yield Proposal(
-                draft.insert(found, f'<color rgba="{colour}"/>'),
-                "the colour{}, which is missing",
-                "add the colour{}",
-                of,
-                link,
-            )
-        elif inside.get("rgba") != colour:
-            given = values_of(inside.get("rgba") or "")
-            change, is_named = named(Slot("rgba", given), wanted.rgba)
-            if is_named:
-                for edits in draft.set(inside, "rgba", written(change.values)):
-                    yield Proposal(edits, change.cause, change.action, of, link)
-            if len(given) == 4:  # the opacity stays
-                kept = written((*wanted.rgba[:3], given[3]))
-                for edits in draft.set(inside, "rgba", kept):
-                    yield Proposal(edits, "the colour", f"set the colour{{}} to {kept}", of, link)
-            yield from (
-                Proposal(edits, "the colour", f"set the colour{{}} to {colour}", of, link)
-                for edits in draft.set(inside, "rgba", colour)
-            )
 
 
 def coloured(draft: Draft, link: str, colour: Values) -> Iterator[Proposal]:
@@ -101,13 +110,3 @@ def coloured(draft: Draft, link: str, colour: Values) -> Iterator[Proposal]:
         change, _ = named(Slot("rgba", given), wanted)
         for edits in draft.set(inside, "rgba", written(wanted)):
             yield Proposal(edits, change.cause, change.action, f"the visual of {link!r}", link)
-
-
-def _is_alike_text(definition: Element, wanted: Material) -> bool:
-    colour = child_of(definition, "color")
-    values = values_of(colour.get("rgba") or "") if colour is not None else ()
-    return len(values) == 4 and all(abs(a - b) < 0.01 for a, b in zip(values, wanted.rgba, strict=True))
-
-
-def _is_alike(one: Material, other: Material) -> bool:
-    return all(abs(a - b) < 0.01 for a, b in zip(one.rgba, other.rgba, strict=True))
