@@ -181,6 +181,13 @@ def test_a_sample_is_corrected(name: str) -> None:
     assert _corrected(SAMPLES[name].open()) is not None
 
 
+def test_another_build_type_comes_with_its_setup_py() -> None:
+    """A package for CMake becomes one for Python with a setup.py only: without it, it could not be built."""
+    after = _corrected(SAMPLES["cmake-package"].open())
+    assert after is not None
+    assert content(after, "my_robot/setup.py") == content(_REFERENCE, SETUP)
+
+
 def test_the_name_of_a_package_gets_no_slash() -> None:
     """A path without a slash is never corrected in the name of the package, which ROS 2 would not find then."""
     broken = _with_mistake(LAUNCH, URDF_PATH, "share + 'my_robot.urdf'")

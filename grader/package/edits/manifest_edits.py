@@ -62,6 +62,8 @@ def typed(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
         for edit in _type(source, manifest.type_location, wanted):
             also = ", and create its setup.py" if needed else ""
             yield proposal([edit, *needed], "the build type in package.xml", f"set the build type to {wanted}{also}")
+        if needed:
+            return  # with the build type alone, the package could not be built
     yield from readable(task)
 
 
