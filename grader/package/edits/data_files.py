@@ -17,6 +17,7 @@ from grader.source import Edit
 _WHAT = "setup.py"
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 _MAX_EDITS = 3  # of one entry
+_MAX_ENTRIES = 8  # that are wrong in the same way
 
 
 def files_of(task: Task, kind: str, name: str) -> list[str]:
@@ -47,7 +48,7 @@ def entries(
 
 def _stops(task: Task, file: PythonFile, setup: Setup) -> Iterator[Proposal]:
     """Yield edits of what stops the build: a folder, a file that does not exist, a text instead of a list."""
-    for stop in setup.stops:
+    for stop in setup.stops[:_MAX_ENTRIES]:
         if stop.path.rstrip("/") in task.package.tree.folders:
             for edit in _narrower(task, file, stop.path, stop.at.line):
                 yield proposal(
@@ -100,7 +101,7 @@ def _patterns(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) 
     """Yield edits of patterns that match no file."""
     folders = list(dict.fromkeys(posixpath.dirname(path) for path in files))
     endings = list(dict.fromkeys(_ending(path) for path in files))
-    for empty in setup.empty:
+    for empty in setup.empty[:_MAX_ENTRIES]:
         folder, _, name = empty.pattern.replace("\\", "/").rpartition("/")
         yield from _renamed_folders(task, folder, folders)
         near = [closest(folder, task.package.tree.folders)] if folder else []
@@ -133,15 +134,15 @@ def _ending(path: str) -> str:
 def _targets(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits of the folder that files are installed in, where it is not below the package's share folder."""
     share = f"share/{task.package.name}"
-    for copy in setup.copies:
-        if copy.source in files and not copy.target.startswith(f"{share}/"):
-            wanted = posixpath.join(share, below_share(task, copy.source), posixpath.basename(copy.source))
-            for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
-                yield proposal(
-                    [edit],
-                    f"a wrong folder of an entry of data_files in {_WHAT}",
-                    f"install the files below the package's share folder in {_WHAT}",
-                )
+    outside = [it for it in setup.copies if it.source in files and not it.target.startswith(f"{share}/")]
+    for copy in outside[:_MAX_ENTRIES]:
+        wanted = posixpath.join(share, below_share(task, copy.source), posixpath.basename(copy.source))
+        for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
+            yield proposal(
+                [edit],
+                f"a wrong folder of an entry of data_files in {_WHAT}",
+                f"install the files below the package's share folder in {_WHAT}",
+            )
 
 
 def _second_entries(file: PythonFile, setup: Setup, files: Sequence[str]) -> Iterator[Proposal]:

@@ -42,6 +42,11 @@ def restored(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         )
 
 
+def rewritten(source: Source, wanted: str) -> Edit:
+    """Return the edit that gives a file the whole text that it should have; a byte-order mark stays."""
+    return source.edit(int(source.text.startswith("\ufeff")), len(source.text), wanted)
+
+
 def _lines(text: str) -> list[_Line]:
     lines = text.removeprefix("\ufeff").split("\n")
     return [_Line(line[: len(line) - len(line.lstrip())], line.strip()) for line in lines]

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from grader.edits import Proposal
-from grader.package.edits.difference import restored
+from grader.package.edits.difference import restored, rewritten
 from grader.package.edits.launch_files import found
 from grader.package.edits.launch_nodes import started
 from grader.package.edits.python_file import PythonFile
@@ -98,7 +98,7 @@ def _readable(task: Task, launch: Launch, source: Source, wanted: str | None) ->
     if wanted:
         yield from restored(source, wanted, _WHAT)
         if faults:
-            whole = source.edit(0, len(source.text), wanted)
+            whole = rewritten(source, wanted)
             yield proposal([whole], "a launch file that does not start", "use the lab's launch file", is_rewrite=True)
 
 

@@ -18,6 +18,7 @@ from grader.source import Edit, Source
 _WHAT = "the launch file"
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
 _KEYWORDS = {"urdf": "parameters", "rviz": "arguments"}
+_MAX_REFERENCES = 8
 _MAX_EDITS = 3  # of one path
 _SHARE_FUNCTION = "get_package_share_directory"
 _EXPANDUSER = re.compile(r"(?:os\.path\.)?expanduser\(\s*$")
@@ -27,7 +28,7 @@ def found(task: Task, launch: Launch, source: Source, like: PythonFile | None) -
     """Yield edits with which a launch file finds its files: of all together, then of one path each."""
     file = PythonFile(source)
     ways: list[Sequence[list[Edit]]] = []
-    for named in launch.references:
+    for named in launch.references[:_MAX_REFERENCES]:
         if named.path is None and named.reason:
             ways.append(_as_reference(file, like, named))
         elif named.path is not None and not _is_found(task, named.path):

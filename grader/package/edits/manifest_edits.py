@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from grader.edits import Proposal
-from grader.package.edits.difference import restored
+from grader.package.edits.difference import restored, rewritten
 from grader.package.edits.setup_edits import new_setup
 from grader.package.edits.spelling import respelt
 from grader.package.edits.task import Task, proposal
@@ -62,6 +62,8 @@ def typed(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
         for edit in _type(source, manifest.type_location, wanted):
             also = ", and create its setup.py" if needed else ""
             yield proposal([edit, *needed], "the build type in package.xml", f"set the build type to {wanted}{also}")
+        if needed:
+            return  # with the build type alone, the package could not be built
     yield from readable(task)
 
 
@@ -96,7 +98,7 @@ def readable(task: Task) -> Iterator[Proposal]:
     yield from respelt(source, [wanted], lines, MANIFEST)
     yield from restored(source, wanted, MANIFEST)
     if manifest is not None and manifest.name is None:
-        whole = source.edit(0, len(source.text), wanted)
+        whole = rewritten(source, wanted)
         yield proposal(
             [whole], "a package.xml that ROS 2 cannot read", "write package.xml as in the lab", is_rewrite=True
         )

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import islice
 
 from grader.package.edits.python_file import PythonFile
 from grader.source import Edit, Source
@@ -9,6 +10,7 @@ from grader.source import Edit, Source
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
 _NAME = re.compile(r"\{[^{}]*\}")
 _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
+_MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
 
@@ -29,7 +31,7 @@ def pieces(source: Source) -> Iterator[tuple[int, int]]:
 def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
     """Return the edits of one text each with which a path becomes the wanted one; those nearest to a line first."""
     found: dict[Edit, int] = {}
-    for start, end in pieces(source):
+    for start, end in islice(pieces(source), _MAX_PIECES):
         piece = source.text[start:end]
         if piece.strip("./") and piece in actual:
             is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from grader.edits import Proposal
-from grader.package.edits.difference import restored
+from grader.package.edits.difference import restored, rewritten
 from grader.package.edits.spelling import respelt
 from grader.package.edits.task import Task, proposal
 from grader.package.rviz import Display, RvizFile, read_rviz, switched_on
@@ -165,7 +165,7 @@ def _readable(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
         yield from respelt(source, [wanted], lines, _WHAT)
         yield from restored(source, wanted, _WHAT)
         if rviz.fault is not None:
-            whole = source.edit(0, len(source.text), wanted)
+            whole = rewritten(source, wanted)
             yield proposal([whole], "an RViz file that RViz cannot read", "use the lab's RViz file", is_rewrite=True)
 
 
