@@ -9,6 +9,7 @@ from rich.console import Console
 
 from grader.checks.registry import CHECKS, describe
 from grader.grading.grade import grade
+from grader.grading.hints.hinting import hinted
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
@@ -85,9 +86,8 @@ def checks() -> str:
 def picture() -> str:
     """Return the report on a sample submission as a drawing of a terminal, in SVG."""
     rubric = load_rubric("lab6")
-    report = grade(
-        rubric, open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-    )
+    submission = open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+    report = hinted(grade(rubric, submission), submission, rubric.hints).report
     console = Console(
         record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
     )

@@ -18,7 +18,7 @@ from grader.usecases.writing import write_stdout
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
 _SAVE = "Also write a report to a file; repeatable."
 _FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
-_FIX = "Write the submission with the edits of all hints to a file, or a folder."
+_FIX = "Write the files that the hints change, with all edits, to a file or an existing folder."
 _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
@@ -43,7 +43,7 @@ def grade(
         bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
     ] = False,
     hints: Annotated[
-        Level | None, typer.Option(metavar="LEVEL", help="The most that hints tell: none, place, cause or edit.")
+        Level | None, typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit.")
     ] = None,
     fix: Annotated[Path | None, typer.Option(metavar="FILE", help=_FIX)] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,

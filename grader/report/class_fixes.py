@@ -11,7 +11,7 @@ from grader.report.console import wrapped
 from grader.source import Edit
 from grader.text import counted, counted_points, enumerated, printable
 
-_NOTE = "Tried on each different robot: the criteria pass, nothing that passed fails."
+_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 _INDENT = 8
 _MAX_EDITS, _MAX_LINES, _MAX_NAMED = 4, 6, 4
 _MAX_WIDTH = 200  # characters of a line of a student's file

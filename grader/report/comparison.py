@@ -26,16 +26,16 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     return [score, *(f"{change}: {_named(criteria)}" for change, criteria in rows)]
 
 
-def taken_hints(before: Report, after: Report) -> list[str]:
-    """Return the hints of the report before that were taken: their edits are in the files, and what they gain passes now."""
+def applied_hints(before: Report, after: Report) -> list[str]:
+    """Return the hints of the report before that were applied: their edits are in the files, and what they gain passes now."""
     passed = {result.criterion.id for result in after.results if result.outcome.status == "passed"}
     hints = dict.fromkeys(
-        hint.message for result in before.results for hint in result.hints if _is_taken(hint, passed, after)
+        hint.message for result in before.results for hint in result.hints if _is_applied(hint, passed, after)
     )
-    return [printable(f"hint taken: {message}") for message in hints]
+    return [printable(f"hint applied: {message}") for message in hints]
 
 
-def _is_taken(hint: Hint, passed: set[str], after: Report) -> bool:
+def _is_applied(hint: Hint, passed: set[str], after: Report) -> bool:
     sources = {path: after.submission.source(path) for path in {edit.renamed or edit.path for edit in hint.edits}}
     texts = {path: source.text for path, source in sources.items() if source is not None}
     is_there = all(edit.new.strip() in texts.get(edit.renamed or edit.path, "") for edit in hint.edits)

@@ -7,7 +7,7 @@ from grader.grading.report import Hint, Report, Result
 from grader.report.locations import calls_text
 from grader.report.order import hints_of
 from grader.source import Location
-from grader.text import counted, enumerated, printable, signed_points
+from grader.text import enumerated, printable, signed_points
 
 _MAX_NAMED = 2
 
@@ -103,4 +103,4 @@ def short_hint(hint: Hint) -> str:
     passes = (
         f"{enumerated(list(hint.gains), _MAX_NAMED)} {'passes' if len(hint.gains) == 1 else 'pass'}, {points} points"
     )
-    return sentence(f"{hint.action} ({counted(len(hint.edits), 'edit')}): {passes}. --verbose shows what to change")
+    return sentence(f"{hint.action}: {passes}. Run with --verbose to see the edit") if hint.action else hint.message

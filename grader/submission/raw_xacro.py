@@ -8,7 +8,7 @@ from grader.source import Edit
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
-_CAUSE = "the xacro in the URDF, which ROS 2 loads as it stands"
+_CAUSE = "the URDF contains xacro, but is loaded without xacro"
 
 
 def raw_xacro_proposals(submission: Submission) -> Iterator[Proposal]:
@@ -19,7 +19,7 @@ def raw_xacro_proposals(submission: Submission) -> Iterator[Proposal]:
     for path in submission.package.launch_files if submission.package is not None else ():
         source = submission.source(submission.package.path(path)) if submission.package is not None else None
         for edits in with_xacro(source) if source is not None else ():
-            yield Proposal(edits, _CAUSE, "run xacro on the URDF", "the launch file")
+            yield Proposal(edits, _CAUSE, "run xacro on the URDF")
     folder, slash, name = urdf.path.rpartition("/")
     renamed = f"{folder}{slash}{name.removesuffix('.urdf')}.urdf.xacro"
-    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _CAUSE, "end the name in .urdf.xacro", "the URDF")
+    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _CAUSE, "rename the URDF to *.urdf.xacro")

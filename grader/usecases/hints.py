@@ -8,9 +8,11 @@ from grader.grading.hints.hinting import fixed, hinted
 from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
-from grader.text import counted, format_points, printable, printable_path
+from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.writing import save_bytes
+
+_MAX_NAMED = 6
 
 
 def with_hints(
@@ -54,10 +56,10 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix) -> str:
         if is_folder:
             file.parent.mkdir(parents=True, exist_ok=True)
         save_bytes(file, data, (graded,))
-    gone = [f"; the file {printable(path)} has another name" for path, data in fix.files.items() if data is None]
+    gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
     score = f"{format_points(report.score)} -> {format_points(fix.report.score)} of {format_points(report.max_score)} points"
-    where = printable_path(target) if is_folder or len(written) > 1 else printable_path(next(iter(written)))
-    return f"--fix: {counted(len(written), 'file')} written to {where}: {score}{''.join(gone)}"
+    names = enumerated(list(map(printable, files)), _MAX_NAMED)
+    return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"
 
 
 def _refuse_input(file: Path, graded: str) -> None:

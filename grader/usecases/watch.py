@@ -11,7 +11,7 @@ from rich.text import Text
 from grader.errors import GraderError, InputError, RubricError
 from grader.grading.report import Report
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.comparison import comparison_lines, taken_hints, unchanged_line
+from grader.report.comparison import applied_hints, comparison_lines, unchanged_line
 from grader.report.console import wrapped
 from grader.report.formats import Format, render
 from grader.report.screen import draw
@@ -102,7 +102,7 @@ def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: b
             terminal.show(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
-    lines = [*comparison_lines(last[0], report), *taken_hints(last[0], report)] if last is not None else []
+    lines = [*comparison_lines(last[0], report), *applied_hints(last[0], report)] if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
     terminal.show(changes + render(report, Format.TERMINAL, screen=screen, verbose=verbose))
     return shown

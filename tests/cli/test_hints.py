@@ -8,7 +8,7 @@ import pytest
 
 from grader.grading.hints.search import Search
 from grader.grading.levels import LEVELS
-from grader.report.comparison import taken_hints
+from grader.report.comparison import applied_hints
 from tests.command_line import run
 from tests.samples import ROOT, SAMPLES
 
@@ -60,8 +60,11 @@ def test_no_hints_for_what_passes() -> None:
 @pytest.mark.parametrize(
     ("level", "says"),
     [
-        ("place", 'Look at `rpy="1.57 0 0"` (line 73): with this corrected, right-wheel-forward'),
-        ("cause", "Look at the sign of the roll of the joint of 'right_wheel' and the sign of z"),
+        (
+            "place",
+            'Check `rpy="1.57 0 0"` (line 73) and `xyz="0 0 0.025"` (line 65). Fixing this makes right-wheel-forward',
+        ),
+        ("cause", "Check lines 65 and 73: the sign of the roll of the joint of 'right_wheel' and the sign of z"),
         ("edit", 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"`'),
     ],
 )
@@ -198,8 +201,8 @@ def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) 
     assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
 
 
-def test_a_hint_that_was_taken_is_named() -> None:
-    """It is taken if its edit is in the file, and what it gains passes now."""
+def test_a_hint_that_was_applied_is_named() -> None:
+    """It is applied if its edit is in the file, and what it gains passes now."""
     from dataclasses import replace
 
     from grader.grading.grade import grade
@@ -212,14 +215,14 @@ def test_a_hint_that_was_taken_is_named() -> None:
     text = MISTAKES.read_text()
     green = text.replace("0 1 0 1", "0 0.6 0 1")
     after = grade(sample.rubric, read_submission(green.encode(), identity="a", path="my_robot.urdf"))
-    assert taken_hints(before, after) == [
-        'hint taken: Change `rgba="0 1 0 1"` to `rgba="0 0.6 0 1"` (line 6): base-green passes, +6 points.'
+    assert applied_hints(before, after) == [
+        'hint applied: Change `rgba="0 1 0 1"` to `rgba="0 0.6 0 1"` (line 6): base-green passes, +6 points.'
     ]
     otherwise = text.replace("0 1 0 1", "0.0 0.60 0 1")
     assert (
-        taken_hints(
+        applied_hints(
             before, grade(sample.rubric, read_submission(otherwise.encode(), identity="a", path="my_robot.urdf"))
         )
         == []
     )
-    assert taken_hints(replace(after), after) == []
+    assert applied_hints(replace(after), after) == []

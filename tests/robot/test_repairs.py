@@ -13,7 +13,7 @@ NUMBERS = (
     ("xyz", "0,15; 0; 0,225", "0.15 0 0.225", "decimal commas and commas between numbers"),
     ("xyz", "0.15 0 0. 225", "0.15 0 0.225", "a space in a number"),
     ("xyz", "- 0.15 0.2 0", "-0.15 0.2 0", "a space after a sign"),
-    ("xyz", "--0.15 0 0", "-0.15 0 0", "a sign that is there twice"),
+    ("xyz", "--0.15 0 0", "-0.15 0 0", "a double sign"),
     ("size", "600mm 400mm 200mm", "0.6 0.4 0.2", "a unit after a number"),
     ("rpy", "-90\u00b0 0 0", "-1.5708 0 0", "a unit after a number"),
     ("rpy", "pi/2 0 ${-pi / 2}", "1.5708 0 -1.5708", "an expression, which ROS 2 does not evaluate"),
@@ -48,14 +48,14 @@ def test_numbers_that_ros_reads_need_no_repair(text: str) -> None:
 
 
 TAGS = (
-    ('<parent="base_link"/>', '<parent link="base_link"/>', "the name of an attribute, which is missing"),
-    ('<origin="0 0 0.1" rpy="0 0 0"/>', '<origin xyz="0 0 0.1" rpy="0 0 0"/>', "the name of an attribute, which is missing"),
+    ('<parent="base_link"/>', '<parent link="base_link"/>', "the name of an attribute is missing"),
+    ('<origin="0 0 0.1" rpy="0 0 0"/>', '<origin xyz="0 0 0.1" rpy="0 0 0"/>', "the name of an attribute is missing"),
     ('<origin xyz="0 0 1" ="0 0 0" />', '<origin xyz="0 0 1" rpy="0 0 0" />', "a malformed tag"),
     ('<joint name="a", type="fixed">', '<joint name="a" type="fixed">', "a comma between attributes"),
     ("<joint name=a type=fixed>", '<joint name="a" type="fixed">', "the quotes, which are missing"),
     ("<link name=\u201ca\u201d/>", '<link name="a"/>', "typographic quotes"),
-    ('<mesh filename="package://a/b.stl scale="1 1 1"/>', '<mesh filename="package://a/b.stl" scale="1 1 1"/>', "a quote, which is missing"),
-    ('<originxyz="0 0 1"/>', '<origin xyz="0 0 1"/>', "the space after the name of a tag, which is missing"),
+    ('<mesh filename="package://a/b.stl scale="1 1 1"/>', '<mesh filename="package://a/b.stl" scale="1 1 1"/>', "a quote is missing"),
+    ('<originxyz="0 0 1"/>', '<origin xyz="0 0 1"/>', "the space after the name of a tag is missing"),
     ("<\\link>", "</link>", "a backslash in a tag"),
     ('<xml version="1.0"?>', '<?xml version="1.0"?>', "the XML declaration"),
     ("<- a comment ->", "<!-- a comment -->", "the start of a comment"),

@@ -1,6 +1,8 @@
 """Reports with hints, and submissions with the edits of all hints."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from decimal import Decimal
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -8,7 +10,7 @@ from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
-from grader.grading.hints.trials import Edits, Trials
+from grader.grading.hints.trials import Edits, Trials, costs_of
 from grader.grading.hints.words import message
 from grader.grading.levels import Level
 from grader.grading.report import Fix, Hint, Report
@@ -36,10 +38,11 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     results = {result.criterion.id: result for result in report.results}
     reference = _Reference(report.rubric)
     search = Search(Trials(report.rubric, submission, results), reference.draft, reference.package).run()
+    costs = costs_of(results)
     hints = {
         name: hint
         for found in reversed(search.found)
-        for hint in [_hint(found, level, submission, keep_edits=keep_edits)]
+        for hint in [_hint(found, level, submission, costs, keep_edits=keep_edits)]
         for name in found.gains
     }
     with_hints = [
@@ -59,11 +62,13 @@ def fixed(found: Hinted, submission: Submission) -> Fix:
     )
 
 
-def _hint(found: Found, level: Level, submission: Submission, *, keep_edits: bool) -> Hint:
+def _hint(
+    found: Found, level: Level, submission: Submission, costs: Mapping[str, Decimal], *, keep_edits: bool
+) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
     edits = found.edits if keep_edits or level == "edit" else ()
-    return Hint(message(found, level, submission), at, found.gains, edits, found.proposal.said)
+    return Hint(message(found, level, submission, costs), at, found.gains, edits, found.proposal.said)
 
 
 class _Reference:

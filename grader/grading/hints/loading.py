@@ -42,6 +42,7 @@ class Hint(NamedTuple):
     proposal: Proposal
     edits: Edits
     gains: Mapping[str, Decimal]
+    is_union: bool = False  # whether it is all others together
 
 
 class Repair(NamedTuple):
@@ -77,7 +78,9 @@ def repaired(trials: Trials, reference: Draft | None) -> Repair:
     hints = [_proven(trials, proposal) for proposal in groups if proposal.edits] if len(groups) > 1 else []
     known = {name for hint in hints if hint is not None for name in hint.gains}
     if set(gained(start.results, final.results)) - known:
-        hints.append(_proven(trials, _chained(groups, final.edits)))
+        chain = _proven(trials, _chained(groups, final.edits))
+        is_union = len(hints) > 1 and len([hint for hint in hints if hint is not None]) == len(groups)
+        hints.append(chain._replace(is_union=is_union) if chain is not None else None)
     return Repair([hint for hint in hints if hint is not None], final)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import REWRITTEN, Proposal
 from grader.grading.hints.choice import Choice, Option
 from grader.grading.hints.proposing import Proposing
-from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined
+from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, costs_of, gained, joined
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
 from grader.submission.urdf import Read
@@ -89,18 +89,15 @@ class Search:
         from grader.grading.hints.loading import repaired  # late: most robots load
 
         repair = repaired(self.trials, self._reference)
-        self.found += [Found(*hint) for hint in repair.hints]
+        for proposal, edits, gains, is_union in repair.hints:
+            own = Found(_UNION, edits, gains, tuple(self.found)) if is_union else Found(proposal, edits, gains)
+            self.found.append(own)
         self.final = repair.final
 
     def _by_cost(self, results: Results) -> list[str]:
         """Return the failed criteria, those with which most points are lost first."""
-        lost: dict[str, Decimal] = {}
-        for name, result in results.items():
-            if result.outcome.status in ("failed", "skipped") and not result.carried:
-                cause = result.because if result.because in results else None
-                lost[cause or name] = lost.get(cause or name, Decimal(0)) + result.criterion.points
-        failed = [name for name in lost if results[name].outcome.status == "failed"]
-        return sorted(failed, key=lambda name: (-lost[name], self._criteria[name].position))
+        costs = costs_of(results)
+        return sorted(costs, key=lambda name: (-costs[name], self._criteria[name].position))
 
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
         """Add a proven edit of the submission as it is: the edit alone, else together with one or all of those before it."""

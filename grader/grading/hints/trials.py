@@ -128,6 +128,16 @@ def is_worse(before: Result, after: Result) -> bool:
     return after.points < before.points
 
 
+def costs_of(results: Results) -> dict[str, Decimal]:
+    """Return what each failed criterion costs, with the criteria that are skipped because of it."""
+    lost: dict[str, Decimal] = {}
+    for name, result in results.items():
+        if result.is_lost:
+            cause = result.because if result.because in results else None
+            lost[cause or name] = lost.get(cause or name, Decimal(0)) + result.criterion.points
+    return {name: points for name, points in lost.items() if results[name].outcome.status == "failed"}
+
+
 def gained(before: Results, after: Results) -> dict[str, Decimal]:
     """Return the criteria that pass now and did not before, with the points that this gives."""
     return {

@@ -11,31 +11,53 @@ from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
 
 _MAX_NAMED = 4  # criteria and edits that are named
+_MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: Found, level: Level, submission: Submission) -> str:
-    """Return the hint in one line; the name of the URDF needs no mention."""
-    main = submission.path
-    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+def message(found: Found, level: Level, submission: Submission, costs: Mapping[str, Decimal]) -> str:
+    """Return the hint in one or two sentences; the name of the URDF needs no mention.
+
+    `costs` are the points that failed criteria cost: a hint is shown at the costliest one, and named after it.
+    """
     own = _own_edits(found)
-    gains = {
-        name: points for name, points in found.gains.items() if own or not any(name in one.gains for one in found.after)
-    }
+    before = {name for earlier in found.after for name in earlier.gains}
+    more = {name: points for name, points in found.gains.items() if name not in before}
+    passes = _outcome(more or found.gains, costs, also=bool(found.after))
+    earlier = f"the edit{'s' if len(found.after) > 1 else ''} for {_after(found, costs)}" if found.after else ""
     if not own:
-        text = f"The edits for {_after(found)} together"
-    elif level == "edit":
-        changes = _moves(own, main) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
-        changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
-        text = enumerated(changes, _MAX_NAMED + 1)
-    else:
-        text = f"look at {found.proposal.named if level == 'cause' else _quoted(own[0].old) or 'this place'} ({_where(own[0], main)})"
-    text = text[0].upper() + text[1:]
-    if own and found.after:
-        text += f", with the edits for {_after(found)}"
-    corrected = " with this corrected," if own and level != "edit" else ""
-    called = _calls(own, source) if source is not None else ""
-    return f"{text}{called}:{corrected} {_outcome(gains)}."
+        return f"With {earlier}, {passes}."
+    if level != "edit":
+        where = _places(own, submission) if level == "cause" else _marked(own, submission)
+        cause = f": {found.proposal.named}" if level == "cause" else ""
+        first = f"After {earlier}, check" if earlier else "Check"
+        return f"{first} {where}{cause}. Fixing this makes {_outcome(more or found.gains, costs, verb='pass')}."
+    changes = _moves(own, submission.path) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
+    changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
+    text = enumerated(changes, _MAX_NAMED + 1)
+    text = f"After {earlier}, {text}" if earlier else text[0].upper() + text[1:]
+    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+    return f"{text}{_calls(own, source) if source is not None else ''}: {passes}."
+
+
+def _marked(edits: list[Edit], submission: Submission) -> str:
+    """Return the texts to look at, each with its line."""
+    texts = [f"{_quoted(edit.old)} ({_where(edit, submission.path)})" for edit in edits if edit.old]
+    return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
+
+
+def _places(edits: list[Edit], submission: Submission) -> str:
+    """Return the lines to look at: lines 65 and 73; of another file with its name."""
+    files: dict[str, list[int]] = {}
+    for edit in edits:
+        if edit.path == submission.path or edit.path in submission.everything.files:
+            files.setdefault(edit.path, []).append(edit.line)
+    texts = []
+    for path, lines in files.items():
+        numbers = sorted(set(lines))
+        named = f"line{'s' if len(numbers) > 1 else ''} {enumerated([str(line) for line in numbers], _MAX_LINES)}"
+        texts.append(named if path == submission.path else f"{path}, {named}")
+    return "; ".join(texts) or "which files are missing"
 
 
 def _calls(edits: list[Edit], source: Source) -> str:
@@ -62,17 +84,22 @@ def _own_edits(found: Found) -> list[Edit]:
     return [edit for edit in found.edits if edit not in earlier]
 
 
-def _after(found: Found) -> str:
-    """Return earlier hints, each named by the criterion with most points that it makes pass."""
-    names = dict.fromkeys(max(before.gains, key=lambda name: before.gains[name]) for before in found.after)
+def _after(found: Found, costs: Mapping[str, Decimal]) -> str:
+    """Return earlier hints, each named by the criterion at which it is shown."""
+    names = dict.fromkeys(_ordered(before.gains, costs)[0] for before in found.after)
     return enumerated(list(names), _MAX_NAMED)
 
 
-def _outcome(gains: Mapping[str, Decimal]) -> str:
-    names = sorted(gains, key=lambda name: -gains[name])
+def _ordered(gains: Mapping[str, Decimal], costs: Mapping[str, Decimal]) -> list[str]:
+    """Return criteria, the one at which a hint is shown first."""
+    return sorted(gains, key=lambda name: (name not in costs, -costs.get(name, gains[name])))
+
+
+def _outcome(gains: Mapping[str, Decimal], costs: Mapping[str, Decimal], *, also: bool = False, verb: str = "") -> str:
     points = sum(gains.values(), Decimal(0))
     gain = f", +{counted_points(points)}" if points else ""
-    return f"{enumerated(names, _MAX_NAMED)} {'passes' if len(names) == 1 else 'pass'}{gain}"
+    passes = verb or f"{'also ' if also else ''}{'passes' if len(gains) == 1 else 'pass'}"
+    return f"{enumerated(_ordered(gains, costs), _MAX_NAMED)} {passes}{gain}"
 
 
 def _moves(edits: list[Edit], main: str | None) -> list[str]:
@@ -81,7 +108,7 @@ def _moves(edits: list[Edit], main: str | None) -> list[str]:
     if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
-    return [f"move {_quoted(old.old)} ({_where(old, main)}) to the place after {_where(new, main)}"]
+    return [f"move {_quoted(old.old)} ({_where(old, main)}) to after {_where(new, main)}"]
 
 
 def _change(edit: Edit, submission: Submission) -> str:

@@ -33,10 +33,10 @@ def started(launch: Launch, source: Source, nodes: Sequence[str], like: PythonFi
             found = [edits for wanted in choice[:1] if (edits := _restored(file, like, wanted))]
         for edits in found[:3]:
             names = " or ".join(choice)
-            yield proposal(edits, f"{names} is not started", f"let {_WHAT} start {names}")
+            yield proposal(edits, f"{_WHAT} does not start {names}", f"let {_WHAT} start {names}")
         whole += found[0] if found else []
     if len(missing) > 1:
-        yield proposal(_joined(whole), "nodes are not started", f"let {_WHAT} start the missing nodes")
+        yield proposal(_joined(whole), f"{_WHAT} does not start all nodes", f"let {_WHAT} start the missing nodes")
 
 
 def _joined(edits: Sequence[Edit]) -> list[Edit]:

@@ -99,7 +99,7 @@ def swapped(slot: Slot) -> Iterator[Change]:
         if slot.values[one] != slot.values[other]:
             names = f"{slot.component(one)} and {slot.component(other)}"
             values = _with(slot.values, {one: slot.values[other], other: slot.values[one]})
-            yield Change(values, f"the order of {names}{{}}", f"exchange {names}{{}}")
+            yield Change(values, f"{names}{{}} are swapped", f"swap {names}{{}}")
 
 
 def halved(slot: Slot) -> Iterator[Change]:
@@ -111,25 +111,24 @@ def halved(slot: Slot) -> Iterator[Change]:
                 value = slot.values[index] * factor
                 yield Change(
                     _with(slot.values, {index: value}),
-                    f"{name}{{}}, which is {'half' if factor > 1 else 'double'} of what it should be",
+                    f"{name}{{}}, which is {'half' if factor > 1 else 'twice'} the correct value",
                     f"{action} {name}{{}}",
                 )
             if len(slot.values) > 1:
                 values = tuple(value * factor for value in slot.values)
-                yield Change(values, f"the size{{}}, which is {'half' if factor > 1 else 'double'} of the full lengths", f"{action} {_called(slot)}{{}}")  # fmt: skip
+                yield Change(values, f"the size{{}}, which is {'half' if factor > 1 else 'twice'} the full lengths", f"{action} {_called(slot)}{{}}")  # fmt: skip
 
 
 def half_shapes(slot: Slot) -> Iterator[Change]:
     """Add or remove half a shape's height, radius or length: a lidar whose frame is at the top of the box, and half in it."""
     for half, index, name in slot.halves if slot.attribute == "xyz" else ():
-        for sign, verb, word in ((1, "add", "lacks"), (-1, "subtract", "has")):
+        for sign, verb, word in ((1, "add", "small"), (-1, "subtract", "large")):
             component = slot.component(index)
             values = _with(slot.values, {index: slot.values[index] + sign * half}) if slot.values else ()
-            excess = "" if sign > 0 else " too much"
             to = "to" if sign > 0 else "from"
             yield Change(
                 values,
-                f"{component}{{}}, which {word} half of {name}{excess}",
+                f"{component}{{}} is too {word} by half of {name}",
                 f"{verb} half of {name} {to} {component}{{}}",
             )
 

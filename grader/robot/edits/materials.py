@@ -29,7 +29,7 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
 
 def _missing(draft: Draft, visual: Element, wanted: Material) -> Iterator[Proposal]:
     """Name a material with the expected colour, or define one in the visual."""
-    cause = "the material{}, which is missing"
+    cause = "the material{} is missing"
     for known in _alike(draft, wanted):
         yield Proposal(draft.insert(visual, f'<material name="{known.name}"/>'), cause, "name the material{}")
     yield Proposal(draft.insert(visual, _definition(wanted.name, wanted)), cause, "add the material{}")
@@ -66,7 +66,7 @@ def _colours(draft: Draft, definition: Element, wanted: Material) -> Iterator[Pr
     inside, colour = child_of(definition, "color"), written(wanted.rgba)
     if inside is None:
         edits = draft.insert(definition, f'<color rgba="{colour}"/>')
-        yield Proposal(edits, "the colour{}, which is missing", "add the colour{}")
+        yield Proposal(edits, "the colour{} is missing", "add the colour{}")
         return
     given = _channels(definition)
     change, is_named = named(Slot("rgba", given), wanted.rgba)

@@ -24,7 +24,10 @@ def _moved(draft: Draft) -> Iterator[Proposal]:
         for place in _places(draft, element, parent):
             text = draft.text(element)
             there = draft.append(text) if place is draft.root else draft.insert(place, text)
-            cause, action = f"the place of the <{tag}>: in <{parent.tag}>", f"move the <{tag}> into <{place.tag}>"
+            cause, action = (
+                f"<{tag}> is inside <{parent.tag}>; it belongs in <{place.tag}>",
+                f"move the <{tag}> into <{place.tag}>",
+            )
             yield Proposal((*draft.remove(element), *there), cause, action, rank=MOVED)
 
 

@@ -55,7 +55,7 @@ def missing_link(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal
             text += f"\n\n{reference.text(other)}"
         rank = REWRITTEN if near else KNOWN
         edits = (*draft.append(text), *_materials(draft, reference, missing))
-        yield Proposal(edits, f"the link {link!r}, which is missing", f"add the link {link!r}", "", link, rank)
+        yield Proposal(edits, f"the link {link!r} is missing", f"add the link {link!r}", "", link, rank)
 
 
 def _materials(draft: Draft, reference: Draft, link: Element) -> Edits:
@@ -94,7 +94,7 @@ def duplicates(draft: Draft, link: str) -> Iterator[Proposal]:
     for found in reversed(same) if len(same) > 1 else ():
         yield Proposal(draft.remove(found), "the second link of this name", "remove one{}", f"the links {link!r}", link)
     for found in reversed(joints) if len(joints) > 1 else ():
-        cause = "the second joint of this name" if names.count(found.get("name")) > 1 else "the second parent joint"
+        cause = "the second joint of this name" if names.count(found.get("name")) > 1 else "a second parent joint"
         yield Proposal(draft.remove(found), cause, "remove one{}", f"the joints of {link!r}", link)
 
 
@@ -128,7 +128,7 @@ def exchanged_ends(draft: Draft, own: Element, of: str, link: str) -> Iterator[P
     parent, child = (child_of(own, role) for role in _ENDS)
     if parent is not None and child is not None and end_of(own, "parent") and end_of(own, "child"):
         edits = draft.exchange(parent, child, "link")
-        yield Proposal(edits, "parent and child{}, which are exchanged", "exchange parent and child{}", of, link)
+        yield Proposal(edits, "parent and child{} are swapped", "swap parent and child{}", of, link)
 
 
 def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> Iterator[Proposal]:
@@ -137,7 +137,7 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
     if end is None:
         yield Proposal(
             draft.insert(own, f'<{role} link="{wanted}"/>'),
-            f"the {role}{{}}, which is missing",
+            f"the {role}{{}} is missing",
             f"name the {role}{{}}",
             of,
             link,
@@ -167,7 +167,7 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
             yield Proposal(whole, "the joint", "correct the joint{}", f"the link {link!r}", link, TOGETHER)
         yield Proposal(
             draft.append(reference.text(other)),
-            "the joint{}, which is missing",
+            "the joint{} is missing",
             "add the joint{}",
             f"link {link!r}",
             link,
@@ -185,12 +185,12 @@ def shape(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         shown = list(own.iterchildren("visual"))
         if shown:
             edits: Edits = sum((draft.remove(found) for found in shown), ())
-            yield Proposal(edits, "the visual{}, which should not be there", f"remove the visual of {link!r}", "", link)
+            yield Proposal(edits, "the visual{} should not be there", f"remove the visual of {link!r}", "", link)
         return
     if visual is None:
         yield Proposal(
             draft.insert(own, reference.text(wanted)),
-            "the visual{}, which is missing",
+            "the visual{} is missing",
             f"add the visual of {link!r}",
             "",
             link,
@@ -225,7 +225,7 @@ def inner(
     elif found is None:
         yield Proposal(
             draft.insert(own, reference.text(wanted)),
-            f"the <{tag}>{{}}, which is missing",
+            f"the <{tag}>{{}} is missing",
             f"add the <{tag}>{{}}",
             of,
             link,

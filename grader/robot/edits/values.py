@@ -40,18 +40,21 @@ def visual_values(draft: Draft, reference: Draft, poses: Poses, link: str) -> It
         if cylinder.getparent() is not None and radius and length and radius != length:
             for one in draft.set(cylinder, "radius", length)[:1]:
                 for other in draft.set(cylinder, "length", radius)[:1]:
-                    cause, action = "the order of radius and length", "exchange radius and length{}"
+                    cause, action = "radius and length{} are swapped", "swap radius and length{}"
                     yield Proposal((*one, *other), cause, action, f"the visual of {link!r}", link, TRIED)
 
 
 def _proposals(draft: Draft, found: Sequence[Number], halves: tuple[HalfLength, ...], link: str) -> Iterator[Proposal]:
     for number in found:
         slot = _slot(number, halves)
+        is_missing = slot.attribute == "axis" and not slot.is_given
         for wanted, rank in number.wanted:
             if not is_close(slot.attribute, slot.values, wanted):
                 change, is_named = named(slot, wanted)
+                if is_missing:
+                    change = Change(change.values, "the <axis>{} is missing: ROS 2 uses 1 0 0", "add an <axis>{}")
                 yield from _changed(draft, number, change, link, SOLVED if is_named and rank > SOLVED else rank)
-        for family in BLIND:
+        for family in () if is_missing else BLIND:
             for change in family(slot):
                 yield from _changed(draft, number, change, link, TRIED)
 
@@ -68,7 +71,7 @@ def together(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterato
     if len(edits) > 1:
         of = f"the link {link!r}"
         yield Proposal(
-            edits, "the frame, and the shape in it", "correct the frame{}, and the shape in it", of, link, TOGETHER
+            edits, "the frame{} and the shape in it", "correct the frame{} and the shape in it", of, link, TOGETHER
         )
 
 

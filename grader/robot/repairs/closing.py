@@ -10,7 +10,7 @@ from grader.robot.repairs.pieces import LEAVES, Piece, Tree, pieces_of
 from grader.robot.spelling import ATTRIBUTES, CHILDREN
 from grader.source import Edit, Source
 
-_MISSING = ("a closing tag, which is missing", "add the closing tag")
+_MISSING = ("a closing tag is missing", "add the closing tag")
 
 
 def closing_proposals(source: Source, tree: Tree, links: Sequence[str] = ()) -> Iterator[Proposal]:
@@ -59,16 +59,16 @@ def _not_closed(source: Source, tree: Tree, top: Piece, closing: Piece) -> Itera
         yield _self_closed(source, top)
     if not top.has_attributes and top.name in {piece.name for piece in tree.open_tags[:-1]}:
         edit = source.edit(top.start, top.end, f"</{top.name}>")
-        yield Proposal((edit,), "the / of a closing tag, which is missing", "add the /")
-        yield Proposal((source.edit(top.start, top.end, ""),), "a tag that is there twice", "remove one")
+        yield Proposal((edit,), "the / of a closing tag is missing", "add the /")
+        yield Proposal((source.edit(top.start, top.end, ""),), "a duplicate tag", "remove one")
     own = [piece for piece in _inside(tree, top) if piece.name == top.name and not piece.has_attributes]
     for piece in own[-1:]:
         edit = source.edit(piece.start, piece.end, f"</{top.name}>")
-        yield Proposal((edit,), "the / of a closing tag, which is missing", "add the /")
+        yield Proposal((edit,), "the / of a closing tag is missing", "add the /")
     yield Proposal((_closed_before(source, top, closing.start),), *_MISSING)
     if top.name not in LEAVES and not text[top.end : closing.start].strip():
         yield _self_closed(source, top)
-    yield Proposal((source.edit(closing.start, closing.end, ""),), "a closing tag too much", "remove the closing tag")
+    yield Proposal((source.edit(closing.start, closing.end, ""),), "an extra closing tag", "remove the closing tag")
     yield Proposal((source.edit(top.start, top.end, ""),), "a tag that is not closed", "remove the tag")
 
 
@@ -82,7 +82,7 @@ def _self_closed(source: Source, piece: Piece) -> Proposal:
     head = piece.text_in(source.text)[:-1].rstrip()
     blank = " " if " />" in source.text and not source.text.count('"/>') > source.text.count('" />') else ""
     edit = source.edit(piece.start, piece.end, f"{head}{blank}/>")
-    return Proposal((edit,), "the / of a tag without content, which is missing", "end the tag with />")
+    return Proposal((edit,), "the / of a tag without content is missing", "end the tag with />")
 
 
 def _closed_before(source: Source, piece: Piece, offset: int) -> Edit:
@@ -108,7 +108,7 @@ def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece, link
     for piece in empty[-1:]:
         head = piece.text_in(text)[:-1].rstrip().removesuffix("/").rstrip()
         edit = source.edit(piece.start, piece.end, f"{head}>")
-        yield Proposal((edit,), "the / of a tag with content, which is too much", "remove the /")
+        yield Proposal((edit,), "the / of a tag with content is too much", "remove the /")
     allowed, inner = CHILDREN.get(closing.name, ()), _descendants(closing.name)
     tags = [piece for piece in between if piece.form != "other"]
     for piece in tags:
@@ -120,9 +120,9 @@ def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece, link
             ]
             named = f' name="{unused[0]}"' if unused else ""
             edit = source.edit(piece.start, piece.start, f"<{closing.name}{named}>")
-            yield Proposal((edit,), "a tag, which is missing", "add the tag")
+            yield Proposal((edit,), "a tag is missing", "add the tag")
             break
-    yield Proposal((_without(source, closing),), "a closing tag too much", "remove the closing tag")
+    yield Proposal((_without(source, closing),), "an extra closing tag", "remove the closing tag")
 
 
 def _descendants(tag: str) -> set[str]:
@@ -172,16 +172,14 @@ def _unclosed(source: Source, tree: Tree) -> Iterator[Proposal]:
     end = len(text.rstrip())
     newline = "\r\n" if "\r\n" in text else "\n"
     lines = (f"{newline}{markup.indentation(text, piece.start)}</{piece.name}>" for piece in reversed(tree.open_tags))
-    yield Proposal(
-        (source.edit(end, end, "".join(lines)),), "the end of the file, which is missing", "close what is open"
-    )
+    yield Proposal((source.edit(end, end, "".join(lines)),), "the file is truncated", "close all open tags")
     last = tree.open_tags[-1]
     for piece in tree.pieces:
         if piece.name == tree.open_tags[0].name and piece.form == "open" and piece is not tree.open_tags[0]:
-            yield Proposal((_without(source, piece),), "a tag that is there twice", "remove one copy of the tag")
+            yield Proposal((_without(source, piece),), "a duplicate tag", "remove one copy of the tag")
     if not last.has_attributes:
         edit = source.edit(last.start, last.end, f"</{last.name}>")
-        yield Proposal((edit,), "the / of a closing tag, which is missing", "add the /")
+        yield Proposal((edit,), "the / of a closing tag is missing", "add the /")
 
 
 def early_end_proposals(source: Source) -> Iterator[Proposal]:
@@ -192,12 +190,12 @@ def early_end_proposals(source: Source) -> Iterator[Proposal]:
     opened, closed = ([piece for piece in robots if piece.form == form] for form in ("open", "close"))
     if len(opened) > 1 and len(closed) > 1 and opened[1].start < closed[0].start:
         edits = (_without(source, opened[1]), _without(source, closed[-1]))
-        yield Proposal(edits, "a tag that is there twice", "remove one copy of the tag")
+        yield Proposal(edits, "a duplicate tag", "remove one copy of the tag")
     for piece in robots:
         if piece.form == "empty":
             head = piece.text_in(source.text)[:-1].rstrip().removesuffix("/").rstrip()
             edit = source.edit(piece.start, piece.end, f"{head}>")
-            yield Proposal((edit,), "the / of a tag with content, which is too much", "remove the /")
+            yield Proposal((edit,), "the / of a tag with content is too much", "remove the /")
         elif piece.form == "close" and piece.start < last:
             moved: tuple[Edit, ...] = (_without(source, piece),)
             if not any(other.form == "close" and other.start > last for other in robots):

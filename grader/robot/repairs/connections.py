@@ -27,7 +27,7 @@ def end_repairs(site: Site) -> Iterator[Proposal]:
             yield from child_repairs(own, role)
             for name in _plausible(own, role):
                 edits = site.draft.insert(joint, f'<{role} link="{name}"/>')
-                yield own.propose(edits, f"the {role}, which is missing", f"name the {role}")
+                yield own.propose(edits, f"the {role} is missing", f"name the {role}")
             continue
         given = end.get("link")
         if given in links:
@@ -76,10 +76,10 @@ def _link_repairs(site: Site, wanted: str) -> Iterator[Proposal]:
     like = site.robots.reference.link(wanted)
     if like is not None:
         edits = site.draft.append(site.robots.reference.text(like))
-        yield Proposal(edits, f"the link {wanted!r}, which is missing", f"add the link {wanted!r}", "", wanted)
+        yield Proposal(edits, f"the link {wanted!r} is missing", f"add the link {wanted!r}", "", wanted)
     else:
         edits = site.draft.append(f'<link name="{escaped(wanted)}"/>')
-        yield Proposal(edits, "the link of a joint, which is missing", "add the link that the joint names")
+        yield Proposal(edits, "the link of a joint is missing", "add the link that the joint names")
 
 
 def root_repairs(site: Site) -> Iterator[Proposal]:
@@ -130,7 +130,7 @@ def loop_repairs(site: Site) -> Iterator[Proposal]:
             yield from own.set(ends[0][1], "link", name, "the parent", "correct the parent")
         if names[0] != names[1]:
             edits = (draft.set(end, "link", name)[0] for (_, end), name in zip(ends, names[::-1], strict=True))
-            yield own.propose(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child")
+            yield own.propose(sum(edits, ()), "parent and child are swapped", "swap parent and child")
             continue
         for name in site.robots.loose_links():
             for role, end in ends:

@@ -111,7 +111,7 @@ def attribute_repairs(site: Site) -> Iterator[Proposal]:
         names = " and ".join(values)
         yield site.propose(
             site.draft.add_attributes(element, values),
-            f"{names} of <{tag}>, which is missing",
+            f"<{tag}> has no {names}",
             f"add {names} to <{tag}>",
         )
 
@@ -136,7 +136,7 @@ def child_repairs(site: Site, tag: str) -> Iterator[Proposal]:
     like = child_of(site.like, tag) if site.like is not None else None
     xml = site.robots.reference.text(like) if like is not None else _DEFAULT_CHILDREN.get(tag)
     if xml is not None:
-        yield site.propose(site.draft.insert(element, xml), f"the <{tag}>, which is missing", f"add the <{tag}>")
+        yield site.propose(site.draft.insert(element, xml), f"the <{tag}> is missing", f"add the <{tag}>")
 
 
 def shape_repairs(site: Site) -> Iterator[Proposal]:
@@ -156,7 +156,7 @@ def shape_repairs(site: Site) -> Iterator[Proposal]:
     inner = Site(site.robots, geometry, None)
     if not len(geometry) and inner.like is not None and len(inner.like):
         like = site.robots.reference.text(inner.like[0])
-        yield site.propose(site.draft.insert(geometry, like), "the shape, which is missing", "add the shape")
+        yield site.propose(site.draft.insert(geometry, like), "the shape is missing", "add the shape")
         parent = geometry.getparent()
         misplaced = [child for child in parent if child.tag in _SHAPES] if parent is not None else []
         for shape in misplaced:

@@ -38,7 +38,7 @@ def colour_repairs(site: Site) -> Iterator[Proposal]:
     else:
         wanted = _wanted(site)
         xml = f'<color rgba="{written(wanted.rgba if wanted else _GRAY)}"/>'
-        yield site.propose(site.draft.insert(site.element, xml), "the colour, which is missing", "add the colour")
+        yield site.propose(site.draft.insert(site.element, xml), "the colour is missing", "add the colour")
 
 
 def _wanted(site: Site) -> Material | None:

@@ -23,7 +23,7 @@ def duplicate_repairs(site: Site) -> Iterator[Proposal]:
     is_copy = _content(first) == _content(element)
     removals = [_removed(site, other) for other in (element, first)]
     renames = [
-        site.propose(edits, f"a {tag} name that is there twice", _copy("rename", tag))
+        site.propose(edits, f"a duplicate {tag} name", _copy("rename", tag))
         for other in (element, first)
         for new in _other_names(site, other)
         for edits in site.draft.set(other, "name", new)
@@ -32,7 +32,7 @@ def duplicate_repairs(site: Site) -> Iterator[Proposal]:
 
 
 def _removed(site: Site, element: Element) -> Proposal:
-    cause = f"a {element.tag} that is there twice"
+    cause = f"a duplicate {element.tag}"
     return site.propose(site.draft.remove(element), cause, _copy("remove", str(element.tag)))
 
 
@@ -69,7 +69,7 @@ def name_repairs(site: Site) -> Iterator[Proposal]:
             names = _other_names(site, element, "material") or ["material"]
     for name in names:
         edits = site.draft.add_attributes(element, {"name": name})
-        yield site.propose(edits, f"the name of the {tag}, which is missing", f"name the {tag}")
+        yield site.propose(edits, f"the name of the {tag} is missing", f"name the {tag}")
 
 
 def type_repairs(site: Site) -> Iterator[Proposal]:

@@ -154,12 +154,12 @@ _STEPS: tuple[tuple[Step, str, str], ...] = (
     (_replaced(r"[\s\u00a0\u2000-\u200b\u202f\ufeff]+", " "), "white space that is not a space", "separate the numbers by spaces"),
     (_without_units, "a unit after a number", "write the number without the unit"),
     (_replaced(r"(?<=[0-9.])[oO]|[oO](?=[0-9.])|(?<![\\w.])[oO](?![\\w.])", "0"), "a letter in a number", "write a zero for the letter O"),
-    (_replaced(r"(?<![\w.])[lI](?=[.0-9])|(?<=[0-9.])[lI](?![a-z])", "1"), "a letter in a number", "write a one for the letter"),
-    (_replaced(r"\.{2,}", "."), "a decimal point too much", "remove one decimal point"),
+    (_replaced(r"(?<![\w.])[lI](?=[.0-9])|(?<=[0-9.])[lI](?![a-z])", "1"), "a letter in a number", "replace the letter with 1"),
+    (_replaced(r"\.{2,}", "."), "an extra decimal point", "remove one decimal point"),
     (_replaced(r"([+-])\s+(?=[0-9.])", r"\1"), "a space after a sign", "remove the space"),
-    (_replaced(r"--+", "-"), "a sign that is there twice", "remove one sign"),
+    (_replaced(r"--+", "-"), "a double sign", "remove one sign"),
     (_replaced(r"\+-", "-"), "two signs", "remove one sign"),
-    (_replaced(r"(?<=[0-9.])(?=[+-])(?<![eE])", " "), "the space between two numbers, which is missing", "separate the numbers by spaces"),
+    (_replaced(r"(?<=[0-9.])(?=[+-])(?<![eE])", " "), "the space between two numbers is missing", "separate the numbers by spaces"),
 )  # fmt: skip
 _COMMAS: tuple[tuple[Step, str, str], ...] = (
     (lambda text, _: text, "", ""),
@@ -182,5 +182,5 @@ _LAST: tuple[tuple[Step, str, str], ...] = (
     (lambda text, _: re.sub(r"[^0-9]+$", "", text) if text.endswith(("/", ",", ";")) else text, "a character after the numbers", "remove the last character"),
     (lambda text, _: text.strip(), "a space after the number", "remove the space"),
     (_in_range, "the range of the colour: 0..255, not 0..1", "write the colour in 0..1"),
-    (_with_opacity, "the opacity, which is missing", "add the opacity"),
+    (_with_opacity, "the opacity is missing", "add the opacity"),
 )  # fmt: skip

@@ -33,12 +33,12 @@ _CAUSES = (
     (re.compile(r"<!--"), "a comment inside a tag", "remove the comment from the tag"),
     (re.compile(r"[^/?]\s*$(?<!>)"), "a tag without its >", "end the tag with >"),
     (re.compile(r"/\s*$(?<!>)"), "a tag without its >", "end the tag with >"),
-    (re.compile(r"\\"), "a backslash in a tag", "write / for the backslash"),
+    (re.compile(r"\\"), "a backslash in a tag", "replace the backslash with /"),
     (re.compile(r"""["']\s*[,;]"""), "a comma between attributes", "separate the attributes with spaces"),
-    (re.compile(r"""^<\s*[\w.]+\s*="""), "the name of an attribute, which is missing", "name the attribute"),
-    (re.compile(r"""^[^"']*(?:(?:"[^"]*"|'[^']*')[^"']*)*["'][^"']*$"""), "a quote, which is missing", "add the quote"),
+    (re.compile(r"""^<\s*[\w.]+\s*="""), "the name of an attribute is missing", "name the attribute"),
+    (re.compile(r"""^[^"']*(?:(?:"[^"]*"|'[^']*')[^"']*)*["'][^"']*$"""), "a quote is missing", "add the quote"),
     (re.compile(r"""=\s*[^\s"'=]"""), "the quotes, which are missing", "put the value in quotes"),
-    (re.compile(r"""^[^=]*$|["']\s+[a-z]+\s*["']|^<\w+\s+\w+\s*["']"""), "the equals sign, which is missing", "write = before the value"),
+    (re.compile(r"""^[^=]*$|["']\s+[a-z]+\s*["']|^<\w+\s+\w+\s*["']"""), "the equals sign is missing", "write = before the value"),
 )  # fmt: skip
 
 
@@ -96,7 +96,7 @@ def rewrites(text: str, piece: Piece) -> Iterator[Rewrite]:
     glued = next((tag for tag in ATTRIBUTES if name[2].removeprefix(tag) in ATTRIBUTES[tag]), "")
     if name[2] not in ATTRIBUTES and glued:
         rest, name_of = f"{name[2].removeprefix(glued)}{rest}", glued
-        cause, action = "the space after the name of a tag, which is missing", "add the space"
+        cause, action = "the space after the name of a tag is missing", "add the space"
     else:
         name_of = name[2]
     if (joined := re.sub(r"\s", "", f"{name[2]}{rest}")) in ATTRIBUTES and rest:
@@ -126,7 +126,7 @@ def _without_repetition(tag: str, attributes: list[tuple[str, str]], closing: st
             values = "".join(f" {key}={quote}{value}{quote}" for key, value in found)
             yield Rewrite(
                 f"<{tag}{values}{closing}",
-                "an attribute that is there twice",
+                "a duplicate attribute",
                 "rename or remove one of the two attributes",
             )
 

@@ -64,11 +64,11 @@ def fallback_proposals(source: Source) -> Iterator[Proposal]:
     places = dict.fromkeys((*starts, *(starts[-1] + end for end in islice(ends, _MAX_PLACES))))
     for place in places:
         for token in _INSERTED:
-            yield Proposal((source.edit(place, place, token),), f"a {token}, which is missing", f"insert {token}")
+            yield Proposal((source.edit(place, place, token),), f"a {token} is missing", f"insert {token}")
         if place < len(text):
-            yield Proposal((source.edit(place, place + 1, ""),), "a character too much", "remove the character")
+            yield Proposal((source.edit(place, place + 1, ""),), "an extra character", "remove the character")
         if place > 0:
-            yield Proposal((source.edit(place - 1, place, ""),), "a character too much", "remove the character")
+            yield Proposal((source.edit(place - 1, place, ""),), "an extra character", "remove the character")
     line = text.rfind("\n", 0, at) + 1
     end = text.find("\n", at)
     yield Proposal((source.edit(line, end if end >= 0 else len(text), ""),), "a line that is no XML", "remove the line")
@@ -92,7 +92,7 @@ def _robot(source: Source, tree: Tree, name: str) -> Iterator[Proposal]:
         edits = [source.edit(root.start, root.start, f'<robot name="{name}">\n')]
         if not any(piece.name == "robot" and piece.form == "close" for piece in tags):
             edits.append(source.edit(len(text.rstrip()), len(text.rstrip()), "\n</robot>"))
-        yield Proposal(tuple(edits), "the tag <robot>, which is missing", "add <robot>")
+        yield Proposal(tuple(edits), "the tag <robot> is missing", "add <robot>")
 
 
 def _well_formed(source: Source, tree: Tree) -> Iterator[Proposal]:
@@ -102,7 +102,7 @@ def _well_formed(source: Source, tree: Tree) -> Iterator[Proposal]:
     if root is not None and "xmlns:xacro" not in root.text_in(text):
         end = root.start + len("<robot")
         edit = source.edit(root.start, end, f'<robot xmlns:xacro="{_XACRO}"')
-        yield Proposal((edit,), "the namespace of xacro, which is missing", "declare xmlns:xacro")
+        yield Proposal((edit,), "the namespace of xacro is missing", "declare xmlns:xacro")
     for piece in tree.pieces:
         if piece.name == "<?" and not _DECLARATION.fullmatch(piece.text_in(text)):
             edit = source.edit(piece.start, piece.end, '<?xml version="1.0"?>')
@@ -153,7 +153,7 @@ def _comments(source: Source, pieces: list[Piece]) -> Iterator[Proposal]:
         near = (_NEARLY_CLOSED if piece.name == "<!--" else re.compile(r"\s*[/?]?>")).search(
             text, piece.start + 4, limit
         )
-        cause, action = f"{what}, which is missing", f"write {closing} at {what}"
+        cause, action = f"{what} is missing", f"write {closing} at {what}"
         if near is not None:
             yield Proposal((source.edit(*near.span(), closing),), cause, action)
         end = len(text[: min(limit, text.find("\n", piece.start) % (len(text) + 1))].rstrip())
@@ -174,7 +174,7 @@ def _with_brackets(source: Source) -> Iterator[Proposal]:
     """Write the < of what looks like a tag in the text between tags."""
     edits = tuple(source.edit(at, at, "<") for at in lost_brackets(source.text))
     if edits:
-        yield Proposal(edits, "the < of a tag, which is missing", "begin the tag with <")
+        yield Proposal(edits, "the < of a tag is missing", "begin the tag with <")
 
 
 def _stray(source: Source, tree: Tree, kinds: Iterable[Kind]) -> Iterator[Proposal]:

@@ -125,7 +125,7 @@ def saved(top: Path, name: str) -> Done:
 def test_a_class_is_grouped_by_the_proven_edit(graded: Path) -> None:
     """Each change with the number of students, the most frequent first, with its diff, its criteria and points."""
     assert section(saved(graded, "stats.txt")) == (
-        "  Tried on each different robot: the criteria pass, nothing that passed fails.\n"
+        "  Each edit was tested: the listed criteria pass, and no other criterion fails.\n"
         "  5 students: negate the roll of the joint of 'right_wheel'\n"
         '        - rpy="1.57 0 0"\n'
         '        + rpy="-1.57 0 0"\n'
