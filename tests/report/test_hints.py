@@ -73,7 +73,7 @@ def test_a_hint_without_room_is_described() -> None:
         render(replace(report, results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
     )
     words = (
-        "Negate the roll (1 edit): right-wheel-forward and right-wheel-axis pass, +7 points. --verbose shows what to"
+        "Negate the roll: right-wheel-forward and right-wheel-axis pass, +7 points. Run with --verbose to see the edit."
     )
     assert words in " ".join(short.split())
     assert "part79" not in short
