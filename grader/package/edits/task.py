@@ -43,12 +43,6 @@ class Task:
         """The package's setup.py."""
         return self.python(SETUP)
 
-    @cached_property
-    def reference_setup(self) -> PythonFile | None:
-        """The reference's setup.py."""
-        text = self.wanted(SETUP)
-        return PythonFile(Source(SETUP, text)) if text is not None else None
-
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, for a package of the student's name."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
