@@ -22,7 +22,7 @@ from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # edits of one step that are graded, to choose the best
 _MAX_FALLBACKS = 60
-_MAX_BYTES = 400_000  # of a file: nobody writes a larger one by hand
+_MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
 Defects = tuple[int, ...]

@@ -157,7 +157,7 @@ def named(slot: Slot, wanted: Values) -> tuple[Change, bool]:
 
 
 def is_close(attribute: str, one: Values, other: Values) -> bool:
-    """Return whether values are the same for a robot that is built by hand."""
+    """Return whether values are the same for a robot that a person wrote."""
     close = _CLOSE.get(attribute, _CLOSE_LENGTH)
     return len(one) == len(other) and all(abs(a - b) <= close for a, b in zip(one, other, strict=True))
 
@@ -168,7 +168,7 @@ def written(values: Values) -> str:
 
 
 def number(value: float) -> str:
-    """Return a number in as few characters as a robot that is built by hand needs."""
+    """Return a number in as few characters as a robot that a person writes needs."""
     text = f"{round(value, 6) + 0.0:.6g}"
     return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")
 

@@ -122,7 +122,7 @@ class Poses:
 
 
 def _round(values: Values) -> Iterator[Values]:
-    """Yield values in few digits: those of a robot that is built by hand are round, and others only happen to fit."""
+    """Yield values in few digits: those that a person writes are round, and others only happen to fit."""
     short = tuple(round(round(value / _STEP) * _STEP, 4) + 0.0 for value in values)
     if all(abs(value - other) < _ROUND for value, other in zip(values, short, strict=True)):
         yield short

@@ -113,7 +113,7 @@ def rewrites(text: str, piece: Piece) -> Iterator[Rewrite]:
 
 
 def _without_repetition(tag: str, attributes: list[tuple[str, str]], closing: str, quote: str) -> Iterator[Rewrite]:
-    """Yield a tag with a repeated attribute named as one that is missing, or left out."""
+    """Yield a tag with a repeated attribute named as one that is missing, or omitted."""
     known = _known(tag)
     unique = dict(reversed(attributes))
     missing = [key for key in known if key not in unique]
