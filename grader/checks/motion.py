@@ -134,7 +134,7 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     if joint is None:
         return robot
     joints = (replace(other, type="continuous") if other is joint else other for other in robot.robot.joints)
-    return Configuration(replace(robot.robot, joints=tuple(joints)))
+    return Configuration(replace(robot.robot, joints=tuple(joints)), robot.positions)
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

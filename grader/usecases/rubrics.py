@@ -37,13 +37,17 @@ def summary(rubric: "Rubric") -> str:
 
 def check(name: str, warn: Warn) -> str:
     """Check a rubric and return a summary. Raises RubricError if its reference solution does not get full marks."""
-    from grader.grading.grade import grade_reference
+    from grader.grading.grade import grade
 
     rubric = load(name, warn)
     found = f"{rubric.id}: {counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)}, no mistakes found"
-    if not rubric.reference:
+    if rubric.solution is None:
         return found
-    lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]
+    lost = [
+        result
+        for result in grade(rubric, rubric.solution.submission).results
+        if result.outcome.status not in ("passed", "pending")
+    ]
     if lost:
         lines = (f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost)
         raise RubricError(tuple(map(printable, lines)))
