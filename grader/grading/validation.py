@@ -88,7 +88,8 @@ class Validation:
             if not isinstance(given, dict):
                 self._complain(where, f"the arguments of {name} must be a table, not {_shown(given)}")
             elif check is not None:
-                self._default_arguments[name] = self._parsed_arguments(where, check, given)
+                unset = dict.fromkeys(given)  # invalid ones are complained of once, not at each criterion
+                self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
         self._defaults = defaults
 
     def _examines(self, where: Path, row: TomlRow, check: Check) -> None:
