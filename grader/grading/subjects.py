@@ -7,7 +7,7 @@ from typing import Any
 from grader.checks.outcome import point
 from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
@@ -74,6 +74,11 @@ class Subjects:
             return self.submission.needed_package()
         self.submission.needed_urdf()
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+
+
+def check_selectors(robot: Configuration, criterion: Criterion) -> None:
+    """Raise MissingElement or NotDecided if a criterion names a link by its place in the tree, and that is no link, or not one."""
+    _named([dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot)
 
 
 def _joint(robot: Configuration, name: str) -> Joint:

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
@@ -46,7 +46,8 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     most = max(place.depth for place in places.values())
     if found[1] is None:
         inner = {parents[link].parent for link in places if link != root}
-        return _only((link for link, place in places.items() if place.depth == most and link not in inner), name)
+        tips = {link for link, place in places.items() if place.depth == most and link not in inner}
+        return _only(robot, tips, name)
     number = int(found[1])
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"
@@ -55,8 +56,8 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     for link in reversed(places):  # a link comes after its parent
         if link in on_chain and link != root:
             on_chain.add(parents[link].parent)
-    moved = (link for link, place in places.items() if place.is_moved and place.depth == number and link in on_chain)
-    return _only(moved, name)
+    moved = {link for link in on_chain if places[link].is_moved and places[link].depth == number}
+    return _only(robot, moved, name)
 
 
 def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _Place]:
@@ -85,9 +86,9 @@ def _main_root(places: Mapping[str, _Place], name: str) -> str:
     raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
 
 
-def _only(links: Iterable[str], name: str) -> str:
-    different = [*links]
-    if len(different) > 1:
+def _only(robot: Robot, links: set[str], name: str) -> str:
+    if len(links) > 1:
         reason = f"several links can be {name}"
-        raise NotDecided(f"{reason}: {enumerated([*map(quoted, different)], _MAX_NAMED)}", reason)
-    return different[0]
+        in_file = [quoted(link.name) for link in robot.links if link.name in links]
+        raise NotDecided(f"{reason}: {enumerated(in_file, _MAX_NAMED)}", reason)
+    return min(links)
