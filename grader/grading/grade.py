@@ -162,7 +162,8 @@ class _Grading:
         """Return the result of a check; raise MissingElement."""
         try:
             examined = self._subjects.of(check, criterion.at)
-            outcome = check.function(*examined, **self._subjects.named(check, arguments))
+            arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
+            outcome = check.function(*examined, **arguments)
             fault = fault_of(outcome) if check.distribution else ""
             if criterion.at and not fault:
                 pose = self._subjects.pose_text(criterion.at)

@@ -18,6 +18,7 @@ from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
 from grader.names import did_you_mean
+from grader.robot.selectors import has_selector
 from grader.text import printable_path, shell_quoted
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
@@ -58,7 +59,8 @@ class Criterion:
     """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
 
     `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints, in
-    degrees or metres, in which the robot is examined; the others are at 0.
+    degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments name links by
+    their place in the tree.
     """
 
     id: str
@@ -74,6 +76,7 @@ class Criterion:
     answer: str = ""
     carried: Carried | None = None
     at: Mapping[str, float] = field(default_factory=dict)
+    has_selectors: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,4 +251,5 @@ def _criterion(
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
     own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
+    own["has_selectors"] = has_selector((arguments, carried[2] if carried is not None else ()))
     return Criterion(**own, carried=Carried(*carried) if carried is not None else None)

@@ -52,11 +52,13 @@ class Subjects:
         return enumerated([f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in units])
 
     def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the arguments of a check with the names of the links that selectors mean, unless it compares two robots.
+        """Return the arguments of a check, which have selectors, with the names of the links that they mean.
+
+        A check that compares two robots looks for the links in each of them.
 
         Raises MissingElement or NotDecided for a selector that names no link, or several.
         """
-        if self.robot is None or "reference" in check.examined or not _has_selector(arguments):
+        if self.robot is None or "reference" in check.examined:
             return arguments
         return {key: _named(value, self.robot) for key, value in arguments.items()}
 
@@ -97,17 +99,6 @@ def _joint(robot: Configuration, name: str) -> Joint:
         message = f"the joint {quoted(name)} is {joint.type or 'of no type'}; it should turn or slide"
         raise MissingElement("moving joint", name, message=message, location=at)
     return joint
-
-
-def _has_selector(value: Any) -> bool:
-    match value:
-        case str():
-            return is_selector(value)
-        case list() | tuple():
-            return any(map(_has_selector, value))
-        case Mapping():
-            return any(map(_has_selector, value.values()))
-    return False
 
 
 def _named(value: Any, robot: Configuration) -> Any:

@@ -3,7 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.robot.model import Joint, Robot
@@ -24,6 +24,18 @@ class _Place(NamedTuple):
 def is_selector(text: str) -> bool:
     """Return whether a text names a link by its place in the tree."""
     return _SELECTOR.fullmatch(text) is not None
+
+
+def has_selector(value: Any) -> bool:
+    """Return whether a text, or one in a list or table, names a link by its place in the tree."""
+    match value:
+        case str():
+            return is_selector(value)
+        case list() | tuple():
+            return any(map(has_selector, value))
+        case Mapping():
+            return any(map(has_selector, value.values()))
+    return False
 
 
 def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:

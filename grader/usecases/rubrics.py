@@ -44,10 +44,10 @@ def check(name: str, warn: Warn) -> str:
     found = f"{rubric.id}: {counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)}, no mistakes found"
     if rubric.solution is None:
         return found
-    lines = [*_unresolved(rubric)]
-    for result in grade(rubric, rubric.solution.submission).results:
-        if result.outcome.status not in ("passed", "pending"):
-            lines.append(f"the reference does not get {result.criterion.id}: {result.outcome.message}")
+    results = grade(rubric, rubric.solution.submission).results
+    lost = [result for result in results if result.outcome.status not in ("passed", "pending")]
+    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost]
+    lines += _unresolved(rubric)
     if lines:
         raise RubricError(tuple(map(printable, lines)))
     return f"{found}; its reference gets full marks"
