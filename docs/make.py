@@ -74,12 +74,15 @@ def checks() -> str:
     ]
     for function in CHECKS:
         check = describe(function)
-        lines += ["", f"## {check.name}", "", escaped(check.fact)]
+        lines += ["", f"## {check.name}"]
+        for paragraph in check.documentation.paragraphs:
+            lines += ["", escaped(paragraph)]
         if check.parameters:
-            lines += ["", "| argument | type | default |", "|---|---|---|"]
+            lines += ["", "| argument | meaning | type | default |", "|---|---|---|---|"]
         for parameter in check.parameters.values():
             default = "required" if parameter.required else f"`{json.dumps(parameter.default)}`"
-            lines.append(f"| `{parameter.name}` | {parameter.type.name} | {default} |")
+            meaning = escaped(check.documentation.arguments[parameter.name])
+            lines.append(f"| `{parameter.name}` | {meaning} | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 
 

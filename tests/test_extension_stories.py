@@ -18,7 +18,13 @@ pytestmark = pytest.mark.slow
 CHECK = '''
 
 def shows_cube(robot: Configuration, *, link: str, edge: NonNegative, tolerance: NonNegative) -> Outcome:
-    """A link shows a cube with edges of the given length in metres."""
+    """A link shows a cube with edges of the given length in metres.
+
+    Args:
+        link: The link that is examined.
+        edge: The length of the edges, in metres.
+        tolerance: How far each length may be off, in metres.
+    """
     return shows_box(robot, link=link, size=(edge, edge, edge), tolerance=tolerance)
 '''
 SAMPLE = """CASES = (

@@ -37,7 +37,7 @@ def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
     """A check's docstring starts with one sentence, the fact that it tests, which ends in a period."""
     first, *_ = (inspect.getdoc(check.function) or "").split("\n\n")
     sentence = " ".join(first.split())
-    assert sentence == check.fact
+    assert sentence == check.documentation.fact
     assert re.fullmatch(r"[A-Z][^.!?]*(?:[.!?]\S[^.!?]*)*\.", sentence), sentence
 
 
@@ -55,6 +55,16 @@ def test_the_signature_is_a_schema(check: Check) -> None:
         assert parameter.type.parse(sample(parameter.annotation)) is not None
         assert parameter.required == (parameter.default is None)
         assert parameter.required or parameter.type.parse(as_toml(parameter.default)) == parameter.default
+
+
+@every_check
+def test_every_argument_is_documented(check: Check) -> None:
+    """`Args:` names exactly the arguments of the signature, in its order, with a sentence for each."""
+    meanings = check.documentation.arguments
+    assert list(meanings) == list(check.parameters)
+    for meaning in meanings.values():
+        assert re.fullmatch(r"[A-Z].*\.", meaning), meaning
+    assert "Args" not in " ".join(check.documentation.paragraphs)
 
 
 @every_check
@@ -80,12 +90,15 @@ def test_a_check_has_samples(check: Check) -> None:
 
 @every_check
 def test_a_check_can_be_explained(check: Check) -> None:
-    """`explain` and the list of checks print the check's sentence; `explain` describes each argument."""
+    """`explain` and the list of checks print the check's sentence, and the type and meaning of each argument."""
     for text in (explanation(check.name, load_rubric("lab6")), checks_text()):
         assert check.name in text
-        assert check.fact in " ".join(text.split())
+        words = " ".join(text.split())
+        assert check.documentation.fact in words
         for parameter in check.parameters.values():
-            assert f"{parameter.name}: {parameter.type.name}" in text
+            default = "" if parameter.required else ", default: "
+            assert f" {parameter.name}: {parameter.type.name}{default}" in words
+            assert check.documentation.arguments[parameter.name] in words
 
 
 @every_check
@@ -160,8 +173,10 @@ def test_another_distribution_adds_a_check(installed: list[str]) -> None:
     check = find_check("has_links")
     assert check is not None
     assert (check.name, check.function, check.subject) == ("has_links", has_links, "robot")
-    assert check.fact == "A robot has at least so many links."
+    assert check.documentation.fact == "A robot has at least so many links."
     assert list(check.parameters) == ["at_least"]
+    assert check.documentation.arguments == {}  # a plug-in may leave the section out
+    assert "\n    at_least: a number\n" in checks_text()
     assert check_names()[: len(NAMES)] == NAMES
     assert "has_links" in check_names()
     assert set(installed) == {"grader.checks"}

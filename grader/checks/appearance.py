@@ -19,7 +19,13 @@ Shown = TypeVar("Shown", Box, Cylinder, Sphere)
 
 
 def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
-    """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres."""
+    """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres.
+
+    Args:
+        link: The link that is examined.
+        size: The lengths of the edges along the link's x, y and z axes, in metres.
+        tolerance: How far each length may be off, in metres.
+    """
     edges = [(_edges(visual, box), visual) for visual, box in _shown(robot, link, Box)]
     actual, visual = edges[0] if len(edges) == 1 else min(edges, key=lambda pair: _difference(pair[0], size))
     is_turned = actual is None or _all_within(sorted(actual), sorted(size), tolerance)
@@ -35,7 +41,14 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
 def shows_cylinder(
     robot: Configuration, *, link: str, radius: NonNegative, length: NonNegative, tolerance: NonNegative
 ) -> Outcome:
-    """A link shows a cylinder of the given radius and length in metres."""
+    """A link shows a cylinder of the given radius and length in metres.
+
+    Args:
+        link: The link that is examined.
+        radius: The radius, in metres.
+        length: The length, in metres.
+        tolerance: How far radius and length may each be off, in metres.
+    """
     expected = (radius, length)
     sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _shown(robot, link, Cylinder)]
     actual, best = sizes[0] if len(sizes) == 1 else min(sizes, key=lambda pair: _difference(pair[0], expected))
@@ -48,7 +61,13 @@ def shows_cylinder(
 
 
 def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative) -> Outcome:
-    """A link shows a sphere of the given radius in metres."""
+    """A link shows a sphere of the given radius in metres.
+
+    Args:
+        link: The link that is examined.
+        radius: The radius, in metres.
+        tolerance: How far the radius may be off, in metres.
+    """
     spheres = (sphere for _, sphere in _shown(robot, link, Sphere))
     best = min(spheres, key=lambda sphere: abs(abs(sphere.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows is"
@@ -60,7 +79,11 @@ def shows_colour(
 ) -> Outcome:
     """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
 
-    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
+    Args:
+        link: The link that is examined.
+        colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
+        tolerance: How far each channel may be off, on the scale from 0 to 1.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
     """
     visual = main_visual(robot, link, shape)
     if visual.material is None or _has_only_texture(visual.material):
@@ -74,7 +97,13 @@ def shows_colour(
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
-    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked."""
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked.
+
+    Args:
+        link: The link that is examined.
+        at_least: The darkest grey that passes, from 0 (black) to 1 (white).
+        tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
+    """
     visual = main_visual(robot, link)
     if visual.material is None or _has_only_texture(visual.material):
         return _colourless(link, visual)
@@ -91,7 +120,11 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
-    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent)."""
+    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent).
+
+    Args:
+        link: The link that is examined.
+    """
     robot.link(link)
     try:
         shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]

@@ -21,7 +21,11 @@ _MAX_PAIRS = 2_000
 def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any") -> Outcome:
     """The visuals of a link stand on the top of another link's visual: no gap, no overlap, within its outline.
 
-    If the lower link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
+    Args:
+        link: The link that stands on the other.
+        on: The link that it stands on.
+        tolerance: How large a gap, an overlap and the part beyond the outline may each be, in metres.
+        shape: Which of several visuals of the lower link counts: the largest of this shape or, without one, of all.
     """
     support = main_visual(robot, on, shape)
     T_on_support = visual_pose(robot, on, support, on)
@@ -42,7 +46,13 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
-    """No visual of a link cuts into a visual of another by more than the tolerance, in metres; touching passes."""
+    """No visual of a link cuts into a visual of another by more than the tolerance, in metres; touching passes.
+
+    Args:
+        link: The link that is examined.
+        of: The other link.
+        tolerance: How deep the visuals may overlap, in metres.
+    """
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
     others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
     if len(own) * len(others) > _MAX_PAIRS:

@@ -32,7 +32,11 @@ Verdict = tuple[Status | Literal["missing"], str]
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
-    """The package has a launch file of this name, written in Python, XML or YAML."""
+    """The package has a launch file of this name, written in Python, XML or YAML.
+
+    Args:
+        name: The file's name, such as view.launch.py.
+    """
     path = _path(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
@@ -45,8 +49,11 @@ def launch_found(package: Package, *, name: str) -> Outcome:
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments.
 
-    A node is named `package/executable`, or by one name if both are the same; "a or b" leaves a choice. Launch files that it
-    includes count, if they are part of the submission or of urdf_launch.
+    Launch files that it includes count, if they are part of the submission or of urdf_launch.
+
+    Args:
+        name: The file's name, such as view.launch.py.
+        nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
     """
     launch = _launch(package, name)
     if launch.faults and not launch.nodes:
@@ -86,7 +93,9 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Outcome:
     """The launch file looks for the URDF and RViz files where a build of the package installs them.
 
-    With `built = false`, a file of the package that a build does not install counts as found.
+    Args:
+        name: The file's name, such as view.launch.py.
+        built: Whether a build must install the files; if not, files of the package count as found.
     """
     launch = _launch(package, name)
     verdicts = [(_verdict(package, file), file) for file in launch.named("urdf", "rviz", "include")]

@@ -18,9 +18,14 @@ def answered(
 ) -> Outcome:
     """A question is answered in writing; needs manual grading.
 
-    Always pending. `places` are labels of the passage with the answer, such as "task 1 step 15" or "question 15"; `files` are
-    patterns for the names of documents. `answer` is the model answer, which `grader review` and `--answers` show: the rubric
-    keeps it here or in a separate file.
+    Always pending.
+
+    Args:
+        question: The question, as the report repeats it.
+        places: Labels of the passage with the answer, such as "task 1 step 15" or "question 15"; they are tried in this
+            order.
+        files: Patterns for the names of documents.
+        answer: The model answer, which `grader review` and `--answers` show. It can also be in a separate file.
     """
     del answer  # students read outcomes, so they do not contain it
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
@@ -53,8 +58,10 @@ def answered(
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     """A picture or document shows what the lab asks for; needs manual grading.
 
-    Always pending. `names` are labels in the file's name, in any spelling: "task 3 step 3", or words such as "webcam". Without such
-    a file they are searched among the headings of Word and PDF files.
+    Always pending. Without a file of such a name, the headings of Word and PDF files are searched.
+
+    Args:
+        names: Labels in the name of the file, in any spelling: "task 3 step 3", or words such as "webcam".
     """
     from grader.documents.evidence import find_evidence
 

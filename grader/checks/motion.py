@@ -7,7 +7,7 @@ from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, ju
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import main_visual, visual_pose, visuals
 from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, last_moving
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, dot, minus, unit
@@ -32,9 +32,16 @@ def rolls_forward(
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
-    The lowest point of the wheel must move opposite to `forward`, a direction in the base's frame, within `tolerance`
-    degrees in the ground plane across `up`. It must also move so relative to the wheel's highest point: a wheel that
-    swivels does not. With `any_type` the joint above the wheel turns, whatever its type.
+    The lowest point of the wheel must move opposite to `forward`. It must also move so relative to the wheel's highest point: a
+    wheel that swivels does not.
+
+    Args:
+        link: The link of the wheel.
+        base: The link of the base.
+        forward: The direction in which the base should drive, in its own frame.
+        up: The direction away from the ground, in the base's frame.
+        tolerance: How far the direction may be off, in degrees in the ground plane.
+        any_type: Whether the joint above the wheel turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
     joint = _turning_joint(robot, link, base)
@@ -64,7 +71,15 @@ def rolls_forward(
 def axis_along(
     robot: Configuration, *, link: str, axis: Direction, relative_to: str, direction: Direction, tolerance: NonNegative
 ) -> Outcome:
-    """An axis of a link's frame lies along a direction of another link's frame, within `tolerance` degrees."""
+    """An axis of a link's frame lies along a direction of another link's frame, within `tolerance` degrees.
+
+    Args:
+        link: The link that is examined.
+        axis: A direction in the frame of this link, such as [0, 0, 1] for its z axis.
+        relative_to: The link in whose frame the direction is given.
+        direction: The direction along which the axis should point.
+        tolerance: How far the direction may be off, in degrees.
+    """
     pose = robot.pose(link, relative_to=relative_to)
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
     off = _angle(actual, expected)
@@ -83,7 +98,12 @@ def turns_about_itself(
 ) -> Outcome:
     """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and position (metres).
 
-    With `any_type` the joint above the cylinder turns, whatever its type.
+    Args:
+        link: The link that shows the cylinder.
+        base: The link relative to which it turns.
+        tolerance: How far the joint's axis may be from the cylinder's axis, in metres.
+        angle: How far the direction of the joint's axis may be off, in degrees.
+        any_type: Whether the joint above the cylinder turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
@@ -120,12 +140,8 @@ def _axis_place(joint: Joint) -> LazyLocation | None:
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     """Return the turning joint next to a link, on the path to the base; raise MissingElement where nothing turns."""
-    path = robot.between(base, link)
-    moving = [joint for joint in path if joint.type in ("continuous", "revolute")]
-    if not moving:
-        message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
-        raise MissingElement("moving joint", link, message=message, location=place(path[-1].location if path else None))
-    return moving[-1]
+    message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
+    return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)
 
 
 def _as_turning(robot: Configuration, link: str) -> Configuration:

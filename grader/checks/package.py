@@ -23,7 +23,11 @@ _ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz"
 
 
 def package_found(submission: Submission, *, name: str) -> Outcome:
-    """The submission has a ROS 2 package of this name."""
+    """The submission has a ROS 2 package of this name.
+
+    Args:
+        name: The name that package.xml should give it.
+    """
     package = submission.needed_package()
     manifest = _readable_manifest(package)
     if manifest.name is None:
@@ -35,7 +39,11 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
 
 
 def package_type(package: Package, *, build_type: str) -> Outcome:
-    """The package is of a build type, such as ament_python."""
+    """The package is of a build type, such as ament_python.
+
+    Args:
+        build_type: The build type, such as ament_python.
+    """
     manifest = _readable_manifest(package)
     actual = manifest.build_type
     fine = actual == build_type
@@ -50,8 +58,11 @@ def package_type(package: Package, *, build_type: str) -> Outcome:
 def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
-    `name` is the file that is meant if there are several of the kind. setup.py is evaluated statically; what cannot be
-    determined needs manual grading.
+    setup.py is evaluated statically; what cannot be determined needs manual grading.
+
+    Args:
+        kind: The kind of the file.
+        name: The file's name, which decides if the package has several files of the kind.
     """
     files = files_of(package, kind, name)
     if not files:
@@ -60,7 +71,11 @@ def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
 
 
 def installs_files(package: Package, *, files: list[str]) -> Outcome:
-    """A build of the package installs at least one file that matches these patterns, below share/<package>."""
+    """A build of the package installs at least one file that matches these patterns, below share/<package>.
+
+    Args:
+        files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is enough.
+    """
     found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
     if not found:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")

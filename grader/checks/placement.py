@@ -46,7 +46,13 @@ def frame_at(
 ) -> Outcome:
     """The origin of a link's frame is at a point in another link's frame, in metres.
 
-    With `angle`, in degrees, the frame must also be turned by `rpy`, in radians about fixed axes, within that angle.
+    Args:
+        link: The link that is examined.
+        relative_to: The link in whose frame the point is given.
+        xyz: The point: x, y and z, in metres.
+        tolerance: How far each coordinate may be off, in metres.
+        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians. It counts if `angle` is given.
+        angle: How far the orientation may be off, in degrees; with 180, it is not checked.
     """
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
@@ -67,8 +73,15 @@ def centre_at(
 ) -> Outcome:
     """The centre of a link's visual is at a point in another link's frame, in metres; if rigid, only fixed joints lie between.
 
-    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one. With `angle`, in
-    degrees, the z axis of the visual must also lie along `axis` in the other frame, either way, within that angle.
+    Args:
+        link: The link that is examined.
+        relative_to: The link in whose frame the point is given.
+        xyz: The point: x, y and z, in metres.
+        tolerance: How far each coordinate may be off, in metres.
+        rigid: Whether only fixed joints may lie between the two links.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
+        axis: The direction of the visual's z axis in the other frame, either way. It counts if `angle` is given.
+        angle: How far the z axis may be off, in degrees; with 90, it is not checked.
     """
     visual = main_visual(robot, link, shape)
     if isinstance(visual.geometry, Mesh):
@@ -97,7 +110,12 @@ def bottom_at_height(
 ) -> Outcome:
     """The lowest point of a link's visuals is at a height (z) in another link's frame, in metres.
 
-    If `shape` is given and the link shows it, only the largest visual of that shape counts.
+    Args:
+        link: The link that is examined.
+        relative_to: The link in whose frame the height is given.
+        height: The height (z), in metres.
+        tolerance: How far the height may be off, in metres.
+        shape: If given and the link shows it, only the largest visual of this shape counts.
     """
     visual = main_visual(robot, link, shape)
     if shape == "any" or shape_name(visual.geometry) != f"a {shape}":
@@ -112,7 +130,14 @@ def bottom_at_height(
 def bottoms_at_height(
     robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: NonNegative
 ) -> Outcome:
-    """The lowest points of several links are at the same height (z) in another link's frame, in metres."""
+    """The lowest points of several links are at the same height (z) in another link's frame, in metres.
+
+    Args:
+        links: The links that are examined.
+        relative_to: The link in whose frame the height is given.
+        height: The height (z), in metres.
+        tolerance: How far each height may be off, in metres.
+    """
     robot.link(relative_to)
     lowest, missing = _measured(links, lambda link: span(robot, link, relative_to, _UP)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
@@ -133,7 +158,12 @@ def under_the_base(
 ) -> Outcome:
     """A frame has the x, y and orientation of a base's frame and is level with the lowest points of the wheels.
 
-    `tolerance` in metres, `angle` in degrees.
+    Args:
+        link: The link whose frame is examined, such as base_footprint.
+        base: The link of the base.
+        wheels: The links of the wheels.
+        tolerance: How far x, y and the height may each be off, in metres.
+        angle: How far the orientation may be off, in degrees.
     """
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation

@@ -7,6 +7,7 @@ from itertools import takewhile
 from typing import Any, Literal, get_args, get_type_hints
 
 from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
+from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -90,9 +91,9 @@ class Check:
         return self.examined[0]
 
     @property
-    def fact(self) -> str:
-        """The first line of its docstring: a fact that is true of a submission that passes."""
-        return (inspect.getdoc(self.function) or "").split("\n\n")[0].replace("\n", " ")
+    def documentation(self) -> Documentation:
+        """What its docstring says. The fact is true of a submission that passes."""
+        return documentation(self.function)
 
 
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:

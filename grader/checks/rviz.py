@@ -18,7 +18,12 @@ _PLUGINS = "rviz_default_plugins"
 
 
 def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
-    """The package has the RViz file: that of this name, or the one that the launch file opens."""
+    """The package has the RViz file: that of this name, or the one that the launch file opens.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        launch: The name of the launch file whose RViz file also passes, whatever that is called; by default, none.
+    """
     opened = _launch(package, launch)
     path = _path(package, name, opened)
     if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
@@ -30,7 +35,14 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
 
 
 def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
-    """The RViz file's Fixed Frame is this link."""
+    """The RViz file's Fixed Frame is this link.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        frame: The link in whose frame RViz should draw.
+        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
+            `name` decides.
+    """
     package = submission.needed_package()
     rviz = _read(package, name, launch)
     actual = rviz.fixed_frame
@@ -49,7 +61,14 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
 
 
 def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_description", launch: str = "") -> Outcome:
-    """A RobotModel display of the RViz file is on, and reads the robot from this topic."""
+    """A RobotModel display of the RViz file is on, and reads the robot from this topic.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        topic: The topic from which the display should read the robot.
+        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
+            `name` decides.
+    """
     rviz = _read(package, name, launch)
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
     if not models:
@@ -63,7 +82,14 @@ def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_descri
 
 
 def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "") -> Outcome:
-    """The RViz file has a display of a class, such as TF or LaserScan, and it is on."""
+    """The RViz file has a display of a class, such as TF or LaserScan, and it is on.
+
+    Args:
+        name: The name of the RViz file, such as view.rviz.
+        kind: The class of the display, such as LaserScan.
+        launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
+            `name` decides.
+    """
     rviz = _read(package, name, launch)
     found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
     faults = [_class_of_ros1(display) or _off(display) for display in found]

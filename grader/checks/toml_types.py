@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import lru_cache, partial
 from math import isfinite
@@ -107,6 +107,12 @@ def toml_type(annotation: Any) -> TomlType:
     return simple_type(
         f"a table of {plural}", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
     )
+
+
+def described(base: TomlType, description: str, **keywords: Any) -> TomlType:
+    """Return a type whose JSON Schema says what the value means; without a description, only the keywords are added."""
+    text = {"description": description} if description else {}
+    return replace(base, schema={**base.schema, **text, **keywords})
 
 
 def constrained(base: TomlType, *constraints: Constraint) -> TomlType:

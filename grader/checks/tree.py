@@ -43,7 +43,13 @@ def _not_expanded(urdf: Reading, raw: Problem) -> Outcome:
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:
-    """The joints from the parent to the link are one of the given type and otherwise only fixed joints."""
+    """The joints from the parent to the link are one of the given type and otherwise only fixed joints.
+
+    Args:
+        link: The link that is examined.
+        parent: The link that it should be connected to; other links may lie between.
+        joint_type: The type of the one joint that is not fixed; fixed, if all must be fixed.
+    """
     chain = robot.chain(link, above=parent)
     if chain is None:
         return _not_below(robot, link, parent)
@@ -81,6 +87,10 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
 
     Any joint between `parent` and the link may have the name. A link without a parent joint counts if any joint of that
     name has it as its child or parent.
+
+    Args:
+        parent: The link from which the path to each link starts.
+        joints: The name of each joint, and the link below it.
     """
     wrong: list[tuple[str, str]] = []
     at = None
@@ -113,7 +123,12 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
 
 
 def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
-    """A link is the root of the tree, and fixed joints lead from it to another link."""
+    """A link is the root of the tree, and fixed joints lead from it to another link.
+
+    Args:
+        link: The link that should be the root.
+        holds: The link that should be fixed to it.
+    """
     robot.link(link)
     chain = robot.chain(holds, above=link)
     joint = robot.parent_joints.get(link)

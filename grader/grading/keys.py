@@ -6,7 +6,7 @@ from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
 from grader.checks.registry import CHECKS, Check, describe
-from grader.checks.toml_types import Constraint, TomlType, constrained, simple_type, toml_type
+from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
 from grader.grading.levels import Level
 
 MAX_POINTS = 1_000_000
@@ -187,8 +187,15 @@ def rubric_schema() -> dict[str, Any]:
 
 def _arguments_rule(check: Check) -> dict[str, Any]:
     optional = tuple(name for name, parameter in check.parameters.items() if not parameter.required)
-    arguments = KeyTable(check.name, {name: parameter.type for name, parameter in check.parameters.items()}, optional)
+    arguments = KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}, optional)
     then: dict[str, Any] = {"properties": {"with": arguments.schema}}
     if arguments.schema["required"]:
         then["required"] = ["with"]
     return {"if": {"properties": {"check": {"const": check.name}}, "required": ["check"]}, "then": then}
+
+
+def _argument(check: Check, name: str) -> TomlType:
+    """Return the type of an argument with its meaning and its default for the JSON Schema."""
+    parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
+    default = {} if parameter.required else {"default": parameter.default}
+    return described(parameter.type, meaning, **default)

@@ -1,6 +1,5 @@
 """Rubrics, checks and problem codes in plain text."""
 
-import inspect
 import textwrap
 from collections.abc import Mapping
 
@@ -49,7 +48,7 @@ def checks_text() -> str:
             listed.append(f"{name}\n  {error}\n")
             continue
         if check is not None:
-            listed.append(f"{name}\n{textwrap.indent(_filled(check.fact), '  ')}\n{_arguments(check)}")
+            listed.append(f"{name}\n{textwrap.indent(_filled(check.documentation.fact), '  ')}\n{_arguments(check)}")
     return "\n".join(listed)
 
 
@@ -64,8 +63,8 @@ def explanation(name: str, rubric: Rubric) -> str:
             return _criterion_text(criterion, rubric)
     check = find_check(name)
     if check is not None:
-        text = "\n\n".join(_filled(paragraph) for paragraph in (inspect.getdoc(check.function) or "").split("\n\n"))
-        return f"{check.name}: a check for rubrics\n\n{text}\n{_arguments(check)}"
+        text = "\n\n".join(map(_filled, check.documentation.paragraphs))
+        return f"{check.name}: a check for rubrics\n\n{text}\n\n{_arguments(check)}".rstrip("\n") + "\n"
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
         f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
@@ -94,15 +93,19 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
 
 def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
     given = ", ".join(f"{key} = {_toml(value)}" for key, value in arguments.items())
-    return [_filled(f"{title}: {check.name}. {check.fact}"), *([_filled(f"With {given}.")] if given else [])]
+    return [
+        _filled(f"{title}: {check.name}. {check.documentation.fact}"),
+        *([_filled(f"With {given}.")] if given else []),
+    ]
 
 
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
         default = "" if parameter.required else f", default: {_toml(parameter.default)}"
-        lines.append(f"    {parameter.name}: {parameter.type.name}{default}\n")
-    return "".join(lines)
+        meaning = _filled(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
+        lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
+    return "".join(line for line in lines if line.strip())
 
 
 def _toml(value: object) -> str:
@@ -121,5 +124,5 @@ def _toml(value: object) -> str:
             return str(value)
 
 
-def _filled(text: str) -> str:
-    return textwrap.fill(" ".join(text.split()), _WIDTH, break_long_words=False, break_on_hyphens=False)
+def _filled(text: str, width: int = _WIDTH) -> str:
+    return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)

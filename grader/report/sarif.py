@@ -46,7 +46,7 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
     for criterion in report.rubric.criteria:
         if criterion.id == name:
             title, command = printable(criterion.title), explain_command(name, report)
-            fact = printable(f"Passes when: {criterion.title}. {criterion.check.fact}")
+            fact = printable(f"Passes when: {criterion.title}. {criterion.check.documentation.fact}")
             return _described(name, title, fact, printable(criterion.feedback) or fact, "error", command)
     for kind in EVERY_KIND:
         if kind.code == name:
