@@ -5,8 +5,9 @@ from datetime import datetime
 from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
-from grader.checks.registry import CHECKS, Check, describe
+from grader.checks.registry import Check, check_names, find_check
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
+from grader.errors import InputError
 from grader.grading.levels import Level
 
 MAX_POINTS = 1_000_000
@@ -167,14 +168,24 @@ RUBRIC = KeyTable(
 
 
 def rubric_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a rubric, with the arguments of every check that comes with the grader."""
+    """Return the JSON Schema of a rubric, with the arguments of every check, also of installed plug-ins."""
     schema = RUBRIC.schema
     criterion = CRITERION.schema
-    rules = [_arguments_rule(describe(function)) for function in CHECKS]
-    criterion["allOf"] = rules
-    criterion["properties"]["carried"]["allOf"] = rules
+    names = check_names()
+    rules = [_arguments_rule(check) for name in names if (check := _usable(name)) is not None]
+    for row in (criterion, criterion["properties"]["carried"]):
+        row["properties"]["check"] |= {"enum": names}
+        row["allOf"] = [{"$ref": "#/$defs/arguments"}]
     schema["properties"]["criterion"]["items"] = criterion
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "grader rubric", **schema}
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "grader rubric"}
+    return {**head, **schema, "$defs": {"arguments": {"allOf": rules}}}
+
+
+def _usable(name: str) -> Check | None:
+    try:
+        return find_check(name)
+    except InputError:  # in another package: a rubric that names it is refused
+        return None
 
 
 def _arguments_rule(check: Check) -> dict[str, Any]:
