@@ -47,6 +47,12 @@ def opened(path: Path | str, rubric: Rubric = LAB6) -> Submission:
     return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
 
 
+def reference(rubric: Rubric = LAB6) -> Submission:
+    """Return the reference solution of a rubric."""
+    assert rubric.solution is not None
+    return rubric.solution.submission
+
+
 def _read(folder: Path) -> Sample:
     return Sample(folder.name, tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8")))
 

@@ -7,7 +7,7 @@ from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, ju
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import main_visual, visual_pose, visuals
 from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, last_moving
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, dot, minus, unit
@@ -140,12 +140,8 @@ def _axis_place(joint: Joint) -> LazyLocation | None:
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     """Return the turning joint next to a link, on the path to the base; raise MissingElement where nothing turns."""
-    path = robot.between(base, link)
-    moving = [joint for joint in path if joint.type in ("continuous", "revolute")]
-    if not moving:
-        message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
-        raise MissingElement("moving joint", link, message=message, location=place(path[-1].location if path else None))
-    return moving[-1]
+    message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
+    return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)
 
 
 def _as_turning(robot: Configuration, link: str) -> Configuration:
@@ -154,7 +150,7 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     if joint is None:
         return robot
     joints = (replace(other, type="continuous") if other is joint else other for other in robot.robot.joints)
-    return Configuration(replace(robot.robot, joints=tuple(joints)))
+    return Configuration(replace(robot.robot, joints=tuple(joints)), robot.positions)
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

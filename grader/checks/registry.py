@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
 from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
@@ -54,7 +55,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     manual.evidence_shown,
 )
 
-Subject = Literal["urdf", "robot", "package", "submission"]
+Subject = Literal["urdf", "robot", "package", "submission", "reference"]
+SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,15 +78,21 @@ class Parameter:
 class Check:
     """A check, as a rubric names it.
 
-    `subject` is the examined object: the URDF as it was read, its robot, the package, or the whole submission. `distribution` is
-    the installed package that the check comes from; empty for the grader's own.
+    `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
+    submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
+    for the grader's own.
     """
 
     name: str
     function: Callable[..., Outcome]
-    subject: Subject
+    examined: tuple[Subject, ...]
     parameters: Mapping[str, Parameter]
     distribution: str = ""
+
+    @property
+    def subject(self) -> Subject:
+        """The main object that it examines."""
+        return self.examined[0]
 
     @property
     def documentation(self) -> Documentation:
@@ -104,12 +112,21 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
             raise InputError(f"its argument {parameter} cannot be given by name")
         if parameter.name not in hints:
             raise InputError(f"its argument {parameter.name} has no annotation")
+    also = list(takewhile(_is_subject, rest))
     parameters = {}
-    for name, default in ((parameter.name, parameter.default) for parameter in rest):
+    for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
         is_required = default is inspect.Parameter.empty
         parameters[name] = Parameter(name, hints[name], is_required, None if is_required else default)
-    examined: Subject = next((name for name in get_args(Subject) if name == subject.name), "robot")
+    main = subject.name if subject.name in SUBJECTS else "robot"
+    examined = tuple(
+        name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
+    )
     return Check(function.__name__, function, examined, parameters, distribution)
+
+
+def _is_subject(parameter: inspect.Parameter) -> bool:
+    """Return whether a parameter after the first is another object that is examined: it is no keyword-only argument."""
+    return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in SUBJECTS
 
 
 def check_names() -> list[str]:

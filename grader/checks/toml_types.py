@@ -106,10 +106,12 @@ def toml_type(annotation: Any) -> TomlType:
     if origin in (list, tuple):
         length = len(inner) if origin is tuple and Ellipsis not in inner else None
         return _sequence(toml_type(inner[0]), origin, length, _PLURALS.get(inner[0], "values"))
-    item = toml_type(inner[1]) if len(inner) == 2 else _SIMPLE[str]
+    item, plural = (
+        (toml_type(inner[1]), _PLURALS.get(inner[1], "values")) if len(inner) == 2 else (_SIMPLE[str], "strings")
+    )
     schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
     return simple_type(
-        "a table of strings", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
+        f"a table of {plural}", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
     )
 
 

@@ -5,17 +5,16 @@ from typing import Any
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
-from grader.checks.registry import Check, Subject
+from grader.checks.registry import Check
+from grader.checks.tree import urdf_loads
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
 from grader.grading.explanation import explained
 from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Carried, Criterion, Rubric
-from grader.problems import Problem
-from grader.robot.kinematics import Configuration
+from grader.grading.subjects import Subjects
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
-from grader.submission.opening import open_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import enumerated
@@ -50,7 +49,7 @@ def grade(
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
     """Yield the results of some criteria in the order of the rubric; what a criterion requires counts if it is wanted, too."""
-    grading = _Grading(submission, is_manual=rubric.without_urdf == "manual")
+    grading = _Grading(rubric, submission)
     for criterion in rubric.criteria:
         if criterion.id in wanted:
             grading.decide(criterion)
@@ -85,37 +84,20 @@ def _notes_on_xacro(submission: Submission) -> list[str]:
     return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
 
 
-def open_reference(rubric: Rubric) -> Submission:
-    """Return a rubric's own reference solution; raise InputError where it cannot be read."""
-    path = rubric.path.parent / rubric.reference
-    return open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-
-
-def grade_reference(rubric: Rubric) -> Report:
-    """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
-    return grade(rubric, open_reference(rubric))
-
-
 class _Grading:
     """The criteria decided so far, and which of them was the first that misses a thing."""
 
-    def __init__(self, submission: Submission, *, is_manual: bool) -> None:
+    def __init__(self, rubric: Rubric, submission: Submission) -> None:
         self.submission = submission
+        is_manual = rubric.without_urdf == "manual"
         self._by_evidence = by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
-        self.problems: tuple[Problem, ...] = ()
-        self.robot: Configuration | None = None
+        self._subjects = Subjects(rubric, submission)
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
-        self._subjects: dict[Subject, object] = {"submission": submission}
-        if isinstance(submission.urdf, Read):
-            urdf = submission.urdf.reading
-            self.problems = urdf.problems
-            self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
-            self._subjects |= {"urdf": submission.urdf.loaded, "robot": self.robot}
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
-        cause = self._cause(criterion) if criterion.requires or self.robot is None else None
+        cause = self._cause(criterion) if criterion.requires or self._subjects.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
         is_lost = result.outcome.status in ("failed", "skipped")
         self.results[criterion.id] = (
@@ -128,9 +110,9 @@ class _Grading:
             required = self.results.get(name)
             if required is not None and required.outcome.status in ("failed", "skipped") and not required.carried:
                 return required.because or name
-        if self.robot is None and criterion.check.subject == "robot":
-            of_urdf = (result for result in self.results.values() if result.criterion.check.subject == "urdf")
-            return next((result.criterion.id for result in of_urdf if result.outcome.status == "failed"), None)
+        if self._subjects.robot is None and criterion.check.subject == "robot":
+            loading = (result for result in self.results.values() if result.criterion.check.function is urdf_loads)
+            return next((result.criterion.id for result in loading if result.outcome.status == "failed"), None)
         return None
 
     def _check(self, criterion: Criterion) -> Result:
@@ -142,7 +124,7 @@ class _Grading:
             return self._miss(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=explained(result.outcome, self.problems))
+        return result._replace(outcome=explained(result.outcome, self._subjects.problems))
 
     def _needs_what_is_missing(self, check: Check) -> bool:
         """Return whether a check is decided by a URDF, or by a package where there is none either."""
@@ -179,9 +161,13 @@ class _Grading:
     def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement."""
         try:
-            subject = self._subjects.get(check.subject) or self._missing(check.subject)
-            outcome = check.function(subject, **arguments)
+            examined = self._subjects.of(check, criterion.at)
+            arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
+            outcome = check.function(*examined, **arguments)
             fault = fault_of(outcome) if check.distribution else ""
+            if criterion.at and not fault:
+                pose = self._subjects.pose_text(criterion.at)
+                outcome = outcome._replace(message=f"{outcome.message} (with {pose})")
             return Result(criterion, _errored(check, fault) if fault else outcome)
         except MissingElement:
             raise
@@ -195,13 +181,6 @@ class _Grading:
 
             return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())
 
-    def _missing(self, name: Subject) -> object:
-        """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
-        if name == "package":
-            return self.submission.needed_package()
-        self.submission.needed_urdf()
-        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
-
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
         first = self.missed.setdefault((missing.kind, missing.name), criterion.id)
@@ -212,7 +191,7 @@ class _Grading:
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
         link = missing.name if missing.kind == "visual" else None
-        return Result(criterion, explained(outcome, self.problems, link))
+        return Result(criterion, explained(outcome, self._subjects.problems, link))
 
 
 def _skipped(cause: str) -> Outcome:

@@ -122,11 +122,17 @@ CRITERION = KeyTable(
         "points": _POINTS,
         "check": _TEXT,
         "with": _table({"type": "object"}),
+        "at": toml_type(Mapping[str, float]),
         "requires": _NAMES,
         "carried": _table(CARRIED.schema),
         "feedback": _TEXT,
     },
-    optional=("about", "with", "requires", "carried", "feedback"),
+    optional=("about", "with", "at", "requires", "carried", "feedback"),
+)
+DEFAULTS = KeyTable(
+    "defaults table",
+    {"part": _TEXT, "points": _POINTS, "about": _TEXT, "with": _table({"type": "object"})},
+    optional=("part", "points", "about", "with"),
 )
 EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
 LATE = KeyTable(
@@ -147,6 +153,7 @@ RUBRIC = KeyTable(
         "answers": _ANSWERS,
         "without_urdf": toml_type(Literal["failed", "manual"]),
         "hints": toml_type(Level),
+        "defaults": _table(DEFAULTS.schema),
         "part": _rows(PART),
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
@@ -161,6 +168,7 @@ RUBRIC = KeyTable(
         "answers",
         "without_urdf",
         "hints",
+        "defaults",
         "evidence",
         "late",
     ),

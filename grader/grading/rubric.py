@@ -13,13 +13,16 @@ from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.levels import Level
+from grader.grading.reference import Reference
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
 from grader.names import did_you_mean
+from grader.robot.selectors import has_selector
 from grader.text import printable_path, shell_quoted
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
+_URDF = "robot.urdf"
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
@@ -55,7 +58,9 @@ class Carried(NamedTuple):
 class Criterion:
     """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
 
-    `answer` is the model answer; empty unless the rubric was loaded with its answers.
+    `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints, in
+    degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments name links by
+    their place in the tree.
     """
 
     id: str
@@ -70,6 +75,8 @@ class Criterion:
     position: int = 0
     answer: str = ""
     carried: Carried | None = None
+    at: Mapping[str, float] = field(default_factory=dict)
+    has_selectors: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +98,8 @@ class Rubric:
 
     `folders` are the names of the lab's folder in a repository of several labs.
     `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
-    grading. It is empty where the rubric does not say, which means "failed". `hints` is the most that hints tell.
+    grading. It is empty where the rubric does not say, which means "failed". `hints` is the most that hints tell. `solution` is
+    the reference solution, if there is one.
     """
 
     id: str
@@ -109,6 +117,12 @@ class Rubric:
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
     hints: Level = "cause"
+    solution: Reference | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def compares_with_reference(self) -> bool:
+        """Return whether a check compares submissions with the reference solution."""
+        return any("reference" in criterion.check.examined for criterion in self.criteria)
 
     @property
     def sha256(self) -> str:
@@ -185,7 +199,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric["title"],
         tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
         tuple(_criterion(index, *found, answers=answers) for index, found in enumerate(criteria)),
-        rubric.get("urdf", "robot.urdf"),
+        rubric.get("urdf", _URDF),
         rubric.get("reference", ""),
         data,
         path,
@@ -196,7 +210,15 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric.get("folders", ()),
         rubric.get("without_urdf", ""),
         rubric.get("hints", "cause"),
+        _solution(rubric, path),
     )
+
+
+def _solution(rubric: TomlRow, path: Path) -> Reference | None:
+    if not rubric.get("reference"):
+        return None
+    place, package = path.parent / rubric["reference"], rubric.get("package", "")
+    return Reference(place, rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
 
 
 def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
@@ -229,4 +251,5 @@ def _criterion(
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
     own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
+    own["has_selectors"] = has_selector((arguments, carried[2] if carried is not None else ()))
     return Criterion(**own, carried=Carried(*carried) if carried is not None else None)

@@ -8,7 +8,7 @@ from typing import Any
 from grader.checks.registry import Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import CARRIED, CRITERION, EVIDENCE, LATE, PART, RUBRIC, KeyTable
+from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, LATE, PART, RUBRIC, KeyTable
 from grader.grading.toml_lines import Path
 from grader.names import did_you_mean
 from grader.text import enumerated
@@ -20,6 +20,7 @@ _MAX_BITS = 1000  # of a whole number that is written out
 
 TomlRow = dict[str, Any]
 BoundCheck = tuple[Check, TomlRow]
+_NOTHING: Mapping[str, Any] = {}
 BoundCarried = tuple[tuple[str, ...], Check, TomlRow]  # the possible causes, and the fact that counts instead
 
 
@@ -36,28 +37,34 @@ class Validation:
         self._guesses = _MAX_GUESSES
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, RUBRIC)
+        self._defaults: TomlRow = {}
+        self._default_arguments: dict[str, TomlRow] = {}
+        self._read_defaults()
         self.parts = self._rows("part", PART)
-        self.criteria = self._rows("criterion", CRITERION)
+        self.criteria = self._rows("criterion", CRITERION, self._defaults)
         self.evidence = self._rows("evidence", EVIDENCE)
         self.late = self._row(("late",), self.rubric["late"], LATE) if "late" in self.rubric else None
         part_ids, positions = self._positions("part"), self._positions("criterion")
+        self._belongs(("defaults",), self._defaults, part_ids)
         for index, row in enumerate(self.criteria):
             where: Path = ("criterion", index)
-            self._belongs(where, row, part_ids)
+            if "part" in self.rubric["criterion"][index]:
+                self._belongs(where, row, part_ids)
             self._above((*where, "requires"), row, positions)
             if (bound := self._arguments(where, row)) is not None:
                 self.bound.append(bound)
+                self._examines(where, row, bound[0])
             self.carried.append(self._carried(where, row, positions))
         for index, row in enumerate(self.evidence):
             self._belongs(("evidence", index), row, part_ids)
         self._totals()
 
-    def _rows(self, key: str, table: KeyTable) -> list[TomlRow]:
-        return [self._row((key, index), row, table) for index, row in enumerate(self.rubric.get(key, ()))]
+    def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> list[TomlRow]:
+        return [self._row((key, index), row, table, defaults) for index, row in enumerate(self.rubric.get(key, ()))]
 
-    def _row(self, where: Path, row: TomlRow, table: KeyTable) -> TomlRow:
+    def _row(self, where: Path, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
         """Return the valid values of a table, converted; complain of the others and of missing ones."""
-        parsed: TomlRow = {}
+        parsed: TomlRow = {**defaults}
         for key, value in row.items():
             if key not in table.keys:
                 hint = self._guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
@@ -68,9 +75,30 @@ class Validation:
             except WrongValue as error:
                 self._complain((*where, key), f"{key} must be {error}, not {_shown(value)}")
         for key in table.keys:
-            if key not in row and key not in table.optional:
+            if key not in row and key not in table.optional and key not in defaults:
                 self._complain(where, f"this {table.name} has no {key}")
         return parsed
+
+    def _read_defaults(self) -> None:
+        """Read the values that criteria have unless they give others, and the default arguments of checks."""
+        defaults = self._row(("defaults",), self.rubric.get("defaults", {}), DEFAULTS)
+        for name, given in defaults.pop("with", {}).items():
+            where: Path = ("defaults", "with", name)
+            check = self._check(where, name)
+            if not isinstance(given, dict):
+                self._complain(where, f"the arguments of {name} must be a table, not {_shown(given)}")
+            elif check is not None:
+                unset = dict.fromkeys(given)  # invalid ones are complained of once, not at each criterion
+                self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
+        self._defaults = defaults
+
+    def _examines(self, where: Path, row: TomlRow, check: Check) -> None:
+        """Complain of a pose for a check of something else, and of a comparison with a reference that the rubric lacks."""
+        if "at" in row and "robot" not in check.examined:
+            self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
+        if "reference" in check.examined and not self.rubric.get("reference"):
+            message = f"the check {check.name} compares with the reference solution: the rubric needs the key reference"
+            self._complain((*where, "check"), message)
 
     def _positions(self, key: str) -> dict[str, int]:
         """Return the position of the first row with each id, and complain of later ones with the same id."""
@@ -120,22 +148,28 @@ class Validation:
         check = self._check((*where, "check"), name) if name is not None else None
         if check is None:
             return None
+        arguments = self._parsed_arguments((*where, "with"), check, given)
+        defaults = self._default_arguments.get(check.name, {})
+        for key, parameter in check.parameters.items():
+            if parameter.required and key not in given and key not in defaults:
+                self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
+        return check, {**{key: value for key, value in defaults.items() if key not in given}, **arguments}
+
+    def _parsed_arguments(self, where: Path, check: Check, given: TomlRow) -> TomlRow:
+        """Return the valid arguments of a check, converted; complain of the others."""
         arguments: TomlRow = {}
         for key, value in given.items():
             parameter = check.parameters.get(key)
             if parameter is None:
                 known = [parameter for parameter in check.parameters if parameter not in given]
                 hint = self._guess(key, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
-                self._complain((*where, "with", key), f"the check {check.name} takes no {key!r}{hint}")
+                self._complain((*where, key), f"the check {check.name} takes no {key!r}{hint}")
                 continue
             try:
                 arguments[key] = parameter.type.parse(value)
             except WrongValue as error:
-                self._complain((*where, "with", key), f"{key} of {check.name} must be {error}, not {_shown(value)}")
-        for key, parameter in check.parameters.items():
-            if parameter.required and key not in given:
-                self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
-        return check, arguments
+                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {_shown(value)}")
+        return arguments
 
     def _check(self, where: Path, name: str) -> Check | None:
         try:

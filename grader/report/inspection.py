@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
+from math import isfinite
 from typing import Any
 
 from rich.console import Console
@@ -135,7 +136,7 @@ def _joint_text(joint: Joint) -> str:
     words = printable(joint.type) or "no type"
     if joint.type not in ("fixed", "floating"):
         words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
-    if joint.limit is not None:
+    if joint.limit is not None and isfinite(joint.limit.upper - joint.limit.lower):
         words += f", {joint.limit.lower:g}..{joint.limit.upper:g}"
     if joint.mimic is not None:
         words += f", mimics {printable(joint.mimic.joint)}"

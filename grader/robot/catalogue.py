@@ -184,6 +184,12 @@ NEGATIVE_SIZE = warns(
     "A negative size",
     "ROS 2 does not check sizes. How a negative size is shown depends on the program that draws it.",
 )
+LIMIT_IN_DEGREES = notes(
+    "URDF079",
+    "A joint limit that looks like degrees",
+    "The limits of a revolute joint are in radians: 90 degrees are 1.5708, 180 degrees 3.1416. ROS 2 loads the file, but the "
+    "joint can turn many times.",
+)
 TWO_ROOTS = rejects(
     "URDF080",
     "Links that are not connected to the robot",

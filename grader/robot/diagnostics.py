@@ -19,7 +19,7 @@ _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
 _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
-_FULL_TURN = 6.2832  # radians
+FULL_TURN = 6.2832  # radians
 _OF_MISSING = (
     catalogue.UNKNOWN_LINK,
     catalogue.TWO_ROOTS,
@@ -129,7 +129,7 @@ class Problems:
 class ElementReader:
     """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of one kind.
 
-    A value that cannot be read is a problem, sets `failed` and is returned as its default.
+    A value that cannot be read is a problem and sets `failed`. A number is NaN then, any other value its default.
     """
 
     __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
@@ -152,7 +152,8 @@ class ElementReader:
 
     def number(self, element: Element, attribute: str, default: float = 0.0) -> float:
         """Return an attribute's number, or the default if it is not given."""
-        return self._value(element, attribute, number, default)
+        value = self._value(element, attribute, number, nan)
+        return value if attribute in element.attrib else default
 
     def required(self, element: Element, attribute: str) -> float:
         """Return an attribute's number; it is a problem if it is not given."""
@@ -169,8 +170,8 @@ class ElementReader:
         if element is None:
             return Origin()
         xyz, rpy = self._value(element, "xyz", vector, _ZERO), self._value(element, "rpy", vector, _ZERO)
-        if rpy != _ZERO and max(map(abs, rpy)) > _FULL_TURN and not self.failed:
-            angle = next((angle for angle in rpy if abs(angle) > _FULL_TURN and angle % 15 == 0), None)
+        if rpy != _ZERO and max(map(abs, rpy)) > FULL_TURN and not self.failed:
+            angle = next((angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None)
             if angle is not None:
                 message = f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
                 self._problems.add(catalogue.DEGREES, message, element, "rpy")

@@ -4,8 +4,9 @@ from itertools import islice
 from typing import Literal, get_args
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import ElementReader, Problems, first_children
-from grader.robot.model import Joint, Limit, Mimic, Robot
+from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
+from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
+from grader.robot.model import Joint, Robot
 from grader.robot.transforms import Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -18,11 +19,7 @@ _REJECTED = "ROS 2 rejects the file"
 _X_AXIS = (1.0, 0.0, 0.0)
 _MAX_NAMED = 12  # links in a message
 _MAX_STEPS = 20  # of a loop in a message
-_EXTRAS = {
-    "dynamics": (catalogue.BAD_DYNAMICS, ("damping", "friction")),
-    "safety_controller": (catalogue.BAD_SAFETY, ("soft_lower_limit", "soft_upper_limit", "k_position")),
-    "calibration": (catalogue.BAD_CALIBRATION, ("rising", "falling")),
-}
+_MAX_DEGREES = 720.0  # more is no range in degrees, but a large number that stands for "no limit"
 
 
 def read_joint(element: Element, problems: Problems) -> Joint:
@@ -39,8 +36,6 @@ def read_joint(element: Element, problems: Problems) -> Joint:
     origin = reader.origin(inside.get("origin"))
     axis = _read_axis(element, inside.get("axis"), kind, problems)
     limit = _read_limit(element, inside.get("limit"), kind, problems)
-    mimic = _read_mimic(inside["mimic"], problems) if "mimic" in inside else None
-    _check_extras(inside, problems)
     if kind in ("floating", "planar"):
         how = "does not publish it" if kind == "floating" else "treats it as fixed"
         message = f"joint {label} is {kind}: robot_state_publisher {how}"
@@ -50,7 +45,22 @@ def read_joint(element: Element, problems: Problems) -> Joint:
     is_open = "" in unresolved  # then a missing element may be there all the same
     frame = None if reader.failed or (is_open and "origin" not in inside) else origin
     axis = None if is_open and "axis" not in inside else axis
-    return Joint(name, kind, parent, child, frame, axis, limit, mimic, problems.location(element), axis_at, unresolved)
+    return Joint(
+        name,
+        kind,
+        parent,
+        child,
+        frame,
+        axis,
+        limit,
+        _read_mimic(inside["mimic"], problems) if "mimic" in inside else None,
+        _read_dynamics(inside["dynamics"], problems) if "dynamics" in inside else None,
+        _read_safety(inside["safety_controller"], problems) if "safety_controller" in inside else None,
+        _read_calibration(inside["calibration"], problems) if "calibration" in inside else None,
+        location=problems.location(element),
+        axis_location=axis_at,
+        unresolved=unresolved,
+    )
 
 
 def _check_type(element: Element, kind: str, label: str, problems: Problems) -> None:
@@ -104,12 +114,20 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
     reader = ElementReader(problems, catalogue.BAD_LIMIT)
     lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
     effort, velocity = reader.required(limit, "effort"), reader.required(limit, "velocity")
-    if reader.failed:
-        return None
-    if kind in _WITH_LIMIT and lower >= upper:
+    if kind in _WITH_LIMIT and lower >= upper and not reader.failed:
         message = f"lower {lower:g} is not below upper {upper:g}: the joint cannot move"
         problems.add(catalogue.EMPTY_RANGE, message, limit, "lower" if "lower" in limit.attrib else "upper")
-    return Limit(lower, upper, effort, velocity)
+    if kind == "revolute":
+        _check_degrees(limit, {"lower": lower, "upper": upper}, problems)
+    return Limit(lower, upper, effort, velocity, problems.location(limit))
+
+
+def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -> None:
+    for attribute, angle in ends.items():
+        if FULL_TURN < abs(angle) <= _MAX_DEGREES and angle % 5 == 0:
+            message = f"{attribute} is in radians, and {angle:g} is more than a full turn: is it in degrees?"
+            problems.add(catalogue.LIMIT_IN_DEGREES, message, limit, attribute)
+            return
 
 
 def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
@@ -118,21 +136,34 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
     if joint is None:
         reader.fail("<mimic> has no joint", element)
     multiplier, offset = reader.number(element, "multiplier", 1.0), reader.number(element, "offset")
-    return None if reader.failed or joint is None else Mimic(joint, multiplier, offset)
+    return None if reader.failed or joint is None else Mimic(joint, multiplier, offset, problems.location(element))
 
 
-def _check_extras(inside: dict[str, Element], problems: Problems) -> None:
-    """Check the elements that the model does not keep, but that ROS 2 rejects a file for."""
-    for tag, (kind, attributes) in _EXTRAS.items():
-        if tag not in inside:
-            continue
-        element, reader = inside[tag], ElementReader(problems, kind)
-        for attribute in attributes:
-            reader.number(element, attribute)
-        if tag == "safety_controller":
-            reader.required(element, "k_velocity")
-        elif tag == "dynamics" and not any(attribute in element.attrib for attribute in attributes):
-            reader.fail("<dynamics> has neither damping nor friction", element)
+def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
+    reader = ElementReader(problems, catalogue.BAD_DYNAMICS)
+    if "damping" not in element.attrib and "friction" not in element.attrib:
+        reader.fail("<dynamics> has neither damping nor friction", element)
+        return None
+    return Dynamics(reader.number(element, "damping"), reader.number(element, "friction"), problems.location(element))
+
+
+def _read_safety(element: Element, problems: Problems) -> SafetyController:
+    reader = ElementReader(problems, catalogue.BAD_SAFETY)
+    return SafetyController(
+        reader.required(element, "k_velocity"),
+        reader.number(element, "soft_lower_limit"),
+        reader.number(element, "soft_upper_limit"),
+        reader.number(element, "k_position"),
+        problems.location(element),
+    )
+
+
+def _read_calibration(element: Element, problems: Problems) -> Calibration:
+    reader = ElementReader(problems, catalogue.BAD_CALIBRATION)
+    rising, falling = (
+        reader.number(element, name) if name in element.attrib else None for name in ("rising", "falling")
+    )
+    return Calibration(rising, falling, problems.location(element))
 
 
 def check_references(robot: Robot, problems: Problems) -> None:

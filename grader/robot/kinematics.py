@@ -1,11 +1,12 @@
 """Forward kinematics: the pose of every link with the joints at given positions."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from itertools import takewhile
 from math import isfinite
 
 from grader.errors import MissingElement
 from grader.robot.frames import Frames, Position, check_position, motion_of, undefined_pose
+from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Robot, Visual
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
 from grader.robot.tree import parent_joints
@@ -133,6 +134,22 @@ class Configuration:
         shared = sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False)))
         return (*reversed(up[shared:]), *down[shared:])
 
+    def moving_joint(self, link: str) -> Joint:
+        """Return the joint that moves a link: the last joint above it that is not fixed.
+
+        Raises MissingElement where nothing above it moves, NotDecided where the type of a joint above it is not known.
+        """
+        path = self.chain(link) or ()
+        types = {joint.type for joint in path} - {"fixed"}
+        if not types:
+            self.robot.check_complete()
+        joint = last_moving(path, link, types, f"no joint above {quoted(link)} moves; one should turn or slide")
+        if joint.type in MOVING_TYPES:
+            return joint
+        kind = f"the type {quoted(joint.type)}, which does not exist" if joint.type else "no type"
+        message, at = f"the joint that moves {quoted(link)} has {kind}", joint.location
+        raise MissingElement("moving joint", link, message=message, location=at and at._replace(attribute="type"))
+
     def moved(self, joint: str | Joint, position: Position) -> "Configuration":
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
         found = self.joint(joint) if isinstance(joint, str) else joint
@@ -160,3 +177,11 @@ class Configuration:
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
         return self._frames.position(joint)
+
+
+def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
+    """Return the last joint with one of the types on the path to a link; raises MissingElement where there is none."""
+    moving = [joint for joint in path if joint.type in types]
+    if not moving:
+        raise MissingElement("moving joint", link, message=message, location=path[-1].location if path else None)
+    return moving[-1]

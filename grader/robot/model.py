@@ -10,6 +10,7 @@ from typing import NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
+from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.source import LazyLocation
 from grader.text import quoted
 
@@ -131,25 +132,6 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
-    """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s)."""
-
-    lower: float
-    upper: float
-    effort: float
-    velocity: float
-
-
-@dataclass(frozen=True, slots=True)
-class Mimic:
-    """This joint's position is `multiplier` times the named joint's, plus `offset`."""
-
-    joint: str
-    multiplier: float = 1.0
-    offset: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
 class Joint:
     """A joint between two links; its frame is the child link's frame.
 
@@ -165,6 +147,9 @@ class Joint:
     axis: Vector | None = (1.0, 0.0, 0.0)
     limit: Limit | None = None
     mimic: Mimic | None = None
+    dynamics: Dynamics | None = None
+    safety_controller: SafetyController | None = None
+    calibration: Calibration | None = None
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
     axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)

@@ -1,8 +1,9 @@
 """Load, list and check rubrics."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from grader.errors import RubricError
+from grader.errors import MissingElement, NotDecided, RubricError
 from grader.text import counted, counted_points, printable
 from grader.usecases import Warn
 
@@ -37,14 +38,29 @@ def summary(rubric: "Rubric") -> str:
 
 def check(name: str, warn: Warn) -> str:
     """Check a rubric and return a summary. Raises RubricError if its reference solution does not get full marks."""
-    from grader.grading.grade import grade_reference
+    from grader.grading.grade import grade
 
     rubric = load(name, warn)
     found = f"{rubric.id}: {counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)}, no mistakes found"
-    if not rubric.reference:
+    if rubric.solution is None:
         return found
-    lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]
-    if lost:
-        lines = (f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost)
+    results = grade(rubric, rubric.solution.submission).results
+    lost = [result for result in results if result.outcome.status not in ("passed", "pending")]
+    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost]
+    lines += _unresolved(rubric)
+    if lines:
         raise RubricError(tuple(map(printable, lines)))
     return f"{found}; its reference gets full marks"
+
+
+def _unresolved(rubric: "Rubric") -> Iterator[str]:
+    """Yield a line for each criterion that names a link by its place in the tree, which is none, or several, in the reference."""
+    from grader.grading.subjects import check_selectors
+
+    assert rubric.solution is not None
+    for criterion in rubric.criteria:
+        if "robot" in criterion.check.examined:
+            try:
+                check_selectors(rubric.solution.robot, criterion)
+            except (MissingElement, NotDecided) as error:
+                yield f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from grader.edits import edited
-from grader.grading.grade import grade, open_reference
+from grader.grading.grade import grade
 from grader.grading.hints.search import Search
 from grader.grading.hints.trials import Trials
 from grader.robot.edits.draft import Draft
@@ -14,9 +14,9 @@ from grader.submission.editing import overlaid
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from tests.samples import LAB6, SAMPLES
+from tests.samples import LAB6, SAMPLES, reference
 
-REFERENCE = open_reference(LAB6)
+REFERENCE = reference()
 INERTIALS = SAMPLES["equivalent-xacro-inertials"]
 MACROS = SAMPLES["equivalent-xacro-macros"]
 WHEEL = "my_robot/urdf/wheel.xacro"

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from grader.grading.grade import grade, open_reference
+from grader.grading.grade import grade
 from grader.grading.hints.search import Found, Search
 from grader.grading.hints.trials import Trials
 from grader.grading.report import Result
@@ -16,7 +16,7 @@ from grader.submission.editing import content, with_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from tests.samples import LAB6, SAMPLES
+from tests.samples import LAB6, SAMPLES, reference
 
 
 class Hints(NamedTuple):
@@ -41,7 +41,7 @@ class Hints(NamedTuple):
 @cache
 def reference_draft(name: str) -> Draft | None:
     """Return the draft of the reference of a rubric."""
-    urdf = open_reference(LAB6 if name == LAB6.id else load_rubric(name)).urdf
+    urdf = reference(LAB6 if name == LAB6.id else load_rubric(name)).urdf
     assert isinstance(urdf, Read)
     return Draft.of(urdf.reading)
 

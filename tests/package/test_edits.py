@@ -3,13 +3,13 @@
 import pytest
 
 from grader.edits import Proposal
-from grader.grading.grade import grade, open_reference
+from grader.grading.grade import grade
 from grader.package.edits.candidates import package_proposals
 from grader.submission.editing import content, edited_files, with_files
 from grader.submission.submission import Submission
-from tests.samples import LAB6, SAMPLES
+from tests.samples import LAB6, SAMPLES, reference
 
-_REFERENCE = open_reference(LAB6)
+_REFERENCE = reference()
 SETUP, LAUNCH, RVIZ, MANIFEST = "setup.py", "launch/my_robot_rviz.launch.py", "rviz/my_robot.rviz", "package.xml"
 ENTRY = "        (os.path.join('share', package_name), glob('rviz/*')),\n"
 URDF_PATH, RVIZ_PATH = "os.path.join(share, 'my_robot.urdf')", "os.path.join(share, 'my_robot.rviz')"

@@ -274,6 +274,16 @@ SAMPLES: tuple[ProblemSample, ...] = (
     ProblemSample(
         "URDF078", "negative-edge", in_link('<collision><geometry><box ¦size="1 -1 1"/></geometry></collision>')
     ),
+    ProblemSample(
+        "URDF079",
+        "limits-in-degrees",
+        in_joint(_AXIS, '<limit ¦lower="-90" upper="90" effort="1" velocity="1"/>', kind="revolute"),
+    ),
+    ProblemSample(
+        "URDF079",
+        "one-limit-in-degrees",
+        in_joint(_AXIS, '<limit lower="-1.57" ¦upper="360" effort="1" velocity="1"/>', kind="revolute"),
+    ),
     ProblemSample("URDF080", "loose-link", lines(_TWO, joint("a", "b"), ' <link ¦name="c"/>')),
     ProblemSample("URDF081", "no-root", lines(_TWO, " ¦" + joint("a", "b"), joint("b", "a", "k"))),
     ProblemSample(

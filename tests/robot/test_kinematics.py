@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 from grader.errors import MissingElement
 from grader.robot.frames import DEGREES_OF_FREEDOM, Position
+from grader.robot.joint_elements import Mimic
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint, Link, Mimic, Origin, Robot
+from grader.robot.model import Joint, Link, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
 from tests.processor_time import processor_time

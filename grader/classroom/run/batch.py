@@ -22,7 +22,7 @@ from grader.classroom.run.worker import ClassContext, Task, robot_hashes
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.grade import grade, open_reference
+from grader.grading.grade import grade
 from grader.grading.record import to_record
 from grader.grading.rubric import Rubric
 
@@ -146,9 +146,11 @@ class Batch:
         """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
         rubric, settings, template = self._rubric, self._settings, ""
+        if rubric.solution is not None and rubric.compares_with_reference:
+            _ = rubric.solution.robot  # raises InputError: without it nothing can be graded
         with suppress(InputError):  # most records resemble that of the reference solution
-            if rubric.reference:
-                reference = open_reference(rubric)
+            if rubric.solution is not None:
+                reference = rubric.solution.submission
                 template = to_record(grade(rubric, reference))
                 self._writer.add_handed_out(filter(None, robot_hashes(reference)))
         self._writer.use_template(template)

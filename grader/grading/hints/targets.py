@@ -7,6 +7,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.grading.rubric import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
+from grader.robot.selectors import selected_link
 
 _MAX_LINKS, _MAX_CHAIN = 40, 12
 
@@ -24,10 +25,19 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     moved: dict[str, None] = {}
     posed = Configuration(robot)
     for criterion in criteria:
-        named = [name for name in texts(criterion.arguments) if reference.has_link(name) or robot.has_link(name)]
+        given = (_selected(posed, name) for name in texts(criterion.arguments))
+        named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
     return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
+
+
+def _selected(posed: Configuration, name: str) -> str:
+    """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
+    try:
+        return selected_link(posed.robot, posed.parent_joints, name)
+    except (MissingElement, NotDecided):
+        return name
 
 
 def texts(value: Any) -> Iterator[str]:

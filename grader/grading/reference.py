@@ -1,0 +1,43 @@
+"""The reference solution of a rubric."""
+
+from functools import cached_property
+from pathlib import Path
+
+from grader.errors import InputError
+from grader.files.reading import read_capped
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading, find_xacro, read_urdf
+from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
+
+
+class Reference:
+    """A rubric's own solution, of which no more is read than is needed. Its properties raise InputError where it cannot be read."""
+
+    def __init__(self, path: Path, urdf: str, package: str, folders: tuple[str, ...]) -> None:
+        self._path, self._urdf, self._package, self._folders = path, urdf, package, folders
+
+    @cached_property
+    def submission(self) -> Submission:
+        """The solution as a submission."""
+        return open_submission(str(self._path), wanted=self._urdf, package=self._package, folders=self._folders)
+
+    @cached_property
+    def reading(self) -> Reading:
+        """Its URDF; the rest is not read where the URDF is known and is no xacro."""
+        file = self._path / self._urdf
+        if file.suffix == ".urdf" and file.is_file():
+            reading = read_urdf(read_capped(file), self._urdf)
+            if find_xacro(reading.source.text) is None:
+                return reading
+        try:
+            return self.submission.needed_urdf()
+        except LookupError as error:
+            raise InputError(f"the reference {self._path} cannot be compared with: {error}") from None
+
+    @cached_property
+    def robot(self) -> Configuration:
+        """Its robot, with the joints at 0."""
+        if self.reading.robot is None:
+            raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
+        return Configuration(self.reading.robot)

@@ -1,0 +1,113 @@
+"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package, the reference solution."""
+
+from collections.abc import Mapping
+from math import radians
+from typing import Any
+
+from grader.checks.outcome import point
+from grader.checks.registry import Check, Subject
+from grader.errors import MissingElement
+from grader.grading.rubric import Criterion, Rubric
+from grader.problems import Problem
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint
+from grader.robot.selectors import is_selector, selected_link
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from grader.text import enumerated, quoted
+
+_SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
+
+
+class Subjects:
+    """What of a submission is examined. Raises InputError if a check needs the reference solution and it cannot be read."""
+
+    def __init__(self, rubric: Rubric, submission: Submission) -> None:
+        self.submission = submission
+        self.problems: tuple[Problem, ...] = ()
+        self.robot: Configuration | None = None
+        self._known: dict[Subject, object] = {"submission": submission}
+        self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
+        if rubric.solution is not None and rubric.compares_with_reference:
+            self._known["reference"] = rubric.solution.robot
+        if isinstance(submission.urdf, Read):
+            urdf = submission.urdf.reading
+            self.problems = urdf.problems
+            self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
+            self._known |= {"urdf": submission.urdf.loaded, "robot": self.robot}
+
+    def of(self, check: Check, at: Mapping[str, float]) -> list[object]:
+        """Return what a check examines, with the joints of the robot at positions in degrees or metres.
+
+        Raises MissingElement or NotDecided for what the submission does not have.
+        """
+        found = [self._known.get(name) or self._missing(name) for name in check.examined]
+        return [self._at(it, at) if at and isinstance(it, Configuration) and it is self.robot else it for it in found]
+
+    def pose_text(self, at: Mapping[str, float]) -> str:
+        """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at 0.1 m."""
+        assert self.robot is not None
+        joints = ((_joint(self.robot, name), value) for name, value in at.items())
+        units = ((joint, value, "m" if joint.type in _SLIDING else "degrees") for joint, value in joints)
+        return enumerated([f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in units])
+
+    def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the arguments of a check, which have selectors, with the names of the links that they mean.
+
+        A check that compares two robots looks for the links in each of them.
+
+        Raises MissingElement or NotDecided for a selector that names no link, or several.
+        """
+        if self.robot is None or "reference" in check.examined:
+            return arguments
+        return {key: _named(value, self.robot) for key, value in arguments.items()}
+
+    def _at(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
+        key = tuple(at.items())
+        if key not in self._posed:
+            found = [(_joint(robot, name), value) for name, value in key]
+            positions = {joint.name: radians(value) if joint.type in _TURNING else value for joint, value in found}
+            self._posed[key] = Configuration(robot.robot, positions)
+        return self._posed[key]
+
+    def _missing(self, name: Subject) -> object:
+        """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
+        if name == "package":
+            return self.submission.needed_package()
+        self.submission.needed_urdf()
+        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+
+
+def check_selectors(robot: Configuration, criterion: Criterion) -> None:
+    """Raise MissingElement or NotDecided if a criterion names a link by its place in the tree, and that is no link, or not one."""
+    _named([dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot)
+
+
+def _joint(robot: Configuration, name: str) -> Joint:
+    """Return a joint that turns or slides, by its name or by a selector of the link that it moves."""
+    if is_selector(name) and not robot.robot.has_joint(name):
+        link = selected_link(robot.robot, robot.parent_joints, name)
+        found = robot.parent_joints.get(link)
+        if found is None:
+            raise MissingElement("joint", name, message=f"no joint moves {name}")
+        return found
+    joint = robot.joint(name)
+    if joint.type not in (*_TURNING, *_SLIDING):
+        if "@type" in joint.unresolved:
+            joint.unresolved["@type"].check()
+        at = joint.location and joint.location._replace(attribute="type")
+        message = f"the joint {quoted(name)} is {joint.type or 'of no type'}; it should turn or slide"
+        raise MissingElement("moving joint", name, message=message, location=at)
+    return joint
+
+
+def _named(value: Any, robot: Configuration) -> Any:
+    """Return a value in which each selector is the name of the link that it means."""
+    match value:
+        case str():
+            return selected_link(robot.robot, robot.parent_joints, value)
+        case list() | tuple():
+            return type(value)(_named(item, robot) for item in value)
+        case Mapping():
+            return {key: _named(item, robot) for key, item in value.items()}
+    return value
