@@ -82,8 +82,7 @@ def test_a_rubric_uses_it(project: Path) -> None:
 def test_the_schema_describes_its_arguments(project: Path) -> None:
     """An editor completes and checks the arguments of an installed check."""
     schema = json.loads(grader(project, "schema", "rubric").stdout)
-    rules = {rule["if"]["properties"]["check"]["const"]: rule["then"] for rule in schema["$defs"]["arguments"]["allOf"]}
-    arguments = rules["distance_between"]["properties"]["with"]["properties"]
+    arguments = schema["$defs"]["distance_between"]["properties"]
     assert arguments["distance"] == {"type": "number", "minimum": 0, "description": "The distance, in metres."}
     assert "distance_between" in schema["properties"]["criterion"]["items"]["properties"]["check"]["enum"]
 
