@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from grader.grading.keys import rubric_schema
+from grader.grading.schema import rubric_schema
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TEXT: dict[str, Any] = {"type": "string"}
