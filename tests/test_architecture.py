@@ -18,6 +18,7 @@ LAYERS = (
     ("submission",),
     ("checks",),
     ("grading",),
+    ("mutation",),
     ("classroom", "bundle"),
     ("report",),
     ("usecases",),

@@ -133,6 +133,11 @@ LATE = KeyTable(
     {"due": _TIME, "grace_minutes": _MINUTES, "percent_per_day": _PERCENT, "floor_percent": _PERCENT},
     optional=("due", "grace_minutes", "floor_percent"),
 )
+IGNORE = KeyTable(
+    "test.ignore",
+    {"mutants": constrained(_NAMES, Constraint("at least one pattern", bool, {"minItems": 1})), "reason": _TITLE},
+)
+TEST = KeyTable("test table", {"ignore": _rows(IGNORE)}, optional=("ignore",))
 RUBRIC = KeyTable(
     "rubric",
     {
@@ -150,6 +155,7 @@ RUBRIC = KeyTable(
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
         "late": _table(LATE.schema),
+        "test": _table(TEST.schema),
     },
     optional=(
         "reference",
@@ -162,6 +168,7 @@ RUBRIC = KeyTable(
         "hints",
         "evidence",
         "late",
+        "test",
     ),
 )
 
