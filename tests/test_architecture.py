@@ -33,7 +33,7 @@ INNER = {
 LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
-    "lxml": {"xml", "report"},  # a report may be XML
+    "lxml": {"xml", "report", "mutation"},  # a report may be XML; a robot is rewritten as a tree
     "yaml": {"package", "xacro"},
     "ast": {"static_python", "package"},
     "docx": {"documents"},

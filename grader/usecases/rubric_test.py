@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from grader.classroom.run.batch import Progress
 from grader.errors import GraderError
+from grader.mutation.samples import read_samples
 from grader.mutation.testing import tested
 from grader.report.formats import OutputFormat
 from grader.report.rubric_test import render_rubric_test
@@ -35,9 +36,11 @@ def test(request: TestRequest, warn: Warn, show_progress: ShowProgress) -> tuple
     """Return the result as text, and the exit code. Raises GraderError for a broken rubric or one without a reference."""
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
+    samples = read_samples(request.folder) if request.folder is not None else None
     with show_progress(f"Testing {rubric.id}") as show:
         result = tested(
             rubric,
+            samples,
             seed=request.seed,
             most=request.mutants,
             progress=lambda done, total: show(Progress(total, done)),
