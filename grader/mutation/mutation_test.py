@@ -1,13 +1,14 @@
 """Grade the mutants of a rubric's reference: each must lose something, and each criterion be failed by some mutant."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from random import Random
 
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
 from grader.mutation.mutants import Mutant, mutants
+from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import MutantResults, Survivor
 from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
@@ -21,7 +22,7 @@ class MutationTest:
 
     def __init__(self, trial: Trial, most: int, seed: int) -> None:
         self.trial = trial
-        self.all = [mutant for path in trial.robot_files for mutant in mutants(trial.text(path), path)]
+        self.all = list(_mutants_of(trial))
         self.chosen = sampled(self.all, most, Random(seed))
         self.caught = self.same = 0
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
@@ -100,6 +101,18 @@ class MutationTest:
         patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]
         ids = [mutant.id for mutant in self.all]
         return tuple(pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in ids))
+
+
+def _mutants_of(trial: Trial) -> Iterator[Mutant]:
+    """Yield the mutants of the robot, and of the package if a criterion looks at it."""
+    for path in trial.robot_files:
+        yield from mutants(trial.text(path), path)
+    package = trial.reference.package
+    if package is not None and any(trial.expected[name].criterion.check.subject == "package" for name in trial.tested):
+        urdf = trial.reference.urdf
+        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        links = [link.name for link in robot.links] if robot is not None else []
+        yield from package_mutants(package, links, trial.text)
 
 
 def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:

@@ -88,7 +88,7 @@ def _measured(criterion: Criterion) -> set[str]:
 
 def _names(mutant: Mutant, robot: Robot | None) -> set[str]:
     """Return the names in the place of a mutant, with the link that a joint moves, and those that a material colours."""
-    names = set(mutant.id.partition(": ")[2].replace("/", " ").split())
+    names = set(mutant.id.partition(": ")[2].partition(" -> ")[0].replace("/", " ").split())
     if robot is None:
         return names
     moved = {joint.child for joint in robot.joints if joint.name in names}
