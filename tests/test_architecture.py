@@ -18,6 +18,7 @@ LAYERS = (
     ("submission",),
     ("checks",),
     ("grading",),
+    ("mutation",),
     ("classroom", "bundle"),
     ("report",),
     ("usecases",),
@@ -32,9 +33,9 @@ INNER = {
 LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
-    "lxml": {"xml", "report"},  # a report may be XML
+    "lxml": {"xml", "report", "mutation"},  # a report may be XML; a robot is rewritten as a tree
     "yaml": {"package", "xacro"},
-    "ast": {"static_python", "package"},
+    "ast": {"static_python", "package", "mutation"},
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
