@@ -79,6 +79,7 @@ def checks() -> str:
             lines += ["", "| argument | type | default |", "|---|---|---|"]
         for parameter in check.parameters.values():
             default = "required" if parameter.required else f"`{json.dumps(parameter.default)}`"
+            default = "not checked" if not parameter.required and parameter.default is None else default
             lines.append(f"| `{parameter.name}` | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 

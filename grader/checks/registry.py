@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import appearance, contact, inertia, launch, manual, motion, package, placement, rviz, tree
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -34,6 +34,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     motion.rolls_forward,
     motion.axis_along,
     motion.turns_about_itself,
+    inertia.mass_is,
+    inertia.inertia_plausible,
     package.package_found,
     package.package_type,
     package.build_installs,

@@ -117,6 +117,8 @@ def _toml(value: object) -> str:
             return f"[{', '.join(map(_toml, value))}]"
         case dict():
             return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+        case None:
+            return "not checked"
         case _:
             return str(value)
 
