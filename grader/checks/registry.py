@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, joints, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import appearance, contact, inertia, joints, launch, manual, motion, package, placement, rviz, tree
 from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
@@ -44,6 +44,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     joints.joint_axis,
     joints.mimics,
     joints.joint_dynamics,
+    inertia.mass_is,
+    inertia.inertia_plausible,
     package.package_found,
     package.package_type,
     package.build_installs,
