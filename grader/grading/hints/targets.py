@@ -27,7 +27,16 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
         named = [name for name in texts(criterion.arguments) if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
+        moved |= dict.fromkeys(moving_child(posed, name) for name in named)
     return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
+
+
+def moving_child(posed: Configuration, link: str) -> str:
+    """Return the child of the joint that moves a link; the link itself where none does."""
+    try:
+        return posed.moving_joint(link).child
+    except (MissingElement, NotDecided):
+        return link
 
 
 def texts(value: Any) -> Iterator[str]:
