@@ -31,14 +31,6 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
 
 
-def moving_child(posed: Configuration, link: str) -> str:
-    """Return the child of the joint that moves a link; the link itself where none does."""
-    try:
-        return posed.moving_joint(link).child
-    except (MissingElement, NotDecided):
-        return link
-
-
 def texts(value: Any) -> Iterator[str]:
     """Yield the texts in the arguments of a check."""
     if isinstance(value, str):
@@ -58,3 +50,11 @@ def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
             yield from chain if len(chain) <= _MAX_CHAIN else (*chain[: _MAX_CHAIN // 2], *chain[-_MAX_CHAIN // 2 :])
         except (MissingElement, NotDecided):
             yield from (named[0], other)
+
+
+def moving_child(posed: Configuration, link: str) -> str:
+    """Return the child of the joint that moves a link; the link itself where none does."""
+    try:
+        return posed.moving_joint(link).child
+    except (MissingElement, NotDecided):
+        return link
