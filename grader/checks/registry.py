@@ -6,7 +6,19 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, inertia, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import (
+    appearance,
+    collisions,
+    contact,
+    inertia,
+    launch,
+    manual,
+    motion,
+    package,
+    placement,
+    rviz,
+    tree,
+)
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -36,6 +48,7 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     motion.turns_about_itself,
     inertia.mass_is,
     inertia.inertia_plausible,
+    collisions.collision_matches_visual,
     package.package_found,
     package.package_type,
     package.build_installs,

@@ -6,13 +6,14 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, inertia, motion, placement, tree
+from grader.checks import appearance, collisions, contact, inertia, motion, placement, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import (
     Numbers,
     Scene,
     box,
+    collision,
     cylinder,
     inertial,
     joint,
@@ -106,6 +107,12 @@ def weighing(mass: float = 12.0, *, share: float = 1.0, xyz: Numbers = "0 0 1") 
     inertia = (13.0 * share, 0.0, 0.0, 10.0 * share, 0.0, 5.0 * share)
     shown = visual(box(1.0, 2.0, 3.0), xyz="0 0 1")
     return scene(link("block", inertial(mass, inertia, xyz=xyz), shown))
+
+
+def colliding(z: float = 0.1) -> Scene:
+    """Return a box that is shown at a height of 0.1, and collides at another height."""
+    shape = box(0.6, 0.4, 0.2)
+    return scene(link("block", visual(shape, xyz="0 0 0.1"), collision(shape, xyz=(0.0, 0.0, z))))
 
 
 CASES = (
@@ -375,6 +382,17 @@ CASES = (
         at="<inertia ",
         edges={"tolerance": lambda off: weighing(share=1.0 + off / 100.0)},
         mesh_status="pending",
+    ),
+    Case(
+        collisions.collision_matches_visual,
+        {"link": "block", "tolerance": 0.002},
+        passing=colliding(),
+        pass_message="'block' has 1 collision shape, as shown",
+        failing=colliding(z=0.0),
+        fail_message="no collision shape of 'block' is a box 0.6 0.4 0.2 m at 0 0 0.1 m, as shown;"
+        " the nearest is a box 0.6 0.4 0.2 m at 0 0 0 m (100 mm away)",
+        at='xyz="0.0 0.0 0.0"',
+        edges={"tolerance": lambda off: colliding(z=0.1 + off)},
     ),
 )
 
