@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, collisions, contact, inertia, motion, placement, tree
+from grader.checks import appearance, collisions, contact, inertia, meshes, motion, placement, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import (
@@ -18,6 +18,7 @@ from tests.checks.robots import (
     inertial,
     joint,
     link,
+    mesh,
     paint,
     scene,
     sphere,
@@ -113,6 +114,11 @@ def colliding(z: float = 0.1) -> Scene:
     """Return a box that is shown at a height of 0.1, and collides at another height."""
     shape = box(0.6, 0.4, 0.2)
     return scene(link("block", visual(shape, xyz="0 0 0.1"), collision(shape, xyz=(0.0, 0.0, z))))
+
+
+def meshed(z: float = 0.1) -> Scene:
+    """Return a mesh that is shown at a height."""
+    return scene(link("block", visual(mesh(), xyz=(0.0, 0.0, z))))
 
 
 CASES = (
@@ -393,6 +399,24 @@ CASES = (
         " the nearest is a box 0.6 0.4 0.2 m at 0 0 0 m (100 mm away)",
         at='xyz="0.0 0.0 0.0"',
         edges={"tolerance": lambda off: colliding(z=0.1 + off)},
+    ),
+    Case(
+        meshes.shows_mesh,
+        {
+            "link": "block",
+            "file": "meshes/part.stl",
+            "scale": (1.0, 1.0, 1.0),
+            "xyz": (0.0, 0.0, 0.1),
+            "rpy": (0.0, 0.0, 0.0),
+            "tolerance": 0.002,
+        },
+        passing=meshed(),
+        pass_message="'block' shows the mesh 'package://my_robot/meshes/part.stl'",
+        failing=meshed(z=0.2),
+        fail_message="the mesh of 'block' is at 0 0 0.2 m in 'block'; it should be at 0 0 0.1 m (z 100 mm too large)"
+        " (mesh 'package://my_robot/meshes/part.stl')",
+        at='xyz="0.0 0.0 0.2"',
+        edges={"tolerance": lambda off: meshed(z=0.1 + off)},
     ),
 )
 
