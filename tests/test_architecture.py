@@ -18,7 +18,7 @@ LAYERS = (
     ("submission",),
     ("checks",),
     ("grading",),
-    ("classroom", "bundle"),
+    ("classroom", "bundle", "authoring"),
     ("report",),
     ("usecases",),
     ("cli",),
