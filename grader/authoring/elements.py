@@ -60,7 +60,7 @@ def values_of(element: Element, path: str = "") -> Values:
     """Return all attributes and texts in an element by their paths; of repeated ones a list."""
     found: Values = {}
     for key, text in element.attrib.items():
-        _add(found, f"{path}@{key}", _value(str(text)))
+        _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
         inner = f"{path}{child.tag}"
         if not len(child) and ((child.text or "").strip() or not child.attrib):
