@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from grader.authoring.bodies import body_facts
 from grader.authoring.elements import element_facts
-from grader.authoring.fact import Fact, Omission
+from grader.authoring.fact import Fact, Omission, is_finite
+from grader.authoring.ignored import ignored_mutants
 from grader.authoring.joints import joint_facts
 from grader.authoring.oddities import oddities
 from grader.authoring.package import package_facts
@@ -36,11 +37,11 @@ class Draft(NamedTuple):
 def draft(solution: Solution, head: Head, path: Path) -> Draft:
     """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can tell."""
     found = list(_measured(solution))
-    facts = criterion_ids(_different([it for it in found if isinstance(it, Fact)]))
-    omissions = [it for it in found if isinstance(it, Omission)]
-    odd = list(oddities(solution))
+    facts = criterion_ids(_different([it for it in found if isinstance(it, Fact) and is_finite(it.arguments)]))
+    omissions = [_omitted(it) for it in found if isinstance(it, Omission) or not is_finite(it.arguments)]
+    odd, ignored = list(oddities(solution)), list(ignored_mutants(solution))
     while True:
-        data = rubric_text(head, facts).encode()
+        data = rubric_text(head, facts, ignored).encode()
         rubric = read_rubric(data, path)
         assert rubric.solution is not None
         results = grade(rubric, rubric.solution.submission).results
@@ -70,6 +71,10 @@ def _measured(solution: Solution) -> Iterator[Fact | Omission]:
     package, path = solution.submission.package, solution.submission.path
     if package is not None and path is not None:
         yield from package_facts(package, path.removeprefix(f"{package.folder}/") if package.holds(path) else "")
+
+
+def _omitted(found: Fact | Omission) -> Omission:
+    return found if isinstance(found, Omission) else Omission(found.title, "a value is not a finite number")
 
 
 def _different(facts: Iterable[Fact]) -> list[Fact]:

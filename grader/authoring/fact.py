@@ -77,3 +77,13 @@ def shown(values: Iterable[float]) -> str:
 def is_same(one: float, other: float) -> bool:
     """Return whether two numbers are equal up to rounding."""
     return isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
+
+
+def is_finite(value: Any) -> bool:
+    """Return whether all numbers in the arguments of a check are finite."""
+    match value:
+        case Mapping():
+            return all(map(is_finite, value.values()))
+        case list():
+            return all(map(is_finite, value))
+    return not isinstance(value, float) or isfinite(value)

@@ -4,8 +4,9 @@ from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, direction, exact, length, lengths, shown, whole_angle, whole_degrees
+from grader.authoring.fact import Fact, Omission, direction, exact, length, lengths, shown, whole_angle, whole_degrees
 from grader.authoring.solution import Solution
+from grader.errors import MissingElement, NotDecided
 from grader.robot.model import Joint
 
 _A = {"fixed": "a fixed", "continuous": "a continuous", "revolute": "a revolute", "prismatic": "a prismatic"}
@@ -13,10 +14,14 @@ _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _SLIDING_TOLERANCE = 0.002  # m: the default of joint_limits is in degrees
 
 
-def joint_facts(solution: Solution, joint: Joint) -> Iterator[Fact]:
+def joint_facts(solution: Solution, joint: Joint) -> Iterator[Fact | Omission]:
     """Yield what is true of a joint and of the frame of the link below it."""
     for rule in _RULES:
-        fact = rule(solution, joint)
+        try:
+            fact = rule(solution, joint)
+        except (MissingElement, NotDecided) as error:  # an axis of length zero
+            yield Omission(f"{joint.child}: {rule.__name__.strip('_')}", str(error))
+            continue
         if fact is not None:
             yield fact
 

@@ -1,27 +1,31 @@
 """What looks odd in a reference: it gets full marks all the same, so only its author can tell whether it is right."""
 
 from collections.abc import Callable, Iterator, Mapping
-from itertools import combinations
+from itertools import chain, combinations
 
 from grader.authoring.fact import shown
 from grader.authoring.solution import Solution
 from grader.robot.model import Cylinder, Joint, Link, Mesh
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import dot
-from grader.text import counted
+from grader.text import counted, enumerated
 
 _OPPOSITE = -0.999  # the cosine of the angle between two axes
 _IN_SIMULATION = ("gazebo", "ros2_control")
+_MAX_NAMED = 4
 
 
 def oddities(solution: Solution) -> Iterator[str]:
-    """Yield a line for each thing that looks odd."""
+    """Yield a line for each thing that looks odd, which names all links and joints that it is true of."""
     yield from _problems(solution)
-    for rule in _OF_LINKS:
-        for link in solution.links:
-            yield from rule(solution, link)
+    names: dict[str, list[str]] = {}
+    for link in solution.links:
+        for what in chain.from_iterable(rule(solution, link) for rule in _OF_LINKS):
+            names.setdefault(what, []).append(link.name)
     for joint in solution.moving_joints:
-        yield from _of_joint(joint)
+        for what in _of_joint(joint):
+            names.setdefault(what, []).append(joint.name)
+    yield from (f"{enumerated(found, _MAX_NAMED)}: {what}" for what, found in names.items())
     yield from _mirrored_wheels(solution)
 
 
@@ -42,44 +46,39 @@ def _mass(solution: Solution, link: Link) -> Iterator[str]:
     root = solution.reading.root
     if link.inertial is not None:
         if not link.inertial.mass > 0:
-            yield f"the mass of {link.name} is {shown([link.inertial.mass])} kg"
-    elif (
-        (link.visuals or link.collisions)
-        and root is not None
-        and any(root.find(tag) is not None for tag in _IN_SIMULATION)
+            yield f"the mass is {shown([link.inertial.mass])} kg"
+    elif (link.visuals or link.collisions) and any(
+        root is not None and root.find(tag) is not None for tag in _IN_SIMULATION
     ):
-        yield f"{link.name} has shapes, but no <inertial>: a simulator leaves it out, or does not move it"
+        yield "no <inertial>, though the link has shapes: a simulator ignores the link or fixes it"
 
 
 def _colour(solution: Solution, link: Link) -> Iterator[str]:
     del solution
-    shapes = [
-        visual for visual in link.visuals if not is_empty(visual.geometry) and not isinstance(visual.geometry, Mesh)
-    ]
+    shapes = [shape for shape in link.visuals if not is_empty(shape.geometry) and not isinstance(shape.geometry, Mesh)]
     if any(visual.material is None for visual in shapes):
-        yield f"{link.name} has no colour, or one that is not defined: RViz shows it in red"
+        yield "no colour, or one that is not defined, so RViz shows red"
 
 
 def _collision(solution: Solution, link: Link) -> Iterator[str]:
-    others = any(other.collisions for other in solution.links)
-    if link.visuals and not link.collisions and others:
-        yield f"{link.name} has visuals, but no <collision>, which other links have"
+    if link.visuals and not link.collisions and any(other.collisions for other in solution.links):
+        yield "a <visual>, but no <collision>, which other links have"
 
 
 _OF_LINKS: tuple[Callable[[Solution, Link], Iterator[str]], ...] = (_mass, _colour, _collision)
 
 
 def _of_joint(joint: Joint) -> Iterator[str]:
-    limit, what = joint.limit, f"of the joint {joint.name}"
+    limit = joint.limit
     if limit is None or joint.type not in ("revolute", "prismatic"):
         return
     if limit.lower > limit.upper:
-        yield f"the lower limit {what} is {shown([limit.lower])}, above its upper limit, {shown([limit.upper])}"
+        yield f"the lower limit, {shown([limit.lower])}, is above the upper limit, {shown([limit.upper])}"
     elif limit.lower == limit.upper:
-        yield f"the limits {what} are equal, so it cannot move"
+        yield "the limits are equal, so the joint cannot move"
     for name, value in (("effort", limit.effort), ("velocity", limit.velocity)):
         if value == 0:
-            yield f"the {name} {what} is 0: a controller cannot move it"
+            yield f"the {name} is 0, so no controller can move the joint"
 
 
 def _mirrored_wheels(solution: Solution) -> Iterator[str]:
@@ -92,7 +91,7 @@ def _mirrored_wheels(solution: Solution) -> Iterator[str]:
                 for it in (one, other)
             ]
             if dot(*axes) < _OPPOSITE:
-                yield f"{one.child} and {other.child} are equal wheels, but their axes are opposite: a positive turn of both drives in a circle"
+                yield f"{one.child} and {other.child} are equal wheels with opposite axes: a positive turn of both turns the robot on the spot"
 
 
 def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:

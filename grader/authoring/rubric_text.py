@@ -5,11 +5,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader.authoring.fact import Fact
-from grader.authoring.toml_text import WIDTH, assignment, literal, table
+from grader.authoring.ignored import Ignored
+from grader.authoring.toml_text import WIDTH, assignment, literal, table, wrapped
 from grader.text import printable
 
 _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
+_MUTANTS = "Mutants of the reference that keep full marks: `grader rubric test`"
 # The project's tolerances, which leave room for rounding but not for mistakes.
 _DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
     "shows_box": ({"tolerance": 0.002}, "metres"),
@@ -36,8 +38,8 @@ class Head(NamedTuple):
     package: str
 
 
-def rubric_text(head: Head, facts: Mapping[str, Fact]) -> str:
-    """Return a rubric with a criterion for each fact, by the ids of the criteria."""
+def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored] = ()) -> str:
+    """Return a rubric with a criterion for each fact, by the ids of the criteria, and the mutants that it ignores."""
     of_package = sum(fact.of_package for fact in facts.values())
     lines = [
         *_head(head, len(facts)),
@@ -51,6 +53,9 @@ def rubric_text(head: Head, facts: Mapping[str, Fact]) -> str:
             about = fact.about
             lines += ["", _heading(about)]
         lines += _criterion(name, fact)
+    lines += ["", _heading(_MUTANTS)] if ignored else []
+    for patterns, reason in ignored:
+        lines += ["", "[[test.ignore]]", *wrapped("mutants", patterns), assignment("reason", reason)]
     return "\n".join(lines) + "\n"
 
 

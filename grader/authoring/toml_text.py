@@ -25,11 +25,11 @@ def table(path: str, values: Mapping[str, Any]) -> Iterator[str]:
     inner = {name: value for name, value in values.items() if isinstance(value, Mapping)}
     for name, value in values.items():
         if name not in inner:
-            yield from _wrapped(name, value)
+            yield from wrapped(name, value)
     for name, value in inner.items():
         yield from ("", f"[{path}.{_key(name)}]")
         for deeper, item in value.items():
-            yield from _wrapped(deeper, item)
+            yield from wrapped(deeper, item)
 
 
 def literal(value: Any) -> str:
@@ -48,7 +48,8 @@ def literal(value: Any) -> str:
     return f"[{', '.join(map(literal, value))}]"
 
 
-def _wrapped(key: str, value: Any) -> Iterator[str]:
+def wrapped(key: str, value: Any) -> Iterator[str]:
+    """Yield a line that sets a key, or, of a list that is too long for one, a line for each item."""
     line = assignment(key, value)
     if len(line) <= WIDTH or not isinstance(value, list):
         yield line
