@@ -18,7 +18,7 @@ LAYERS = (
     ("submission",),
     ("checks",),
     ("grading",),
-    ("mutation",),
+    ("mutation", "authoring"),
     ("classroom", "bundle"),
     ("report",),
     ("usecases",),
