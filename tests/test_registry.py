@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from decimal import Decimal
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
-from types import UnionType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pytest
 
@@ -29,6 +29,9 @@ SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 
+SCALAR = str | float | bool
+CONTENT = SCALAR | list[SCALAR]
+
 every_check = pytest.mark.parametrize("check", [describe(function) for function in CHECKS], ids=NAMES)
 
 
@@ -44,17 +47,19 @@ def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
 @every_check
 def test_the_signature_is_a_schema(check: Check) -> None:
     """A check takes its subject, and then keyword arguments that a rubric can give, in types that TOML has."""
-    subject, *rest = inspect.signature(check.function).parameters.values()
-    assert subject.name == check.subject
-    assert subject.kind is subject.POSITIONAL_OR_KEYWORD
+    count, given = len(check.examined), [*inspect.signature(check.function).parameters.values()]
+    rest = given[count:]
+    assert tuple(parameter.name for parameter in given[:count]) == check.examined
+    assert all(parameter.kind is parameter.POSITIONAL_OR_KEYWORD for parameter in given[:count])
     assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
     assert list(check.parameters) == [parameter.name for parameter in rest]
     for parameter in check.parameters.values():
         assert is_supported(parameter.annotation), parameter
         assert parameter.type.name
         assert parameter.type.parse(sample(parameter.annotation)) is not None
-        assert parameter.required == (parameter.default is None)
-        assert parameter.required or parameter.type.parse(as_toml(parameter.default)) == parameter.default
+        is_unset = parameter.default is None  # either it is required, or it is not checked unless it is given
+        assert (parameter.required or NoneType in get_args(parameter.annotation)) == is_unset
+        assert is_unset or parameter.type.parse(as_toml(parameter.default)) == parameter.default
 
 
 @every_check
@@ -216,23 +221,25 @@ def is_supported(annotation: Any) -> bool:
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return is_supported(inner[0])
-    if origin is UnionType:
-        return all(map(is_supported, inner))
+    if origin in (UnionType, Union):
+        return all(is_supported(member) for member in inner if member is not NoneType)
     if origin is Literal:
         return all(isinstance(value, str) for value in inner)
     if origin is list:
-        return inner[0] in SAMPLES
+        return inner[0] in SAMPLES or inner[0] == SCALAR
     if origin is tuple:
         return all(item in (float, Ellipsis) for item in inner) or inner == (str, Ellipsis)
     if origin is not None:
-        return issubclass(origin, Mapping) and inner == (str, str)
+        return issubclass(origin, Mapping) and inner[0] is str and inner[1] in (str, SCALAR, CONTENT)
     return annotation in SAMPLES
 
 
 def sample(annotation: Any) -> Any:
     """Return a value for a parameter, as TOML gives it."""
     origin, inner = get_origin(annotation), get_args(annotation)
-    if origin in (Annotated, UnionType):
+    if origin is Annotated and "enum" in (items := inner[1].schema.get("items", {})):
+        return [items["enum"][0]]
+    if origin in (Annotated, UnionType, Union):
         return sample(inner[0])
     if origin is Literal:
         return inner[0]
@@ -245,8 +252,10 @@ def sample(annotation: Any) -> Any:
 
 def as_toml(value: object) -> object:
     """Return a Python value as tomllib would give it: lists for tuples, exact numbers for floats."""
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return [as_toml(item) for item in value]
+    if isinstance(value, dict):
+        return {key: as_toml(item) for key, item in value.items()}
     return Decimal(repr(value)) if isinstance(value, float) else value
 
 

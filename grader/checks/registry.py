@@ -6,7 +6,21 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import (
+    appearance,
+    contact,
+    elements,
+    launch,
+    manual,
+    motion,
+    package,
+    placement,
+    problems,
+    reference,
+    rviz,
+    tree,
+    xacro_source,
+)
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -15,6 +29,7 @@ ENTRY_POINTS = "grader.checks"
 
 CHECKS: tuple[Callable[..., Outcome], ...] = (
     tree.urdf_loads,
+    problems.without_problems,
     appearance.shows_box,
     appearance.shows_cylinder,
     appearance.shows_sphere,
@@ -34,6 +49,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     motion.rolls_forward,
     motion.axis_along,
     motion.turns_about_itself,
+    reference.kinematics_match_reference,
+    elements.element_present,
     package.package_found,
     package.package_type,
     package.build_installs,
@@ -46,6 +63,7 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     rviz.rviz_fixed_frame,
     rviz.rviz_shows_robot,
     rviz.rviz_display_on,
+    xacro_source.xacro_uses,
     manual.answered,
     manual.evidence_shown,
 )

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import lru_cache, partial
 from math import isfinite
-from types import UnionType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from grader.robot.transforms import Vector
 
@@ -40,9 +40,13 @@ EachFromZeroToOne = Constraint("from 0 to 1 in each number", lambda values: min(
 NotZero = Constraint("a direction: not 0 in each number", any)
 
 NonNegative = Annotated[float, AtLeastZero]
+Count = Annotated[int, AtLeastZero]
 Size = Annotated[Vector, EachAtLeastZero]
 Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
+
+Scalar = str | float | bool
+Content = Scalar | list[Scalar]
 
 
 def simple_type(
@@ -78,7 +82,12 @@ _SIMPLE = {
     str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS = {float: "numbers", str: "strings"}
+_PLURALS: Mapping[Any, str] = {
+    float: "numbers",
+    str: "strings",
+    Scalar: "strings, numbers or booleans",
+    Content: "strings, numbers, booleans or lists of these",
+}
 
 
 @lru_cache(maxsize=256)
@@ -92,8 +101,10 @@ def toml_type(annotation: Any) -> TomlType:
         return constrained(toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint)))
     if origin is Literal:
         return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
-    if origin is UnionType:
-        members = [toml_type(member) for member in inner]
+    if origin in (UnionType, Union):
+        members = [toml_type(member) for member in inner if member is not NoneType]  # None: the argument is absent
+        if len(members) == 1:
+            return members[0]
         name = " or ".join(member.name for member in members)
         choices = {"anyOf": [member.schema for member in members]}
         return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))
@@ -107,6 +118,12 @@ def toml_type(annotation: Any) -> TomlType:
     return simple_type(
         f"a table of {plural}", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
     )
+
+
+def described(base: TomlType, description: str, **keywords: Any) -> TomlType:
+    """Return a type whose JSON Schema says what the value means; without a description, only the keywords are added."""
+    text = {"description": description} if description else {}
+    return replace(base, schema={**base.schema, **text, **keywords})
 
 
 def constrained(base: TomlType, *constraints: Constraint) -> TomlType:

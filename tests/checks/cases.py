@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, motion, placement, tree
+from grader.checks import appearance, contact, elements, motion, placement, problems, reference, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
-from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
+from tests.checks.robots import Numbers, Scene, arm, box, cylinder, joint, link, paint, scene, sphere, turned, visual
 
 BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
 LIDAR = link("lidar", visual(cylinder()))
@@ -86,6 +86,15 @@ def standing(*, height: float = 0.1, rpy: Numbers = "", xy: str = "0 0", wheel: 
         joint("wheel_joint", "continuous", "base", "wheel", xyz=(-0.15, 0.225, wheel), rpy=FORWARD, axis="0 0 1"),
         joint("caster_joint", "fixed", "base", "caster", xyz=(0.2, 0.0, -0.05)),
     )
+
+
+def with_camera(*, rate: str = "30", kind: str = "camera", width: str = "640", link_name: str = "camera") -> Scene:
+    """Return a base with a camera that Gazebo simulates."""
+    image = f"<camera>\n<image>\n<width>{width}</width>\n</image>\n</camera>"
+    inside = f"<update_rate>{rate}</update_rate>\n<always_on>1</always_on>\n{image}"
+    sensor = f'<sensor name="front" type="{kind}">\n{inside}\n</sensor>'
+    camera = joint("camera_joint", "fixed", "base", "camera")
+    return scene(BASE, link("camera"), camera, f'<gazebo reference="{link_name}">\n{sensor}\n</gazebo>')
 
 
 CASES = (
@@ -332,6 +341,44 @@ CASES = (
             "angle": lambda off: rolling(wheel=link("wheel", visual(cylinder(), rpy=turned(roll=off)))),
         },
         mesh_status="failed",
+    ),
+    Case(
+        problems.without_problems,
+        {"problems": ["URDF074", "XACRO003"]},
+        passing=arm(),
+        pass_message="the URDF has none of the problems URDF074 and XACRO003",
+        failing=arm(axis="0 2 0"),
+        fail_message="URDF074: only the direction of an axis counts: ROS 2 normalizes it",
+        at='xyz="0 2 0"',
+        needs_size=False,
+    ),
+    Case(
+        reference.kinematics_match_reference,
+        {"links": ["wheel"], "samples": 20, "tolerance": 0.002, "angle": 1.0},
+        passing=arm(),
+        pass_message="'wheel' moves as in the reference at 27 positions of 2 joints: at most 0 mm and 0 degrees off",
+        failing=arm(xyz=(0.55, 0.0, 0.0)),
+        fail_message="'wheel' does not move as in the reference: it is 50 mm and 0 degrees off with all joints at 0",
+        at='<link name="wheel"',
+        edges={"tolerance": lambda off: arm(xyz=(0.5 + off, 0.0, 0.0)), "angle": lambda off: arm(rpy=turned(roll=off))},
+        needs_size=False,
+    ),
+    Case(
+        elements.element_present,
+        {
+            "tag": "gazebo",
+            "attributes": {"reference": "camera"},
+            "path": "sensor",
+            "values": {"@type": "camera", "update_rate": 30.0, "always_on": True, "camera/image/width": 640.0},
+            "tolerance": 0.01,
+        },
+        passing=with_camera(),
+        pass_message='there is <sensor> in <gazebo reference="camera"> with the expected values',
+        failing=with_camera(rate="10"),
+        fail_message="<sensor> in <gazebo reference=\"camera\">: 'update_rate' is 10; it should be 30",
+        at="<update_rate>",
+        edges={"tolerance": lambda off: with_camera(rate=repr(30.0 + off))},
+        needs_size=False,
     ),
 )
 
