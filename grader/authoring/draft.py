@@ -48,12 +48,15 @@ def draft(solution: Solution, head: Head, path: Path) -> Draft:
         lost = [result for result in results if result.outcome.status != "passed"]
         if not lost:
             return Draft(data, rubric, tuple(omissions), tuple(odd))
-        for result in lost:
-            name, outcome = result.criterion.id, result.outcome
+        for name, outcome in ((result.criterion.id, result.outcome) for result in lost):
+            fact = facts[name]
+            if fact.looser and outcome.status == "failed":
+                facts[name] = replace(fact, arguments={**fact.arguments, **fact.looser}, looser={})
+                continue
+            del facts[name]
             omissions.append(Omission(name, outcome.mistake if outcome.status == "pending" else outcome.message))
-            if outcome.status == "failed" and facts.pop(name).check in _ODD_IF_FAILED:
+            if outcome.status == "failed" and fact.check in _ODD_IF_FAILED:
                 odd.append(f"{outcome.message}: is the solution right?")
-            facts.pop(name, None)
 
 
 def _measured(solution: Solution) -> Iterator[Fact | Omission]:

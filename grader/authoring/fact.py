@@ -16,7 +16,8 @@ _WHOLE = 0.1  # degrees: closer angles are meant as whole ones, such as 90 for 1
 class Fact:
     """A fact of the reference that one check can tell: a criterion without its points.
 
-    `subject` and `aspect` make its id, `about` is its heading.
+    `subject` and `aspect` make its id, `about` is its heading. `looser` has arguments with which it is tried again if the
+    reference fails it.
     """
 
     subject: str
@@ -26,6 +27,7 @@ class Fact:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     about: str = ""
     of_package: bool = False
+    looser: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
