@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import FormatOption, rubric_ids
-from grader.cli.output import warn
+from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
 from grader.usecases.writing import write_stdout
@@ -146,6 +146,6 @@ def run_test(
     from grader.usecases.rubric_test import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, warn, progress_display)
+    text, code = test(request, screen(), warn, progress_display)
     write_stdout(text)
     return code
