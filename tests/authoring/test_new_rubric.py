@@ -142,7 +142,9 @@ def test_it_says_what_it_wrote_and_what_to_do_next(written: tuple[Path, str]) ->
     """The first line counts criteria, the last is the command that tests the rubric."""
     file, printed = written
     first, *_, last = printed.splitlines()
-    assert re.fullmatch(r"wrote .*cedar_arm.toml: Cedar arm \(\d+ criteria, \d+ points\); its reference gets full marks", first)
+    assert re.fullmatch(
+        r"wrote .*cedar_arm.toml: Cedar arm \(\d+ criteria, \d+ points\); its reference gets full marks", first
+    )
     assert last == f"next: grader rubric test {file}"
 
 
@@ -192,7 +194,9 @@ def test_a_package_is_graded_as_a_part(tmp_path: Path) -> None:
     assert of_package["launch_found"] == {"name": launch}
     assert of_package["rviz_fixed_frame"] == {"name": "my_robot.rviz", "launch": launch, "frame": "base_footprint"}
     assert of_package["launch_starts"]["nodes"][1:] == ["robot_state_publisher", "rviz2"]
-    assert {"setup_imports", "build_installs", "launch_finds_files", "rviz_found", "rviz_shows_robot"} <= set(of_package)
+    assert {"setup_imports", "build_installs", "launch_finds_files", "rviz_found", "rviz_shows_robot"} <= set(
+        of_package
+    )
 
 
 @pytest.mark.parametrize("kind", ["workspace", "zip", "xacro"])
@@ -200,7 +204,9 @@ def test_a_reference_is_whatever_can_be_graded(kind: str, tmp_path: Path) -> Non
     """A workspace, an archive and a xacro file are references, too."""
     if kind == "xacro":
         reference = tmp_path / "arm.urdf.xacro"
-        text = ARM.read_text().replace('name="cedar_arm">', 'name="cedar_arm" xmlns:xacro="http://www.ros.org/wiki/xacro">')
+        text = ARM.read_text().replace(
+            'name="cedar_arm">', 'name="cedar_arm" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        )
         reference.write_text(text.replace('size="0.3 ', 'size="${3 / 10} '))
     else:
         shutil.copytree(LAB6, tmp_path / "ws" / "src" / "my_robot")
@@ -310,7 +316,8 @@ def wheels(sign: int) -> list[str]:
     shape = '<geometry><cylinder radius="0.1" length="0.05"/></geometry><material name="red"/>'
     turns = {"left": 1, "right": sign}
     made = [
-        joint("continuous", name, f'<origin xyz="0 {y} 0" rpy="1.5708 0 0"/><axis xyz="0 0 {y}"/>') for name, y in turns.items()
+        joint("continuous", name, f'<origin xyz="0 {y} 0" rpy="1.5708 0 0"/><axis xyz="0 0 {y}"/>')
+        for name, y in turns.items()
     ]
     return [it.replace("/><joint", f"><visual>{shape}</visual></link><joint") for it in made]
 
