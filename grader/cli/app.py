@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from grader import __version__
+from grader.cli.interrupts import quiet_interrupts
 from grader.cli.options import SHELLS
 from grader.cli.output import warn
 from grader.errors import GraderError
@@ -86,6 +87,11 @@ def run(arguments: Sequence[str]) -> int:
 
     Every error is one line on standard error, never a traceback.
     """
+    with quiet_interrupts():
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
     try:
         if os.environ.get("_GRADER_COMPLETE"):
             from grader.cli.completion import complete

@@ -181,6 +181,21 @@ LATE = KeyTable(
     },
     optional=("due", "grace_minutes", "floor_percent"),
 )
+IGNORE = KeyTable(
+    "test.ignore",
+    {
+        "mutants": described(
+            constrained(_NAMES, Constraint("at least one pattern", bool, {"minItems": 1})),
+            "Patterns of mutants that may keep full marks, as `grader rubric test` names them.",
+        ),
+        "reason": described(_TITLE, "Why no criterion looks at what they change."),
+    },
+)
+TEST = KeyTable(
+    "test table",
+    {"ignore": described(_rows(IGNORE), "Mutants that may keep full marks, with the reason.")},
+    optional=("ignore",),
+)
 RUBRIC = KeyTable(
     "rubric",
     {
@@ -202,6 +217,7 @@ RUBRIC = KeyTable(
         "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),
         "evidence": described(_rows(EVIDENCE), "The pictures and documents that the lab asks for."),
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
+        "test": described(_table(TEST.schema), "What `grader rubric test` should not expect of the rubric."),
     },
     optional=(
         "reference",
@@ -215,5 +231,6 @@ RUBRIC = KeyTable(
         "defaults",
         "evidence",
         "late",
+        "test",
     ),
 )
