@@ -13,9 +13,10 @@ _MAX_NAMED = 8  # joints in a message
 class MotionComparison:
     """The offsets of a pair of robots at the sampled positions: all joints at 0, one joint moved, and random ones."""
 
-    def __init__(self, pair: RobotPair, samples: int, tolerance: float, angle: float) -> None:
+    def __init__(self, pair: RobotPair, samples: int) -> None:
         joints = [joint for _, joint in pair.joints]
-        self._pair, self._tolerance, self._angle = pair, tolerance, angle
+        self._pair = pair
+        self._tolerance, self._angle = pair.tolerances
         self._zero = (0.0,) * len(joints)
         self._singles = [*singles(joints)]
         self._random = random_positions(joints, samples) if joints else []
@@ -25,7 +26,7 @@ class MotionComparison:
         zero = self._pair.offset(self._zero)
         alone = [(index, self._pair.offset(positions)) for index, positions in self._singles]
         offsets = [zero, *(offset for _, offset in alone), *map(self._pair.offset, self._random)]
-        worst = max(offsets, key=self._times)
+        worst = max(offsets, key=self._pair.times)  # of equal ones, that of the simplest position
         if self._is_within(worst):
             joints = counted(len(self._pair.joints), "joint")
             return passed(
@@ -50,11 +51,6 @@ class MotionComparison:
     def _links(self) -> str:
         names = [quoted(link) for link, _ in self._pair.links]
         return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
-
-    def _times(self, offset: Offset) -> float:
-        return round(
-            offset.times(self._tolerance, self._angle), 3
-        )  # of equal ones, that of the simplest position counts
 
     def _is_within(self, offset: Offset) -> bool:
         return offset.distance <= self._tolerance + SLACK and offset.angle <= self._angle + SLACK

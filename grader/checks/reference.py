@@ -52,8 +52,8 @@ def kinematics_match_reference(
     joints = _paired(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
         return joints
-    pair = RobotPair((robot, reference), bases, pairs, joints)
-    return MotionComparison(pair, samples, tolerance, angle).outcome()
+    pair = RobotPair((robot, reference), bases, pairs, joints, (tolerance, angle))
+    return MotionComparison(pair, samples).outcome()
 
 
 def _selected(robot: Configuration, link: str) -> str:

@@ -18,20 +18,19 @@ class Offset(NamedTuple):
     angle: float
     positions: tuple[float, ...]
 
-    def times(self, distance: float, angle: float) -> float:
-        """Return how many times it is larger than these tolerances; infinite for NaN."""
-        shares = (self.distance / max(distance, 1e-9), self.angle / max(angle, 1e-9))
-        return max(share if share >= 0 else inf for share in shares)
-
 
 @dataclass(frozen=True, slots=True)
 class RobotPair:
-    """A robot and another one: their paired joints and links, and the links in whose frames poses are compared."""
+    """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
+
+    The `tolerances` of the distance, in metres, and of the angle, in degrees, decide which of several offsets is the largest.
+    """
 
     robots: tuple[Configuration, Configuration]
     bases: tuple[str, str]
     links: Sequence[tuple[str, str]]
     joints: Sequence[tuple[Joint, Joint]]
+    tolerances: tuple[float, float]
 
     def offset(self, positions: tuple[float, ...], turned: int | None = None) -> Offset:
         """Return the largest offset with the joints at these positions; the one with the index `turned` moves the other way."""
@@ -49,7 +48,12 @@ class RobotPair:
             ]
             distance = dist(poses[0].translation, poses[1].translation)
             found.append(Offset(names[0], distance, _angle(*poses), positions))
-        return max(found, key=lambda offset: offset.times(1.0, 57.3))
+        return max(found, key=self.times)
+
+    def times(self, offset: Offset) -> float:
+        """Return how many times an offset is larger than the tolerances, in thousandths; infinite for NaN."""
+        pairs = zip((offset.distance, offset.angle), self.tolerances, strict=True)
+        return max(round(off / max(most, 1e-9), 3) if off >= 0 else inf for off, most in pairs)
 
 
 def _posed(robot: Configuration, positions: Mapping[str, float]) -> Configuration:
