@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from random import Random
 
+from grader.checks.registry import check_names
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
 from grader.mutation.mutants import Mutant, mutants
@@ -25,6 +26,7 @@ class MutationTest:
         self.all = list(_mutants_of(trial))
         self.chosen = sampled(self.all, most, Random(seed))
         self.caught = self.same = 0
+        self.checks = check_names()
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 
@@ -75,7 +77,7 @@ class MutationTest:
             (row.reason for row in rubric.ignored if any(fnmatchcase(mutant.id, it) for it in row.mutants)), ""
         )
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot), reason)
+        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot, self.checks), reason)
 
     def _diff(self, mutant: Mutant) -> str:
         if mutant.renamed:
@@ -93,7 +95,7 @@ class MutationTest:
                 return
             submission = self.trial.submission(mutant) if mutant.id not in chosen else None
             if submission is not None:
-                for result in self.trial.results(mutant, submission, list(self.idle)):
+                for result in self.trial.results(mutant, submission, self.trial.expected):
                     if result.outcome.status == "failed":
                         self.idle.pop(result.criterion.id, None)
 

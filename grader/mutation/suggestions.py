@@ -1,9 +1,8 @@
 """Which check to try for a mutant that survived: a table of what it changes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.checks.registry import check_names
 from grader.grading.rubric import Criterion, Rubric
 from grader.mutation.mutants import Mutant
 from grader.mutation.references import texts
@@ -60,9 +59,8 @@ _RULES = (
 )
 
 
-def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None) -> str:
-    """Return what may catch a mutant that survived, as a clause; `robot` is the reference's."""
-    known = check_names()
+def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None, known: Collection[str]) -> str:
+    """Return what may catch a mutant that survived, as a clause; `robot` is the reference's, `known` are the checks that exist."""
     checks = [name for name in _checks_for(mutant.tags) if name in known]
     names = _names(mutant, robot)
     near = [found for found in rubric.criteria if found.check.name in checks and names & _measured(found)]
