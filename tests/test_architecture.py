@@ -35,7 +35,7 @@ LIBRARIES = {
     "rich": {"cli", "report", "usecases"},
     "lxml": {"xml", "report", "mutation"},  # a report may be XML; a robot is rewritten as a tree
     "yaml": {"package", "xacro"},
-    "ast": {"static_python", "package"},
+    "ast": {"static_python", "package", "mutation"},
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
