@@ -10,11 +10,11 @@ from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES, check_resolved
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
-from grader.robot.inertia import MassProperties, difference, principal_moments, turned, uniform_solid
+from grader.robot.inertia import MassProperties, difference, principal_moments, turned, uniform_solid, with_volume
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Inertial, Link, Mesh
+from grader.robot.model import Geometry, Inertial, Link, Mesh
 from grader.robot.separation import penetration
-from grader.robot.shapes import Shape, UnknownShape, bounding_radius, is_empty, volume
+from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
@@ -127,20 +127,19 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
     found = robot.link(link)
     for word, elements in (("collision shape", found.collisions), ("visual", found.visuals)):
         check_resolved(found, word.partition(" ")[0], has_none=True)
-        placed = {(element.geometry, element.origin): None for element in elements if not is_empty(element.geometry)}
-        for geometry, _ in placed:
-            if isinstance(geometry, Mesh):
-                raise UnknownShape(geometry)
-        shapes = [
-            (geometry, placed_by(IDENTITY, origin))
-            for geometry, origin in placed
-            if not isinstance(geometry, Mesh) and volume(geometry) > 0.0
-        ]
-        if len(shapes) > MAX_SHAPES:
+        placed = with_volume(elements)
+        if len(placed) > MAX_SHAPES:
             raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
+        shapes = [(_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed]
         if shapes:
             return word + "s" * (len(shapes) > 1), shapes
     raise _without_volume(found)
+
+
+def _measurable(geometry: Geometry) -> Shape:
+    if isinstance(geometry, Mesh):
+        raise UnknownShape(geometry)
+    return geometry
 
 
 def _without_volume(link: Link) -> MissingElement:

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from math import copysign, hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.robot.model import Box, Sphere
-from grader.robot.shapes import Shape, volume
+from grader.robot.model import Box, Collision, Geometry, Mesh, Origin, Sphere, Visual
+from grader.robot.shapes import Shape, is_empty, volume
 from grader.robot.transforms import Rotation, Transform, Vector, dot, minus
 
 Tensor = tuple[float, float, float, float, float, float]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
@@ -52,6 +52,16 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
         MassProperties(part, pose.translation, turned(solid_inertia(shape, part), pose.rotation))
         for shape, pose, part in parts
     )
+
+
+def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, Origin]]:
+    """Return the shapes that have a volume, or may have one because they are meshes, each once with its origin."""
+    placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
+    return [(shape, origin) for shape, origin in placed if not is_empty(shape) and _has_volume(shape)]
+
+
+def _has_volume(shape: Geometry) -> bool:
+    return isinstance(shape, Mesh) or volume(shape) > 0.0
 
 
 def together(bodies: Iterable[MassProperties]) -> MassProperties:
