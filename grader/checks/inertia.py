@@ -19,8 +19,8 @@ from grader.robot.transforms import IDENTITY, Transform, minus
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
 _ROUNDING = 0.01  # of the largest principal moment: what rounded numbers may add to it in a thin plate, where the others are equal to it
-_CENTRE = 0.002  # metres that a mass centre may be off
-_CENTRE_SHARE = 0.02  # of the size that a mass centre may be off
+_CENTRE = 0.002  # metres that a centre of mass may be off
+_CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
 _OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
 _COMPONENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -45,10 +45,10 @@ def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: No
 
 
 def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
-    """The inertia and the mass centre of a link are those of a uniform solid of its shapes with its mass.
+    """The inertia and the centre of mass of a link are those of a uniform solid of its shapes with its mass.
 
     The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual grading. The mass must be
-    positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The mass centre
+    positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The centre of mass
     may be 2 mm or 2 % of the size off, whichever is more.
 
     Args:
@@ -82,7 +82,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
-        wrong.append(f"the mass centre of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
+        wrong.append(f"the centre of mass of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
     if wrong and _overlapping(shapes):
         reason = f"the {what} of a link overlap, so their solid is not known"
         raise NotDecided(f"{'; '.join(wrong)}, but the {what} overlap", reason)

@@ -201,12 +201,12 @@ COLLISION = RIGHT[RIGHT.index("    <collision>") : RIGHT.index("  </link>")]
         (
             '<origin xyz="0 0 0.3"/>\n      <mass',
             "<mass",
-            "the mass centre of the link 'arm'",
+            "the centre of mass of the link 'arm'",
         ),
         (
             '<origin xyz="0 0 0.3"/>\n      <mass value="2"/>\n      <inertia ixx="0.06125"',
             '<mass value="2"/>\n      <inertia ixx="0.24"',
-            "inertia and mass centre of the link 'arm'",
+            "inertia and centre of mass of the link 'arm'",
         ),
         (INERTIAL, "", "the <inertial> of the link 'arm' is missing"),
         (COLLISION, "", "the <collision> of the link 'arm' is missing"),

@@ -23,7 +23,7 @@ def body_proposals(draft: Draft, link: str, mass: float | None) -> Iterator[Prop
 
 
 def _inertial(draft: Draft, own: Element, link: Link, mass: float | None) -> Iterator[Proposal]:
-    """Correct the mass, the inertia, the mass centre or all: an inertia for another shape, an <inertial> without origin."""
+    """Correct the mass, the inertia, the centre of mass or all: an inertia for another shape, an <inertial> without origin."""
     of, inertial, element = f"the link {link.name!r}", link.inertial, child_of(own, "inertial")
     weighs = mass if mass is not None else inertial.mass if inertial is not None else None
     solid = _solid(link, weighs) if weighs is not None and weighs > 0.0 else None
@@ -46,10 +46,12 @@ def _inertial(draft: Draft, own: Element, link: Link, mass: float | None) -> Ite
     centre = {"xyz": " ".join(map(_number, solid.centre))}
     of_centre = _set(draft, element, "origin", centre)
     yield Proposal(of_inertia, "the inertia", "set the inertia{} to that of its shapes", of, link.name, KNOWN)
-    yield Proposal(of_centre, "the mass centre", "set the mass centre{} to that of its shapes", of, link.name, KNOWN)
+    yield Proposal(
+        of_centre, "the centre of mass", "set the centre of mass{} to that of its shapes", of, link.name, KNOWN
+    )
     for edits, what in (
         (of_mass + of_inertia, "mass and inertia"),
-        (of_inertia + of_centre, "inertia and mass centre"),
+        (of_inertia + of_centre, "inertia and centre of mass"),
     ):
         yield Proposal(edits, what, f"set {what}{{}} to those of its shapes", of, link.name, KNOWN)
 
