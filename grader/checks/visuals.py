@@ -13,7 +13,7 @@ from grader.robot.transforms import Transform, Vector
 from grader.source import LazyLocation
 
 _MAX_FILE_NAME = 100  # characters that a message shows
-MAX_SHAPES = 100  # of one link that are compared with each other
+MAX_SHAPES = 50  # of one link that are compared with each other
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
