@@ -11,7 +11,7 @@ from grader.authoring.elements import element_facts
 from grader.authoring.fact import Fact, Omission, is_finite
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.joints import joint_facts
-from grader.authoring.oddities import oddities
+from grader.authoring.oddities import Doubts, oddities
 from grader.authoring.package import package_facts
 from grader.authoring.rubric_text import Head, criterion_ids, rubric_text
 from grader.authoring.shapes import shape_facts
@@ -40,18 +40,18 @@ def draft(solution: Solution, head: Head, path: Path) -> Draft:
     found = list(_measured(solution))
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [it for it in found if isinstance(it, Omission)]
-    odd, ignored = list(oddities(solution)), list(ignored_mutants(solution))
+    ignored, doubts = list(ignored_mutants(solution)), Doubts()
     while True:
         rows = criterion_ids(facts)
         data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
         lost = _lost(rubric)
         if not lost:
-            return Draft(data, rubric, tuple(omissions), tuple(odd))
+            return Draft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
         for name, outcome in lost.items():
             fact, is_odd = rows[name], rows[name].is_doubtful and outcome.status == "failed"
             if is_odd:
-                odd.append(f"{outcome.message}: is the solution right?")
+                doubts.add(fact, outcome)
             if not fact.otherwise:
                 why = outcome.mistake if outcome.status == "pending" else outcome.message
                 omissions.append(Omission(name, _SEE_BELOW if is_odd else why))

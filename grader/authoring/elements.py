@@ -2,9 +2,11 @@
 
 import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from grader.authoring.fact import Fact, shown
+from grader.text import enumerated
 from grader.xml.parsing import Element
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission")
@@ -12,6 +14,8 @@ _IN_JOINTS = ("safety_controller", "calibration")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
 _NAMED_BY = ("reference", "name", "filename", "type")
+
+_MAX_LISTED = 4  # values in a title
 
 Values = dict[str, Any]
 
@@ -51,7 +55,7 @@ def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
     arguments |= {"values": values} if values else {}
     where = f"<{element.tag}>{f' of {_name(element)}' if _name(element) else ''}"
     title = f"{where} has {f'<{path}>' if path else 'the element'}" if path or not values else where
-    listed = ", ".join(f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items())
+    listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
     title += f"{' with' if path else ' has'} {listed}" if listed else ""
     return Fact(label, "", title, "element_present", arguments, about=_about(element))
 
@@ -84,8 +88,7 @@ def _value(text: str | None) -> str | bool | int | float:
     word = (text or "").strip()
     if word in _TRUTH:
         return _TRUTH[word]
-    if _NUMBER.fullmatch(word):
-        number = float(word)
+    if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
         return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
     return " ".join(word.split())
 

@@ -276,13 +276,17 @@ ODD = {
     "no colour": (robot(body("hand")), "odd: hand: no colour, or one that is not defined, so RViz shows red"),
     "limits": (
         robot(joint("revolute", inside='<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1" velocity="1"/>')),
-        "odd: tool_joint: the lower limit, 1, is above the upper limit, -1",
+        r"odd: URDF\d+: lower 1 is not below upper -1: the joint cannot move \(line 1\)",
     ),
     "effort": (
         robot(joint("prismatic", inside='<axis xyz="0 0 1"/><limit lower="0" upper="1" effort="0" velocity="1"/>')),
         "odd: tool_joint: the effort is 0, so no controller can move the joint",
     ),
     "mass": (robot(body("hand", mass=0)), "odd: hand: the mass is 0 kg"),
+    "collision": (
+        robot().replace("</link>", '<collision><geometry><sphere radius="0.5"/></geometry></collision></link>'),
+        r"odd: .*collision shape of 'base' .*: is the solution right\?",
+    ),
     "no inertia": (
         robot('<gazebo reference="base"><mu1>0.5</mu1></gazebo>'),
         "odd: base: no <inertial>, though the link has shapes",
