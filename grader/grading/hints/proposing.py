@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from grader.edits import Proposal
-from grader.grading.hints.targets import Targets, moving_child, targets_of
+from grader.grading.hints.targets import Targets, moving_child, selected, targets_of
 from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
@@ -74,8 +74,9 @@ def _given(criteria: Iterable[Criterion], robot: Robot) -> dict[str, dict[str, V
     posed = Configuration(robot)
     for criterion in criteria:
         link = criterion.arguments.get("link")
-        if not isinstance(link, str):
+        if not isinstance(link, str) or criterion.at:  # numbers of a posed robot are not those in the file
             continue
+        link = selected(posed, link)
         for name in (*_NUMBERS, *_JOINT_NUMBERS):
             value = criterion.arguments.get(name)
             if value is not None:
