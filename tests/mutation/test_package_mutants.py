@@ -4,15 +4,15 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.grading.grade import decide, open_reference
+from grader.grading.grade import decide
 from grader.mutation.mutants import Mutant
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
 from grader.submission.editing import content, overlaid
 from grader.submission.submission import Submission
-from tests.samples import LAB6
+from tests.samples import LAB6, reference
 
-REFERENCE = open_reference(LAB6)
+REFERENCE = reference()
 
 
 def text(path: str) -> str:
