@@ -1,17 +1,24 @@
 """The edits that are proposed for criteria: of the robot, of xacro that is loaded as it stands, and of the package."""
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.edits import Proposal
+from grader.errors import MissingElement, NotDecided
 from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.families import Values
+from grader.robot.edits.xml_values import element_proposals
+from grader.robot.model import Robot
+from grader.robot.selectors import selected_link
+from grader.robot.tree import parent_joints
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
+from grader.xml.wanted_element import WantedElement
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -49,6 +56,8 @@ class Proposing:
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
             reference = self.reference or draft
+            for element in _elements(criteria, draft.robot):
+                found += element_proposals(draft, reference, element)
             shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
             anchors = tuple(dict.fromkeys((*shown, *moved)))
             if about_urdf:
@@ -58,6 +67,20 @@ class Proposing:
             ]
             found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria))
         return found
+
+
+def _elements(criteria: Iterable[Criterion], robot: Robot) -> Iterator[WantedElement]:
+    """Yield the elements that criteria look for, with the links that selectors mean."""
+    parents = parent_joints(robot)
+    for criterion in criteria:
+        if criterion.check.name == "element_present":
+            with suppress(MissingElement, NotDecided):
+                attributes = {
+                    key: selected_link(robot, parents, value) if isinstance(value, str) else value
+                    for key, value in criterion.arguments.get("attributes", {}).items()
+                }
+                given = {"path": "", "values": {}, "tolerance": 1e-6, **criterion.arguments, "attributes": attributes}
+                yield WantedElement(**given)
 
 
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
