@@ -97,7 +97,10 @@ def test_a_suggestion_names_the_criterion_that_looks_and_passes(tmp_path: Path) 
     """Its tolerance or its arguments let the mutant pass."""
     found = data(write_rubric(tmp_path), "--mutants", 5000)
     listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
-    assert listed["number +0.05: joint slide/origin xyz.x"] == "no criterion looks at it; try frame_at or kinematics_match_reference"
+    assert (
+        listed["number +0.05: joint slide/origin xyz.x"]
+        == "no criterion looks at it; try frame_at or kinematics_match_reference"
+    )
     assert listed["number negated: link plate/visual/geometry/box size.x"].startswith("plate-box passes all the same")
 
 
