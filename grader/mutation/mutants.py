@@ -10,7 +10,7 @@ from grader.mutation.elements import Attribute, Element, elements, names, text_o
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
-_UNTOUCHED = ("version", "encoding", "params")
+_UNTOUCHED = ("version", "encoding")
 _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", "Fixed", "rotating")
 _MAX_EXCHANGED = 12  # other names that a name becomes
 _COMPONENTS = {
@@ -102,7 +102,8 @@ def _of_attribute(text: str, element: Element, attribute: Attribute, known: dict
     elif name == "type" and element.tag == "joint":
         yield from (Change("type", label, *span, other, other, tags) for other in _TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
-        yield from of_value(text, element.label, span, name, tags)
+        changes = of_value(text, element.label, span, name, tags)
+        yield from (change for change in changes if name != "params" or change.family != "text misspelt")
     if name == "lower":
         upper = next((other for other in element.attributes if other.name == "upper"), None)
         if upper is not None:
