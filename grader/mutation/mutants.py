@@ -1,7 +1,7 @@
 """Mutants of a URDF or xacro text: every single edit that a family of mistakes allows."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
@@ -13,6 +13,7 @@ _NAMES = ("name", "link", "joint", "reference")
 _UNTOUCHED = ("version", "encoding")
 _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", "Fixed", "rotating")
 _MAX_EXCHANGED = 12  # other names that a name becomes
+_BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 _COMPONENTS = {
     **dict.fromkeys(("xyz", "size", "scale"), ("x", "y", "z")),
     "rpy": ("roll", "pitch", "yaw"),
@@ -59,6 +60,21 @@ class Change(NamedTuple):
 def mutants(text: str, path: str = "") -> Iterator[Mutant]:
     """Yield every mutant of a URDF or xacro once."""
     return as_mutants(text, path, _changes(text))
+
+
+def with_visuals(text: str, path: str, links: Collection[str]) -> Iterator[Mutant]:
+    """Yield the mutants in which one of these links, which must show nothing, shows a box."""
+    own = [
+        found for found in elements(text) if found.tag == "link" and found.label in {f"link {name}" for name in links}
+    ]
+    return as_mutants(text, path, (_with_visual(text, link) for link in own))
+
+
+def _with_visual(text: str, link: Element) -> Change:
+    is_empty = text[link.head_end - 2] == "/"
+    start = link.head_end - (2 if is_empty else 0)
+    new = f">{_BOX}</link>" if is_empty else _BOX
+    return Change("visual added", link.label, start, link.head_end, new, tags=(*link.tags, "visual"))
 
 
 def as_mutants(text: str, path: str, changes: Iterable[Change]) -> Iterator[Mutant]:
