@@ -139,8 +139,10 @@ def test_every_key_has_a_description() -> None:
         described = SCHEMA["$defs"][check.name]["properties"]
         meanings = {name: argument["description"] for name, argument in described.items()}
         assert meanings == check.documentation.arguments
-        assert {name for name, argument in described.items() if "default" not in argument} == {
-            name for name, parameter in check.parameters.items() if parameter.required
+        assert {name: argument["default"] for name, argument in described.items() if "default" in argument} == {
+            name: json.loads(json.dumps(parameter.default))
+            for name, parameter in check.parameters.items()
+            if parameter.default is not None
         }
 
 
