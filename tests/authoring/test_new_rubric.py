@@ -209,7 +209,7 @@ def test_the_same_reference_gives_the_same_bytes(written: tuple[Path, str], tmp_
 
 def test_every_mutant_of_the_reference_loses_something(written: tuple[Path, str]) -> None:
     """`grader rubric test` finds no survivor, no idle criterion, and no equivalent that loses points."""
-    done = run(("rubric", "test", written[0], "--mutants", 200, "--fail-under", "100%", "--format", "json"))
+    done = run(("rubric", "test", written[0], "--fail-under", "100%", "--format", "json"))
     result = json.loads(done.stdout)
     assert (done.returncode, result["survivors"], result["idle"], result["equivalents"]["lost"]) == (0, [], [], [])
 
