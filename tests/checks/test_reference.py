@@ -7,9 +7,9 @@ import pytest
 
 from grader.checks.outcome import Outcome
 from grader.checks.reference import kinematics_match_reference
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.errors import MissingElement, NotDecided, RubricError
 from grader.robot.kinematics import Configuration
-from tests.checks.outcomes import ask, graded
+from tests.checks.outcomes import ask
 from tests.checks.robots import ARM, Scene, arm, joint, link, scene
 from tests.processor_time import processor_time
 
@@ -136,8 +136,9 @@ def test_another_axis_is_not_called_reversed() -> None:
     outcome = compared(serial(AXES[0], "1 0 0", *AXES[2:]), SERIAL)
     assert outcome.message.endswith("it differs as soon as 'j2' moves")
     two = compared(serial("0 0 -1", "0 -1 0", *AXES[2:]), SERIAL)
-    assert two.status == "failed"
-    assert "as soon as" not in two.message
+    assert two.message.endswith("it differs as soon as 'j1' or 'j2' moves: their axes are reversed")
+    both = compared(serial("0 0 -1", "1 0 0", *AXES[2:]), SERIAL)
+    assert both.message.endswith("it differs as soon as 'j1' or 'j2' moves")
 
 
 def test_the_message_has_the_positions() -> None:
@@ -182,12 +183,9 @@ def test_a_link_that_is_not_connected_is_missed() -> None:
 
 
 def test_a_mistake_of_the_reference_is_not_the_students() -> None:
-    """A link that the reference lacks is an error of the rubric, not a failure."""
-    with pytest.raises(InputError, match="the reference cannot be compared with: there is no link 'nowhere'"):
+    """A link that the reference lacks is a mistake of the rubric, not a failure."""
+    with pytest.raises(RubricError, match="the reference solution cannot be compared with: there is no link 'nowhere'"):
         compared(Scene(ARM.text.replace('"wheel"', '"nowhere"')), ARM, "nowhere")
-    assert (
-        graded(kinematics_match_reference, Scene(ARM.text.replace('"wheel"', '"x"')), links=["x"]).status == "errored"
-    )
 
 
 def test_what_cannot_be_determined_is_pending() -> None:
@@ -208,6 +206,15 @@ def test_the_result_is_always_the_same() -> None:
     wrong = serial("0 0 1", "0 1 1", *AXES[2:])
     assert compared(wrong, SERIAL) == compared(Scene(wrong.text), Scene(SERIAL.text))
     assert ask(kinematics_match_reference, arm(axis="1 1 0"), links=["wheel"]).status == "failed"
+
+
+def test_hostile_robots_are_bounded() -> None:
+    """A chain of thousands of joints needs manual grading; numbers that overflow are a failure."""
+    long = serial(*["0 0 1"] * 600)
+    with pytest.raises(NotDecided, match="more than 500 joints lead to 'l600'"):
+        compared(long, SERIAL)
+    huge = Scene(ARM.text.replace('xyz="0.5 0.0 0.0"', 'xyz="1e300 0 0"'))
+    assert compared(huge, ARM, "wheel").status == "failed"
 
 
 def test_it_is_fast() -> None:
