@@ -30,13 +30,17 @@ _DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
 
 
 class Head(NamedTuple):
-    """What a rubric says of the lab. `reference` is a path relative to the rubric, `package` is empty without one."""
+    """What a rubric says of the lab. `reference` is a path relative to the rubric.
+
+    `package` is empty without one, and so is `schema`, the path of a JSON Schema for editors.
+    """
 
     id: str
     title: str
     reference: str
     urdf: str
     package: str
+    schema: str = ""
 
 
 def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored] = ()) -> str:
@@ -88,6 +92,7 @@ def _head(head: Head, points: int) -> Iterator[str]:
     }
     lines = {key: assignment(key, value) for key, value in given.items() if value}
     width = max(len(lines[key]) for key in comments if key in lines)
+    yield from [f"#:schema {head.schema}"] if head.schema else []
     for key, line in lines.items():
         yield f"{line:{width}}  # {comments[key]}" if key in comments else line
     yield assignment("points", points)
