@@ -25,7 +25,7 @@ from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE
 from tests.checks.submissions import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
-SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
+SHARED = {"__init__", "comparison", "inertia_mistakes", "outcome", "registry", "toml_types", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 

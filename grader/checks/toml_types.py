@@ -34,10 +34,16 @@ class Constraint:
     schema: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
 
-AtLeastZero = Constraint("at least 0", lambda value: value >= 0)
-EachAtLeastZero = Constraint("at least 0 in each number", lambda values: min(values) >= 0)
-EachFromZeroToOne = Constraint("from 0 to 1 in each number", lambda values: min(values) >= 0 and max(values) <= 1)
-NotZero = Constraint("a direction: not 0 in each number", any)
+AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
+EachAtLeastZero = Constraint(
+    "at least 0 in each number", lambda values: min(values) >= 0, {"items": {"type": "number", "minimum": 0}}
+)
+EachFromZeroToOne = Constraint(
+    "from 0 to 1 in each number",
+    lambda values: min(values) >= 0 and max(values) <= 1,
+    {"items": {"type": "number", "minimum": 0, "maximum": 1}},
+)
+NotZero = Constraint("a direction: not 0 in each number", any, {"contains": {"not": {"const": 0}}})
 
 NonNegative = Annotated[float, AtLeastZero]
 Count = Annotated[int, AtLeastZero]

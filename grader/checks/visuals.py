@@ -12,12 +12,14 @@ from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
 
+MAX_SHAPES = 100  # of one link that are compared with each other
+
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     shown = robot.shown.get(link)
     if shown is None:
-        _check_resolved(robot.link(link))
+        check_resolved(robot.link(link), "visual", has_none=not robot.link(link).visuals)
         shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
         robot.shown[link] = shown
     if not shown:
@@ -26,13 +28,16 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     return shown
 
 
-def _check_resolved(link: Link) -> None:
-    """Raise NotDecided or MissingElement where a visual of a link, or whether it has one, is not known because of xacro."""
-    part = link.unresolved.get("visual", link.unresolved.get("") if not link.visuals else None)
-    if part is not None:
-        part.check()
-        message = f"xacro cannot expand the visual of link {link.name!r}"
-        raise MissingElement("visual", link.name, message=message, location=part.location)
+def check_resolved(link: Link, part: str, *, has_none: bool) -> None:
+    """Raise NotDecided or MissingElement where a part of a link, such as a visual, is not known because of xacro.
+
+    If the link `has_none` that is known, it may be among the children that are not.
+    """
+    found = link.unresolved.get(part, link.unresolved.get("") if has_none else None)
+    if found is not None:
+        found.check()
+        message = f"xacro cannot expand the {part} of link {link.name!r}"
+        raise MissingElement(part, link.name, message=message, location=found.location)
 
 
 ShapeName = Literal["any", "box", "cylinder", "sphere"]

@@ -1,14 +1,17 @@
-"""grader rubric: list, show and check rubrics."""
+"""grader rubric: list, show, check and test rubrics."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from grader.cli.options import rubric_ids
+from grader.cli.options import FormatOption, rubric_ids
 from grader.cli.output import warn
+from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
+from grader.usecases.writing import write_stdout
 
-_HELP = """List, show and check rubrics, and list the checks.
+_HELP = """List, show, check and test rubrics, and list the checks.
 
 Examples:
 
@@ -17,7 +20,11 @@ Examples:
   grader rubric show lab6
 
   grader rubric check my_lab.toml
+
+  grader rubric test my_lab.toml
 """
+_FOLDER = "A folder with samples: submissions with an expected.toml."
+_LEAST = "Exit 1 if the mutation score is less, in percent."
 rubric = typer.Typer(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
     str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
@@ -81,3 +88,35 @@ def check_rubric(file: RubricArgument) -> str:
       grader rubric check my_lab.toml
     """
     return rubrics.check(file, warn) + "\n"
+
+
+@rubric.command("test")
+def run_test(
+    name: RubricArgument,
+    folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
+    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random choices.")] = 0,
+    mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Mutants to grade at most.")] = 500,
+    output_format: FormatOption = OutputFormat.TERMINAL,
+) -> int:
+    """Test a rubric on mutants and equivalents of its reference, and on samples.
+
+    The reference and its equivalents must lose nothing, every mutant something. Mutants that get full marks are listed with a
+    suggestion.
+
+    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the
+    rubric is broken or has no reference.
+
+    Examples:
+
+      grader rubric test lab6
+
+      grader rubric test my_lab.toml samples --fail-under 100%
+    """
+    from grader.cli.progress import progress_display
+    from grader.usecases.rubric_test import TestRequest, test
+
+    request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
+    text, code = test(request, warn, progress_display)
+    write_stdout(text)
+    return code

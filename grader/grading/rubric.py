@@ -92,6 +92,13 @@ class Late:
     floor_percent: Decimal = Decimal(0)
 
 
+class Ignored(NamedTuple):
+    """Mutants of the reference that may lose nothing: patterns of their ids, and why."""
+
+    mutants: tuple[str, ...]
+    reason: str
+
+
 @dataclass(frozen=True, slots=True)
 class Rubric:
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
@@ -117,6 +124,7 @@ class Rubric:
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
     hints: Level = "cause"
+    ignored: tuple[Ignored, ...] = ()
     solution: Reference | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -210,6 +218,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric.get("folders", ()),
         rubric.get("without_urdf", ""),
         rubric.get("hints", "cause"),
+        tuple(Ignored(**row) for row in valid.ignored),
         _solution(rubric, path),
     )
 

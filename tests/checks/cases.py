@@ -7,10 +7,23 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, joints, motion, placement, tree
+from grader.checks import appearance, contact, inertia, joints, motion, placement, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
-from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
+from tests.checks.robots import (
+    Numbers,
+    Scene,
+    box,
+    cylinder,
+    inertial,
+    joint,
+    link,
+    paint,
+    scene,
+    sphere,
+    turned,
+    visual,
+)
 
 BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
 LIDAR = link("lidar", visual(cylinder()))
@@ -123,6 +136,13 @@ def gripping(*mimic: str, kind: str = "prismatic") -> Scene:
         joint("left_joint", "prismatic", "palm", "left", axis="0 1 0"),
         joint("right_joint", kind, "palm", "right", axis="0 -1 0", more=follows),
     )
+
+
+def weighing(mass: float = 12.0, *, share: float = 1.0, xyz: Numbers = "0 0 1") -> Scene:
+    """Return a box 1 x 2 x 3 that stands on its link's frame, with its inertia but for a factor."""
+    inertia = (13.0 * share, 0.0, 0.0, 10.0 * share, 0.0, 5.0 * share)
+    shown = visual(box(1.0, 2.0, 3.0), xyz="0 0 1")
+    return scene(link("block", inertial(mass, inertia, xyz=xyz), shown))
 
 
 CASES = (
@@ -437,6 +457,29 @@ CASES = (
         at="damping=",
         edges={"tolerance": lambda off: swinging(more=f'<dynamics friction="{0.5 + off!r}"/>')},
         needs_size=False,
+    ),
+    Case(
+        inertia.mass_is,
+        {"link": "block", "mass": 12.0, "tolerance": 0.1},
+        passing=weighing(),
+        pass_message="the mass of 'block' is 12 kg",
+        failing=weighing(1.2),
+        fail_message="the mass of 'block' is 1.2 kg; it should be 12 kg (10.8 kg too small)",
+        at='value="1.2"',
+        edges={"tolerance": lambda off: weighing(12.0 + off)},
+        needs_size=False,
+    ),
+    Case(
+        inertia.inertia_plausible,
+        {"link": "block", "tolerance": 10.0},
+        passing=weighing(),
+        pass_message="the inertia of 'block' is that of a uniform solid of its visual (0 % off)",
+        failing=weighing(share=1.6),
+        fail_message="the inertia of 'block' is 60 % off that of a uniform solid of its visual:"
+        " it is 60 % too large, as for a mass of 19.2 kg",
+        at="<inertia ",
+        edges={"tolerance": lambda off: weighing(share=1.0 + off / 100.0)},
+        mesh_status="pending",
     ),
 )
 

@@ -61,17 +61,31 @@ def scene(*parts: str) -> Scene:
     return Scene("\n".join(('<robot name="test">', *parts, "</robot>", "")))
 
 
-def link(name: str, *visuals: str) -> str:
-    """Return a link with its visuals."""
-    if not visuals:
+def link(name: str, *children: str) -> str:
+    """Return a link with its inertial, visuals and collisions."""
+    if not children:
         return f'<link name="{name}"/>'
-    return "\n".join((f'<link name="{name}">', *visuals, "</link>"))
+    return "\n".join((f'<link name="{name}">', *children, "</link>"))
 
 
 def visual(shape: str, *, xyz: Numbers = "", rpy: Numbers = "", material: str = "") -> str:
     """Return a visual; origin and material are omitted by default."""
     inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>", material)
     return "\n".join(("<visual>", *filter(None, inside), "</visual>"))
+
+
+def collision(shape: str, *, xyz: Numbers = "", rpy: Numbers = "") -> str:
+    """Return a collision; the origin is omitted by default."""
+    inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>")
+    return "\n".join(("<collision>", *filter(None, inside), "</collision>"))
+
+
+def inertial(mass: float, inertia: Sequence[float], *, xyz: Numbers = "", rpy: Numbers = "") -> str:
+    """Return an inertial with ixx, ixy, ixz, iyy, iyz, izz."""
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    given = " ".join(f'{name}="{value!r}"' for name, value in zip(names, inertia, strict=True))
+    inside = (_origin(xyz, rpy), f'<mass value="{mass!r}"/>', f"<inertia {given}/>")
+    return "\n".join(("<inertial>", *filter(None, inside), "</inertial>"))
 
 
 def box(x: float, y: float, z: float) -> str:
