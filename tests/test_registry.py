@@ -25,7 +25,7 @@ from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE
 from tests.checks.submissions import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
-SHARED = {"__init__", "comparison", "inertia_mistakes", "outcome", "registry", "toml_types", "visuals"}
+SHARED = {"__init__", "comparison", "inertia_mistakes", "mesh_files", "outcome", "registry", "toml_types", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 
@@ -44,9 +44,10 @@ def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
 @every_check
 def test_the_signature_is_a_schema(check: Check) -> None:
     """A check takes its subject, and then keyword arguments that a rubric can give, in types that TOML has."""
-    subject, *rest = inspect.signature(check.function).parameters.values()
-    assert subject.name == check.subject
-    assert subject.kind is subject.POSITIONAL_OR_KEYWORD
+    every = list(inspect.signature(check.function).parameters.values())
+    examined, rest = every[: len(check.examined)], every[len(check.examined) :]
+    assert tuple(parameter.name for parameter in examined) == check.examined
+    assert {parameter.kind for parameter in examined} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
     assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
     assert list(check.parameters) == [parameter.name for parameter in rest]
     for parameter in check.parameters.values():

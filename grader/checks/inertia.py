@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
-from grader.checks.inertia_mistakes import mistake_of
+from grader.checks.inertia_mistakes import mistake_of, rounded
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES, check_resolved
@@ -78,7 +78,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     wrong = []
     if not within(off, 0.0, tolerance):
         reason = mistake_of(given.inertia, solid, shapes) or _components(inertial, solid, T_link_inertial, tolerance)
-        wrong.append(f"the inertia of {link!r} is {off:.3g} % off that of a uniform solid of its {what}: {reason}")
+        wrong.append(f"the inertia of {link!r} is {rounded(off)} % off that of a uniform solid of its {what}: {reason}")
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"

@@ -95,11 +95,12 @@ def _scaled(inertia: Tensor, solid: MassProperties) -> str:
 
 def _times(factor: float) -> str:
     if factor >= 3.0:
-        return f"{_rounded(factor)} times too large"
+        return f"{rounded(factor)} times too large"
     if factor <= 1.0 / 3.0:
-        return f"{_rounded(1.0 / factor)} times too small"
+        return f"{rounded(1.0 / factor)} times too small"
     return f"{100.0 * abs(factor - 1.0):.3g} % too {'large' if factor > 1.0 else 'small'}"
 
 
-def _rounded(factor: float) -> str:
+def rounded(factor: float) -> str:
+    """Return a factor or percentage rounded for reading: 61.2, 1,000."""
     return f"{factor:.3g}" if not 1e3 <= factor < 1e10 else f"{factor:,.0f}"

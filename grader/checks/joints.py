@@ -138,8 +138,10 @@ def mimics(
         detail = f" (joint {joint.name!r})"
         if joint.mimic is not None:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
-        if not robot.robot.has_joint(last):
+        is_missing = not robot.robot.has_joint(last)
+        if is_missing or "@name" in leading.unresolved:
             robot.robot.check_complete()
+        if is_missing:
             message = f"the joint that moves {link!r} mimics a joint that does not exist"
             detail += did_you_mean(last, (other.name for other in robot.robot.joints))
         return failed(message, at, detail=detail)
@@ -191,7 +193,7 @@ def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[
             return found
         name = joint.mimic.joint
         ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
-        if name == first.name or name in found:
+        if name in found:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
             raise MissingElement("mimicked joint", link, message=message, detail=named(first), location=at)

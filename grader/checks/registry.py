@@ -6,7 +6,21 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, inertia, joints, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import (
+    appearance,
+    collisions,
+    contact,
+    inertia,
+    joints,
+    launch,
+    manual,
+    meshes,
+    motion,
+    package,
+    placement,
+    rviz,
+    tree,
+)
 from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
@@ -46,6 +60,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     joints.joint_dynamics,
     inertia.mass_is,
     inertia.inertia_plausible,
+    collisions.collision_matches_visual,
+    meshes.shows_mesh,
     package.package_found,
     package.package_type,
     package.build_installs,

@@ -1,4 +1,4 @@
-"""grader rubric: list, show, check and test rubrics."""
+"""grader rubric: list, show, write, check and test rubrics."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,18 +6,20 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import FormatOption, rubric_ids
-from grader.cli.output import warn
+from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
 from grader.usecases.writing import write_stdout
 
-_HELP = """List, show, check and test rubrics, and list the checks.
+_HELP = """List, show, write, check and test rubrics, and list the checks.
 
 Examples:
 
   grader rubric list
 
   grader rubric show lab6
+
+  grader rubric new my_lab.toml --from solution.urdf
 
   grader rubric check my_lab.toml
 
@@ -77,6 +79,33 @@ def list_checks() -> str:
     return checks_text()
 
 
+@rubric.command("new")
+def new_rubric(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
+    reference: Annotated[
+        str,
+        typer.Option("--from", metavar="URDF", help="The reference: a URDF, xacro, package, workspace or archive."),
+    ],
+    force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
+) -> str:
+    """Write a rubric with a criterion for each fact of a reference solution.
+
+    It is tried on the reference, which gets full marks. What no check can tell is omitted; what looks odd in the
+    solution is listed.
+
+    Examples:
+
+      grader rubric new my_lab.toml --from solution.urdf
+
+      grader rubric new my_lab.toml --from my_lab/my_robot
+
+      grader rubric new my_lab.toml --from solution.urdf --force
+    """
+    from grader.usecases.new_rubric import write_rubric
+
+    return write_rubric(file, reference, warn, force=force)
+
+
 @rubric.command("check")
 def check_rubric(file: RubricArgument) -> str:
     """Check a rubric and its reference solution.
@@ -117,6 +146,6 @@ def run_test(
     from grader.usecases.rubric_test import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, warn, progress_display)
+    text, code = test(request, screen(), warn, progress_display)
     write_stdout(text)
     return code

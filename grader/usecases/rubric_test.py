@@ -13,6 +13,7 @@ from grader.mutation.testing import tested
 from grader.report.formats import OutputFormat
 from grader.report.rubric_test import render_rubric_test
 from grader.report.rubric_test_json import render_rubric_test_json
+from grader.report.screen import Screen
 from grader.usecases import Warn
 from grader.usecases.exit_codes import ExitCode, read_threshold
 from grader.usecases.rubrics import load
@@ -32,7 +33,7 @@ class TestRequest(NamedTuple):
     format: OutputFormat
 
 
-def test(request: TestRequest, warn: Warn, show_progress: ShowProgress) -> tuple[str, ExitCode]:
+def test(request: TestRequest, screen: Screen, warn: Warn, show_progress: ShowProgress) -> tuple[str, ExitCode]:
     """Return the result as text, and the exit code. Raises GraderError for a broken rubric or one without a reference."""
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
@@ -46,8 +47,9 @@ def test(request: TestRequest, warn: Warn, show_progress: ShowProgress) -> tuple
             progress=lambda done, total: show(Progress(total, done)),
         )
     is_passed = result.is_sound and (least is None or result.mutants.score >= least)
-    render = render_rubric_test_json if request.format is OutputFormat.JSON else render_rubric_test
-    return render(result), ExitCode.PASSED if is_passed else ExitCode.FAILED
+    is_json = request.format is OutputFormat.JSON
+    text = render_rubric_test_json(result) if is_json else render_rubric_test(result, screen.width)
+    return text, ExitCode.PASSED if is_passed else ExitCode.FAILED
 
 
 def _least(text: str | None) -> Decimal | None:

@@ -7,17 +7,19 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, inertia, joints, motion, placement, tree
+from grader.checks import appearance, collisions, contact, inertia, joints, meshes, motion, placement, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import (
     Numbers,
     Scene,
     box,
+    collision,
     cylinder,
     inertial,
     joint,
     link,
+    mesh,
     paint,
     scene,
     sphere,
@@ -143,6 +145,17 @@ def weighing(mass: float = 12.0, *, share: float = 1.0, xyz: Numbers = "0 0 1") 
     inertia = (13.0 * share, 0.0, 0.0, 10.0 * share, 0.0, 5.0 * share)
     shown = visual(box(1.0, 2.0, 3.0), xyz="0 0 1")
     return scene(link("block", inertial(mass, inertia, xyz=xyz), shown))
+
+
+def colliding(z: float = 0.1) -> Scene:
+    """Return a box that is shown at a height of 0.1, and collides at another height."""
+    shape = box(0.6, 0.4, 0.2)
+    return scene(link("block", visual(shape, xyz="0 0 0.1"), collision(shape, xyz=(0.0, 0.0, z))))
+
+
+def meshed(z: float = 0.1) -> Scene:
+    """Return a mesh that is shown at a height."""
+    return scene(link("block", visual(mesh(), xyz=(0.0, 0.0, z))))
 
 
 CASES = (
@@ -480,6 +493,35 @@ CASES = (
         at="<inertia ",
         edges={"tolerance": lambda off: weighing(share=1.0 + off / 100.0)},
         mesh_status="pending",
+    ),
+    Case(
+        collisions.collision_matches_visual,
+        {"link": "block", "tolerance": 0.002},
+        passing=colliding(),
+        pass_message="'block' has 1 collision shape, as shown",
+        failing=colliding(z=0.0),
+        fail_message="no collision shape of 'block' is a box 0.6 0.4 0.2 m at 0 0 0.1 m, as shown;"
+        " the nearest is a box 0.6 0.4 0.2 m at 0 0 0 m (100 mm away)",
+        at='xyz="0.0 0.0 0.0"',
+        edges={"tolerance": lambda off: colliding(z=0.1 + off)},
+    ),
+    Case(
+        meshes.shows_mesh,
+        {
+            "link": "block",
+            "file": "meshes/part.stl",
+            "scale": (1.0, 1.0, 1.0),
+            "xyz": (0.0, 0.0, 0.1),
+            "rpy": (0.0, 0.0, 0.0),
+            "tolerance": 0.002,
+        },
+        passing=meshed(),
+        pass_message="'block' shows the mesh 'package://my_robot/meshes/part.stl'",
+        failing=meshed(z=0.2),
+        fail_message="the mesh of 'block' is at 0 0 0.2 m in 'block'; it should be at 0 0 0.1 m (z 100 mm too large)"
+        " (mesh 'package://my_robot/meshes/part.stl')",
+        at='xyz="0.0 0.0 0.2"',
+        edges={"tolerance": lambda off: meshed(z=0.1 + off)},
     ),
 )
 

@@ -14,8 +14,7 @@ from grader.errors import MissingElement
 from grader.grading.grade import grade
 from grader.grading.rubric import Criterion, Part, Rubric
 from grader.source import Location
-from grader.submission.opening import read_submission
-from tests.checks.robots import PATH, Scene
+from tests.checks.robots import Scene
 from tests.checks.submissions import Submitted
 
 AnyCheck = Callable[..., Outcome]
@@ -28,7 +27,7 @@ _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
     """Return the outcome of a check."""
-    return check(_subject(check, of), **arguments)
+    return check(*_examined(check, of), **arguments)
 
 
 def finds(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Finding:
@@ -55,8 +54,7 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
     """Return the outcome of a rubric's only criterion, which uses this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
-    single = of.text.encode() if isinstance(of, Scene) else b""
-    submission = of.submission if isinstance(of, Submitted) else read_submission(single, identity="test", path=PATH)
+    submission = of.submission
     return grade(rubric, submission).results[0].outcome
 
 
@@ -77,11 +75,9 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     return own_message(outcome)
 
 
-def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
-    subject = describe(check).subject
-    if isinstance(of, Submitted):
-        return of.package if subject == "package" else of.submission
-    return of.reading if subject == "urdf" else of.robot
+def _examined(check: AnyCheck, of: Scene | Submitted) -> list[object]:
+    names = {"urdf": "reading"}
+    return [getattr(of, names.get(subject, subject)) for subject in describe(check).examined]
 
 
 def own_message(outcome: Outcome) -> str:

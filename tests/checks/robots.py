@@ -8,6 +8,8 @@ from math import radians
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Location
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
 
 PATH = "urdf/robot.urdf"
 
@@ -35,6 +37,11 @@ class Scene:
         found = self.reading.robot
         assert found is not None, self.text
         return Configuration(found)
+
+    @property
+    def submission(self) -> Submission:
+        """Return the submission of the file alone."""
+        return read_submission(self.text.encode(), identity="test", path=PATH)
 
     @property
     def links(self) -> tuple[str, ...]:
