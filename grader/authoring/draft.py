@@ -18,11 +18,12 @@ from grader.authoring.shapes import shape_facts
 from grader.authoring.solution import Solution
 from grader.authoring.toml_text import literal
 from grader.authoring.whole import loading_facts, motion_facts, tree_facts
+from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 
-_ODD_IF_FAILED = ("inertia_plausible", "collision_matches_visual")
+_SEE_BELOW = "the reference does not pass it (see below)"
 
 
 class Draft(NamedTuple):
@@ -37,23 +38,38 @@ class Draft(NamedTuple):
 def draft(solution: Solution, head: Head, path: Path) -> Draft:
     """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can tell."""
     found = list(_measured(solution))
-    facts = criterion_ids(_different([it for it in found if isinstance(it, Fact) and is_finite(it.arguments)]))
-    omissions = [_omitted(it) for it in found if isinstance(it, Omission) or not is_finite(it.arguments)]
+    facts = _usable([it for it in found if isinstance(it, Fact)])
+    omissions = [it for it in found if isinstance(it, Omission)]
     odd, ignored = list(oddities(solution)), list(ignored_mutants(solution))
     while True:
-        data = rubric_text(head, facts, ignored).encode()
+        rows = criterion_ids(facts)
+        data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
-        assert rubric.solution is not None
-        results = grade(rubric, rubric.solution.submission).results
-        lost = [result for result in results if result.outcome.status != "passed"]
+        lost = _lost(rubric)
         if not lost:
             return Draft(data, rubric, tuple(omissions), tuple(odd))
-        for result in lost:
-            name, outcome = result.criterion.id, result.outcome
-            omissions.append(Omission(name, outcome.mistake if outcome.status == "pending" else outcome.message))
-            if outcome.status == "failed" and facts.pop(name).check in _ODD_IF_FAILED:
+        for name, outcome in lost.items():
+            fact, is_odd = rows[name], rows[name].is_doubtful and outcome.status == "failed"
+            if is_odd:
                 odd.append(f"{outcome.message}: is the solution right?")
-            facts.pop(name, None)
+            if not fact.otherwise:
+                why = outcome.mistake if outcome.status == "pending" else outcome.message
+                omissions.append(Omission(name, _SEE_BELOW if is_odd else why))
+        kept = ([fact] if name not in lost else _instead(fact) for name, fact in rows.items())
+        facts = _usable(chain.from_iterable(kept))
+
+
+def _instead(fact: Fact) -> list[Fact]:
+    """Return the facts that count instead of one that the reference does not pass."""
+    return [replace(it, about=fact.about) for it in fact.otherwise]
+
+
+def _lost(rubric: Rubric) -> dict[str, Outcome]:
+    """Return the criteria that the reference does not pass, with what they found; one that is skipped with that of its cause."""
+    assert rubric.solution is not None
+    results = {it.criterion.id: it for it in grade(rubric, rubric.solution.submission).results}
+    lost = {name: it for name, it in results.items() if it.outcome.status != "passed"}
+    return {name: (results[it.because] if it.because else it).outcome for name, it in lost.items()}
 
 
 def _measured(solution: Solution) -> Iterator[Fact | Omission]:
@@ -73,11 +89,7 @@ def _measured(solution: Solution) -> Iterator[Fact | Omission]:
         yield from package_facts(package, path.removeprefix(f"{package.folder}/") if package.holds(path) else "")
 
 
-def _omitted(found: Fact | Omission) -> Omission:
-    return found if isinstance(found, Omission) else Omission(found.title, "a value is not a finite number")
-
-
-def _different(facts: Iterable[Fact]) -> list[Fact]:
-    """Return the facts of which each check with its arguments occurs once, and whose check there is."""
-    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if find_check(fact.check) is not None}
-    return list(different.values())
+def _usable(facts: Iterable[Fact]) -> list[Fact]:
+    """Return the facts that a rubric can hold: with finite numbers, and each check with its arguments once."""
+    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if is_finite(fact.arguments)}
+    return [fact for fact in different.values() if find_check(fact.check) is not None]

@@ -104,7 +104,7 @@ def _label(*elements: Element) -> str:
 
 
 def _about(element: Element) -> str:
-    return "" if element.tag == "joint" else f"<{element.tag}>"
+    return "The joints" if element.tag == "joint" else f"<{element.tag}>"
 
 
 def _shown(value: Any) -> str:

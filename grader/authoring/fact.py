@@ -16,7 +16,8 @@ _WHOLE = 0.1  # degrees: closer angles are meant as whole ones, such as 90 for 1
 class Fact:
     """A fact of the reference that one check can tell: a criterion without its points.
 
-    `subject` and `aspect` make its id, `about` is its heading.
+    `subject` and `aspect` make its id, `about` is its heading. `otherwise` are the facts that count instead if
+    the reference does not pass it; `is_doubtful` is set where it may then be wrong.
     """
 
     subject: str
@@ -26,6 +27,8 @@ class Fact:
     arguments: Mapping[str, Any] = field(default_factory=dict)
     about: str = ""
     of_package: bool = False
+    otherwise: tuple["Fact", ...] = ()
+    is_doubtful: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ _DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
     "joint_axis": ({"tolerance": 1.0}, "degrees"),
     "joint_limits": ({"tolerance": 1.0}, "degrees"),
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
-    "inertia_plausible": ({"tolerance": 5.0}, "percent"),
+    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
     "collision_matches_visual": ({"tolerance": 0.002}, "metres"),
 }
 

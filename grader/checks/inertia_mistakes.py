@@ -9,7 +9,7 @@ from grader.robot.shapes import Shape
 from grader.robot.transforms import IDENTITY_ROTATION, Transform, Vector
 
 _AXES: tuple[tuple[str, Vector], ...] = (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0)))
-_FIT = 0.01  # of the largest moment: an explanation is that close
+_FIT = 0.02  # of the largest moment: an explanation is that close
 _DISTINCT = 0.05  # of the largest moment: what an explanation changes is more
 # How many times too large an inertia is, and the units that it then seems to be in.
 _UNITS = (
@@ -40,7 +40,7 @@ def _candidates(solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]
     xx, xy, xz, yy, yz, zz = solid.inertia
     yield "ixy, ixz and iyz had the other sign", (xx, -xy, -xz, yy, -yz, zz)
     yield (
-        "it were about the origin of the link, not about the mass centre",
+        "it were about the origin of the link, not about the centre of mass",
         shifted(solid.inertia, solid.mass, solid.centre),
     )
     if len(shapes) > 1:

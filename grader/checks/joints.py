@@ -193,7 +193,7 @@ def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[
             return found
         name = joint.mimic.joint
         ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
-        if name in found:
+        if name == first.name or name in found:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
             raise MissingElement("mimicked joint", link, message=message, detail=named(first), location=at)

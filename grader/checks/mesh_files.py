@@ -110,21 +110,25 @@ def _not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
     setup = package.setup
     if package.is_cmake:
-        reason = "the grader does not evaluate CMakeLists.txt, which lists what is installed"
-        raise NotDecided(reason, reason)
-    if setup is None:
+        from grader.package.cmake import read_cmake  # late: most packages have a setup.py
+
+        cmake = read_cmake(package.tree)
+        installed, entry = cmake.installed, "install(DIRECTORY ...) in CMakeLists.txt"
+        doubt = "" if cmake.is_certain else "cannot determine statically what CMakeLists.txt installs"
+    elif setup is None:
         return "is not installed: its package has no setup.py"
-    if setup.fault is not None:
-        if not setup.fault.sure:
-            raise NotDecided(f"setup.py cannot be read ({setup.fault.message})", "setup.py cannot be read")
-        return "is not installed: Python cannot read setup.py"
-    installed = setup.installed()
+    elif setup.fault is not None:
+        if setup.fault.sure:
+            return "is not installed: Python cannot read setup.py"
+        installed, entry, doubt = {}, "", f"setup.py cannot be read ({setup.fault.message})"
+    else:
+        installed, entry = setup.installed(), "data_files in setup.py"
+        doubt = "cannot determine statically what setup.py installs" if setup.unknown else ""
     if target in installed:
         return ""
-    if setup.unknown:
-        reason = "cannot determine statically what setup.py installs"
-        raise NotDecided(f"{reason}: {setup.unknown[0].reason}", reason)
+    if doubt:
+        raise NotDecided(doubt, doubt)
     elsewhere = next((path for path, source in installed.items() if source in held), None)
     if elsewhere is not None:
         return f"is looked for at {target}, but a build installs it as {elsewhere}"
-    return f"is not installed: add {held[0]} to data_files in setup.py, for {posixpath.dirname(target)}"
+    return f"is not installed: add {held[0]} to {entry}, for {posixpath.dirname(target)}"

@@ -10,6 +10,7 @@ from grader.checks import (
     appearance,
     collisions,
     contact,
+    elements,
     inertia,
     joints,
     launch,
@@ -18,8 +19,11 @@ from grader.checks import (
     motion,
     package,
     placement,
+    problems,
+    reference,
     rviz,
     tree,
+    xacro_source,
 )
 from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
@@ -34,6 +38,7 @@ ENTRY_POINTS = "grader.checks"
 
 CHECKS: tuple[Callable[..., Outcome], ...] = (
     tree.urdf_loads,
+    problems.without_problems,
     appearance.shows_box,
     appearance.shows_cylinder,
     appearance.shows_sphere,
@@ -62,6 +67,8 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     inertia.inertia_plausible,
     collisions.collision_matches_visual,
     meshes.shows_mesh,
+    reference.kinematics_match_reference,
+    elements.element_present,
     package.package_found,
     package.package_type,
     package.build_installs,
@@ -74,6 +81,7 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     rviz.rviz_fixed_frame,
     rviz.rviz_shows_robot,
     rviz.rviz_display_on,
+    xacro_source.xacro_uses,
     manual.answered,
     manual.evidence_shown,
 )

@@ -51,6 +51,9 @@ Size = Annotated[Vector, EachAtLeastZero]
 Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
 
+Scalar = str | float | bool
+Content = Scalar | list[Scalar]
+
 
 def simple_type(
     name: str,
@@ -85,7 +88,12 @@ _SIMPLE = {
     str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS = {float: "numbers", str: "strings"}
+_PLURALS: Mapping[Any, str] = {
+    float: "numbers",
+    str: "strings",
+    Scalar: "strings, numbers or booleans",
+    Content: "strings, numbers, booleans or lists of these",
+}
 
 
 @lru_cache(maxsize=256)

@@ -12,6 +12,7 @@ from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
 
+_MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 100  # of one link that are compared with each other
 
 
@@ -73,6 +74,12 @@ def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -
 def shape_name(geometry: Geometry) -> str:
     """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
+
+
+def mesh_name(mesh: Mesh) -> str:
+    """Return the file name of a mesh between quotes; only the end of one that is very long."""
+    name = mesh.filename
+    return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
 
 
 def origin_place(robot: Configuration, link: str) -> LazyLocation | None:

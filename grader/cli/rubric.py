@@ -48,8 +48,11 @@ def list_rubrics() -> str:
 def show_rubric(
     name: RubricArgument,
     answers: Annotated[bool, typer.Option("--answers", help="Also show the model answers.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print tables for the lab's handout.")] = False,
 ) -> str:
     """Show the parts and criteria of a rubric with their points.
+
+    With --markdown, the tables are for students: they have no arguments of checks, no feedback and no model answers.
 
     Examples:
 
@@ -57,11 +60,9 @@ def show_rubric(
 
       grader rubric show lab6 --answers
 
-      grader rubric show my_lab.toml
+      grader rubric show my_lab.toml --markdown
     """
-    from grader.report.rubrics import rubric_text
-
-    return rubric_text(rubrics.load(name, warn, answers=answers))
+    return rubrics.shown(name, warn, answers=answers, markdown=markdown)
 
 
 @rubric.command("checks")
@@ -128,9 +129,9 @@ def run_test(
     mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Mutants to grade at most.")] = 500,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
-    """Test a rubric on mutants and equivalents of its reference, and on samples.
+    """Test a rubric on mutants of its reference and on samples.
 
-    The reference and its equivalents must lose nothing, every mutant something. Mutants that get full marks are listed with a
+    The reference and rewritings of it must lose nothing, every mutant something. Mutants that get full marks are listed with a
     suggestion.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the

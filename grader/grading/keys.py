@@ -17,7 +17,7 @@ class KeyTable(NamedTuple):
 
     name: str
     keys: Mapping[str, TomlType]
-    optional: tuple[str, ...] = ()
+    required: tuple[str, ...] = ()
 
     @property
     def schema(self) -> dict[str, Any]:
@@ -25,7 +25,7 @@ class KeyTable(NamedTuple):
         return {
             "type": "object",
             "properties": {key: dict(value.schema) for key, value in self.keys.items()},
-            "required": [key for key in self.keys if key not in self.optional],
+            "required": list(self.required),
             "additionalProperties": False,
         }
 
@@ -101,13 +101,10 @@ PART = KeyTable(
     {
         "id": described(_ID, "The part's id, one word."),
         "title": described(_TITLE, "The heading of the part in reports."),
-        "needs": described(
-            toml_type(Literal["urdf", "package", "files"]),
-            "What the part is graded on: the URDF (the default), the ROS 2 package, or all files that were submitted.",
-        ),
+        "needs": described(toml_type(Literal["urdf", "package", "files"]), "What it is graded on; files: all of them."),
         "points": described(_POINTS, "The sum of the part's points, which is then verified."),
     },
-    optional=("needs", "points"),
+    required=("id", "title"),
 )
 CARRIED = KeyTable(
     "carried table",
@@ -119,7 +116,7 @@ CARRIED = KeyTable(
         "check": described(_TEXT, "The check that counts instead."),
         "with": described(_table({"type": "object"}), "The arguments of that check."),
     },
-    optional=("with",),
+    required=("from", "check"),
 )
 CRITERION = KeyTable(
     "criterion",
@@ -136,8 +133,7 @@ CRITERION = KeyTable(
         "check": described(_TEXT, "The check that decides it: one of the grader, or of an installed plug-in."),
         "with": described(_table({"type": "object"}), "The arguments of the check."),
         "at": described(
-            toml_type(Mapping[str, float]),
-            "Joint positions for the check: degrees for joints that turn, metres for those that slide. Others are at 0.",
+            toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; else 0."
         ),
         "requires": described(_NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
         "carried": described(
@@ -145,7 +141,7 @@ CRITERION = KeyTable(
         ),
         "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
     },
-    optional=("about", "with", "at", "requires", "carried", "feedback"),
+    required=("id", "part", "title", "points", "check"),
 )
 DEFAULTS = KeyTable(
     "defaults table",
@@ -158,7 +154,6 @@ DEFAULTS = KeyTable(
             "For each check a table of arguments, for criteria that do not give them.",
         ),
     },
-    optional=("part", "points", "about", "with"),
 )
 EVIDENCE = KeyTable(
     "evidence",
@@ -170,6 +165,7 @@ EVIDENCE = KeyTable(
             toml_type(tuple[str, ...]), "Labels in the name of its file, in any spelling: task 1 step 8."
         ),
     },
+    required=("id", "part", "title", "names"),
 )
 LATE = KeyTable(
     "late policy",
@@ -179,7 +175,7 @@ LATE = KeyTable(
         "percent_per_day": described(_PERCENT, "The penalty for each day begun, in percent of the maximum."),
         "floor_percent": described(_PERCENT, "The penalty lowers no grade below this, in percent of the maximum."),
     },
-    optional=("due", "grace_minutes", "floor_percent"),
+    required=("percent_per_day",),
 )
 IGNORE = KeyTable(
     "test.ignore",
@@ -190,11 +186,11 @@ IGNORE = KeyTable(
         ),
         "reason": described(_TITLE, "Why no criterion looks at what they change."),
     },
+    required=("mutants", "reason"),
 )
 TEST = KeyTable(
     "test table",
     {"ignore": described(_rows(IGNORE), "Mutants that may keep full marks, with the reason.")},
-    optional=("ignore",),
 )
 RUBRIC = KeyTable(
     "rubric",
@@ -219,18 +215,5 @@ RUBRIC = KeyTable(
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
         "test": described(_table(TEST.schema), "What `grader rubric test` should not expect of the rubric."),
     },
-    optional=(
-        "reference",
-        "urdf",
-        "package",
-        "folders",
-        "points",
-        "answers",
-        "without_urdf",
-        "hints",
-        "defaults",
-        "evidence",
-        "late",
-        "test",
-    ),
+    required=("id", "title", "part", "criterion"),
 )

@@ -62,9 +62,7 @@ def _if_check(check: Check, arguments: _Schema) -> _Schema:
 
 def _arguments(check: Check) -> _Schema:
     """Return the schema of the arguments of a check, none of which is required."""
-    return KeyTable(
-        check.name, {name: _argument(check, name) for name in check.parameters}, tuple(check.parameters)
-    ).schema
+    return KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}).schema
 
 
 def _argument(check: Check, name: str) -> TomlType:

@@ -78,8 +78,8 @@ class Validation:
                 parsed[key] = table.keys[key].parse(value)
             except WrongValue as error:
                 self._complain((*where, key), f"{key} must be {error}, not {_shown(value)}")
-        for key in table.keys:
-            if key not in row and key not in table.optional and key not in defaults:
+        for key in table.required:
+            if key not in row and key not in defaults:
                 self._complain(where, f"this {table.name} has no {key}")
         return parsed
 

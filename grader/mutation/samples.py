@@ -10,7 +10,8 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
-from grader.grading.rubric import Rubric, complain_of, read_toml
+from grader.grading.rubric import Rubric
+from grader.grading.toml_file import complain_of, read_toml
 from grader.mutation.result import Loss, SampleResults
 from grader.names import did_you_mean
 from grader.submission.opening import open_submission

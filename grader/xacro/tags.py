@@ -125,6 +125,7 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     try:
         for path in expander.files.named(texts.text(needed(node, "filename"), scopes.symbols)):
             _insert_file(expander, path, out, inner)
+            expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
         if is_optional:
             return

@@ -7,12 +7,26 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, collisions, contact, inertia, joints, meshes, motion, placement, tree
+from grader.checks import (
+    appearance,
+    collisions,
+    contact,
+    elements,
+    inertia,
+    joints,
+    meshes,
+    motion,
+    placement,
+    problems,
+    reference,
+    tree,
+)
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import (
     Numbers,
     Scene,
+    arm,
     box,
     collision,
     cylinder,
@@ -156,6 +170,15 @@ def colliding(z: float = 0.1) -> Scene:
 def meshed(z: float = 0.1) -> Scene:
     """Return a mesh that is shown at a height."""
     return scene(link("block", visual(mesh(), xyz=(0.0, 0.0, z))))
+
+
+def with_camera(*, rate: str = "30", kind: str = "camera", width: str = "640", link_name: str = "camera") -> Scene:
+    """Return a base with a camera that Gazebo simulates."""
+    image = f"<camera>\n<image>\n<width>{width}</width>\n</image>\n</camera>"
+    inside = f"<update_rate>{rate}</update_rate>\n<always_on>1</always_on>\n{image}"
+    sensor = f'<sensor name="front" type="{kind}">\n{inside}\n</sensor>'
+    camera = joint("camera_joint", "fixed", "base", "camera")
+    return scene(BASE, link("camera"), camera, f'<gazebo reference="{link_name}">\n{sensor}\n</gazebo>')
 
 
 CASES = (
@@ -522,6 +545,44 @@ CASES = (
         " (mesh 'package://my_robot/meshes/part.stl')",
         at='xyz="0.0 0.0 0.2"',
         edges={"tolerance": lambda off: meshed(z=0.1 + off)},
+    ),
+    Case(
+        problems.without_problems,
+        {"problems": ["URDF074", "XACRO003"]},
+        passing=arm(),
+        pass_message="the URDF has none of the problems URDF074 and XACRO003",
+        failing=arm(axis="0 2 0"),
+        fail_message="URDF074: only the direction of an axis counts: ROS 2 normalizes it",
+        at='xyz="0 2 0"',
+        needs_size=False,
+    ),
+    Case(
+        reference.kinematics_match_reference,
+        {"links": ["wheel"], "samples": 20, "tolerance": 0.002, "angle": 1.0},
+        passing=arm(),
+        pass_message="'wheel' moves as in the reference at 27 positions of 2 joints: at most 0 mm and 0 degrees off",
+        failing=arm(xyz=(0.55, 0.0, 0.0)),
+        fail_message="'wheel' does not move as in the reference: it is 50 mm and 0 degrees off with all joints at 0",
+        at='<link name="wheel"',
+        edges={"tolerance": lambda off: arm(xyz=(0.5 + off, 0.0, 0.0)), "angle": lambda off: arm(rpy=turned(roll=off))},
+        needs_size=False,
+    ),
+    Case(
+        elements.element_present,
+        {
+            "tag": "gazebo",
+            "attributes": {"reference": "camera"},
+            "path": "sensor",
+            "values": {"@type": "camera", "update_rate": 30.0, "always_on": True, "camera/image/width": 640.0},
+            "tolerance": 0.01,
+        },
+        passing=with_camera(),
+        pass_message='there is <sensor> in <gazebo reference="camera"> with the expected values',
+        failing=with_camera(rate="10"),
+        fail_message="<sensor> in <gazebo reference=\"camera\">: 'update_rate' is 10; it should be 30",
+        at="<update_rate>",
+        edges={"tolerance": lambda off: with_camera(rate=repr(30.0 + off))},
+        needs_size=False,
     ),
 )
 

@@ -161,3 +161,24 @@ def _origin(xyz: Numbers, rpy: Numbers) -> str:
 
 def _attribute(name: str, value: Numbers) -> str:
     return f' {name}="{numbers(value)}"' if value else ""
+
+
+def arm(
+    *,
+    shoulder: str = "shoulder",
+    spin: str = "spin",
+    axis: Numbers = "0 1 0",
+    xyz: Numbers = (0.5, 0.0, 0.0),
+    rpy: Numbers = "",
+) -> Scene:
+    """Return a base, an arm that swings up and down, and a wheel that turns at its end."""
+    return scene(
+        link("base"),
+        link("arm"),
+        link("wheel", visual(cylinder())),
+        joint(shoulder, "revolute", "base", "arm", xyz=(0.0, 0.0, 0.2), axis=axis),
+        joint(spin, "continuous", "arm", "wheel", xyz=xyz, rpy=rpy, axis="0 0 1"),
+    )
+
+
+ARM = arm()  # the robot of the reference solution, for checks that compare with it

@@ -360,6 +360,12 @@ def test_a_loop_of_mimics() -> None:
     assert (error.kind, "mimics itself, directly or through others" in str(error)) == ("mimicked joint", True)
 
 
+def test_a_joint_with_the_name_of_its_leader() -> None:
+    """ROS 2 rejects two joints of one name; a joint that mimics its own name follows nothing."""
+    copied = Scene(gripping(LEFT).text.replace("right_joint", "left_joint"))
+    assert "mimics itself" in str(missing(mimics, copied, **MIMIC))
+
+
 def test_a_fixed_joint_follows_nothing() -> None:
     """A <mimic> in a fixed joint moves nothing."""
     with pytest.raises(MissingElement, match="no joint above 'right' moves"):

@@ -8,7 +8,7 @@ from grader.checks.meshes import shows_mesh
 from grader.checks.outcome import Outcome, Status
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, joint, link, mesh, scene, turned, visual
-from tests.checks.submissions import REFERENCE, SETUP, URDF, Submitted
+from tests.checks.submissions import MANIFEST, REFERENCE, SETUP, URDF, Submitted
 
 HULL: Arguments = {"link": "arm", "file": "meshes/hull.stl"}
 PATH = "package://my_robot/meshes/hull.stl"
@@ -191,6 +191,22 @@ def test_what_cannot_be_determined(submitted: Submitted, told: str) -> None:
     assert status == "pending"
     assert told in message
     assert finding(submitted, file="hull.stl", scale=(2.0, 2.0, 2.0))[0] == "failed"
+
+
+@pytest.mark.parametrize(
+    ("commands", "status"),
+    [
+        ("install(DIRECTORY urdf meshes DESTINATION share/${PROJECT_NAME})", "passed"),
+        ("install(DIRECTORY urdf DESTINATION share/${PROJECT_NAME})", "failed"),
+        ("install(DIRECTORY meshes/ DESTINATION share/${PROJECT_NAME})", "failed"),
+        ("include(install.cmake)", "pending"),
+    ],
+)
+def test_a_package_of_cmake(commands: str, status: str) -> None:
+    """Plain commands of CMake are followed; what others install needs manual grading."""
+    cmake = {"my_robot/CMakeLists.txt": f"project(my_robot)\n{commands}\nament_package()\n"}
+    submitted = package().without(SETUP).replacing(MANIFEST, "ament_python", "ament_cmake").with_files(cmake)
+    assert finding(submitted)[0] == status
 
 
 def test_without_a_package_nothing_is_looked_for() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from grader.checks.registry import CHECKS, check_names, find_check
 from grader.errors import RubricError
-from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, LATE, PART, RUBRIC
+from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from tests.command_line import ROOT, run
 
@@ -68,6 +68,10 @@ id = "picture"
 part = "a"
 title = "The robot in RViz"
 names = ["task 1 step 8"]
+
+[[test.ignore]]
+mutants = ["name *"]
+reason = "Names are not graded."
 
 [late]
 due = 2026-11-20T23:59:00+01:00
@@ -166,9 +170,10 @@ def test_every_key_is_valid(tmp_path: Path) -> None:
     frame = every["criterion"][1]
     used = [(RUBRIC, every), (PART, every["part"][0]), (CRITERION, every["criterion"][0] | frame)]
     used += [(CARRIED, frame["carried"]), (EVIDENCE, every["evidence"][0]), (LATE, every["late"])]
+    used += [(TEST, every["test"]), (IGNORE, every["test"]["ignore"][0])]
     used += [(DEFAULTS, tomllib.loads(WITH_DEFAULTS)["defaults"])]
     for table, row in used:
-        assert set(row) == set(table.keys) - ({"defaults", "test"} if table is RUBRIC else set())
+        assert set(row) == set(table.keys) - ({"defaults"} if table is RUBRIC else set())
 
 
 @pytest.mark.parametrize(

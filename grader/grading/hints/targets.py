@@ -25,7 +25,7 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     moved: dict[str, None] = {}
     posed = Configuration(robot)
     for criterion in criteria:
-        given = (_selected(posed, name) for name in texts(criterion.arguments))
+        given = (selected(posed, name) for name in texts(criterion.arguments))
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
@@ -33,7 +33,7 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
 
 
-def _selected(posed: Configuration, name: str) -> str:
+def selected(posed: Configuration, name: str) -> str:
     """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
     try:
         return selected_link(posed.robot, posed.parent_joints, name)
