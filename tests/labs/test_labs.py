@@ -32,7 +32,7 @@ class Robot(NamedTuple):
         """Write the robot below a folder and return the path of the submission."""
         rubric = rubric_of(self.lab)
         reference = rubric.path.parent / rubric.reference
-        path = folder / self.row.get("path", reference.name)
+        path = folder / str(self.row.get("path", reference.name))
         if reference.is_dir():
             copytree(reference, path)
         else:
@@ -107,10 +107,10 @@ def test_a_robot_loses_what_it_should(robot: Robot, tmp_path: Path) -> None:
     statuses = {name: outcome.status for name, outcome in outcomes.items()}
     lost = {name: outcomes[name].message for name in outcomes if statuses[name] in ("failed", "skipped")}
     assert set(lost) == set(robot.row.get("lost", ())), lost
-    pending = {name for name in outcomes if statuses[name] == "pending"}
-    assert pending == set(robot.row.get("pending", reference_pending(robot.lab)))
+    pending, manual = {name for name in outcomes if statuses[name] == "pending"}, reference_pending(robot.lab)
+    assert pending == set(robot.row.get("pending", manual))
     assert "errored" not in statuses.values(), lost
-    assert bool(lost) == (robot.kind == "wrong")
+    assert bool(lost or pending - manual) == (robot.kind == "wrong")
 
 
 @every_lab
@@ -126,7 +126,7 @@ def test_a_lab_has_enough_robots(lab: str) -> None:
 def test_every_criterion_is_lost_by_some_robot(lab: str) -> None:
     """No criterion of a rubric is idle."""
     lost = {name for robot in ROBOTS if robot.lab == lab for name in robot.row.get("lost", ())}
-    assert lost == {criterion.id for criterion in rubric_of(lab).criteria}
+    assert {criterion.id for criterion in rubric_of(lab).criteria} <= lost
 
 
 @every_lab
