@@ -118,7 +118,9 @@ def _mutants_of(trial: Trial) -> Iterator[Mutant]:
     for path in trial.robot_files:
         yield from mutants(trial.text(path), path)
     package = trial.reference.package
-    if package is not None and any(trial.expected[name].criterion.check.subject == "package" for name in trial.tested):
+    needs = {part.id: part.needs for part in trial.rubric.parts}
+    tested = [trial.expected[name].criterion for name in trial.tested]
+    if package is not None and any("package" in (it.check.subject, needs[it.part]) for it in tested):
         urdf = trial.reference.urdf
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         links = [link.name for link in robot.links] if robot is not None else []

@@ -1,5 +1,7 @@
 """Labs of other courses: correct robots keep full marks, and wrong robots lose what they should."""
 
+import csv
+import json
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -12,6 +14,9 @@ import pytest
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
+from grader.mutation import equivalent_test
+from grader.mutation.mutation_test import MutationTest
+from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
 
@@ -134,3 +139,45 @@ def test_a_rubric_passes_its_check(lab: str) -> None:
     """`grader rubric check` accepts the rubric, and the reference gets full marks."""
     done = run(["rubric", "check", FOLDER / lab / "rubric.toml"])
     assert (done.returncode, done.stderr) == (0, b""), done.stdout.decode()
+
+
+@every_lab
+def test_mutants_of_a_reference_lose_something(lab: str) -> None:
+    """No mistake costs nothing, unless the rubric says why, and no equivalent costs something; `grader rubric test` tries all."""
+    rubric = rubric_of(lab)
+    assert rubric.solution is not None
+    trial = Trial(grade(rubric, rubric.solution.submission), rubric.solution.submission)
+    assert equivalent_test.tested_equivalents(trial, seed=15).losses == ()
+    mutation = MutationTest(trial, most=60, seed=15)
+    mutation.idle.clear()  # the search for idle criteria takes as long as 500 mutants
+    found = mutation.run(lambda: None)
+    assert [survivor.mutant.id for survivor in found.survivors] == []
+    assert found.caught >= 40
+
+
+def test_a_class_is_graded_with_its_reference(tmp_path: Path) -> None:
+    """`grader batch` gives the marks of `grade`: its workers compare the motion with that of the reference, too."""
+    chosen = [robot for robot in ROBOTS if robot.lab == "industrial"][::4]
+    expected = {}
+    for robot in chosen:
+        folder = tmp_path / "class" / robot.name
+        folder.mkdir(parents=True)
+        path = robot.write(folder)
+        done = run(["grade", path, "--rubric", rubric_of(robot.lab).path, "--format", "json"])
+        report = json.loads(done.stdout)
+        assert done.returncode == (robot.kind == "wrong")
+        expected[robot.name] = report["score"]
+        assert (report["score"] == report["max_score"]) == (robot.kind == "correct")
+    words = [
+        "--rubric",
+        rubric_of("industrial").path,
+        "--gradebook",
+        tmp_path / "marks.db",
+        "--csv",
+        tmp_path / "marks.csv",
+    ]
+    done = run(["batch", tmp_path / "class", *words, "--jobs", "2"])
+    assert done.returncode == 0, done.stderr.decode()
+    with (tmp_path / "marks.csv").open(newline="") as file:
+        marks = {row["id"]: float(row["score"]) for row in csv.DictReader(file)}
+    assert marks == expected
