@@ -103,13 +103,14 @@ def _found_by_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, submission: Submission) -> str:
-    """Return that no package of the submission has a name; raise NotDecided if another source may have one."""
+    """Return that no package of the submission has a name; raise NotDecided if one may be in an archive that is closed."""
+    if submission.tree.unopened:
+        reason = "an archive could not be opened"
+        raise NotDecided(f"the package {quoted(name)} may be in an archive that could not be opened", reason)
     holding = [package.name for package in submission.packages if path in package.tree.files]
     meant = closest(name, [package.name for package in submission.packages]) or next(iter(holding), None)
-    if meant is None:
-        reason = "a mesh is in a package that is not part of the submission"
-        raise NotDecided(f"the package {quoted(name)} is not part of the submission", reason)
-    return f"names the package {quoted(name)}; the submission has {quoted(meant)}"
+    hint = f"; the submission has {quoted(meant)}" if meant is not None else ", which is not part of the submission"
+    return f"names the package {quoted(name)}{hint}"
 
 
 def _not_installed(package: Package, target: str, held: list[str]) -> str:

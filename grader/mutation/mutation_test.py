@@ -8,7 +8,7 @@ from random import Random
 from grader.checks.registry import check_names
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
-from grader.mutation.mutants import Mutant, mutants
+from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import MutantResults, Survivor
 from grader.mutation.suggestions import suggestion
@@ -115,12 +115,14 @@ class MutationTest:
 
 def _mutants_of(trial: Trial) -> Iterator[Mutant]:
     """Yield the mutants of the robot, and of the package if a criterion looks at it."""
+    criteria = [trial.expected[name].criterion for name in trial.tested]
+    hidden = [found.arguments.get("link", "") for found in criteria if found.check.name == "shows_nothing"]
     for path in trial.robot_files:
         yield from mutants(trial.text(path), path)
+        yield from with_visuals(trial.text(path), path, hidden)
     package = trial.reference.package
     needs = {part.id: part.needs for part in trial.rubric.parts}
-    tested = [trial.expected[name].criterion for name in trial.tested]
-    if package is not None and any("package" in (it.check.subject, needs[it.part]) for it in tested):
+    if package is not None and any("package" in (found.check.subject, needs[found.part]) for found in criteria):
         urdf = trial.reference.urdf
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         links = [link.name for link in robot.links] if robot is not None else []

@@ -21,6 +21,7 @@ from grader.usecases.rubrics import summary
 from grader.usecases.writing import save_bytes
 
 _URDF = "robot.urdf"
+_SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _MAX_NAMED = 4
 
 
@@ -69,7 +70,9 @@ def _head(file: Path, reference: str, submission: Submission) -> Head:
     package, path = submission.package, submission.path or ""
     if package is not None and package.holds(path):
         path = path.removeprefix(f"{package.folder}/")
-    return Head(words.replace(" ", "-"), words[0].upper() + words[1:], place, path, package.name if package else "")
+    schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
+    title = words[0].upper() + words[1:]
+    return Head(words.replace(" ", "-"), title, place, path, package.name if package else "", schema)
 
 
 def _relative(reference: Path, folder: Path) -> str:

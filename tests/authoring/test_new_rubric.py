@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from jsonschema import validate
 
 from tests.command_line import ROOT, Done, run
 
@@ -209,9 +210,18 @@ def test_the_same_reference_gives_the_same_bytes(written: tuple[Path, str], tmp_
 
 def test_every_mutant_of_the_reference_loses_something(written: tuple[Path, str]) -> None:
     """`grader rubric test` finds no survivor, no idle criterion, and no equivalent that loses points."""
-    done = run(("rubric", "test", written[0], "--mutants", 200, "--fail-under", "100%", "--format", "json"))
+    done = run(("rubric", "test", written[0], "--fail-under", "100%", "--format", "json"))
     result = json.loads(done.stdout)
     assert (done.returncode, result["survivors"], result["idle"], result["equivalents"]["lost"]) == (0, [], [], [])
+
+
+def test_a_schema_beside_the_rubric_is_named(tmp_path: Path) -> None:
+    """An editor then completes and validates the new rubric at once."""
+    schema = run(("schema", "rubric")).stdout
+    (tmp_path / "rubric.schema.json").write_bytes(schema)
+    rubric, _ = rubric_of(ARM.read_text(), tmp_path)
+    assert (tmp_path / "lab.toml").read_text().startswith("#:schema ./rubric.schema.json\nid = ")
+    validate(rubric, json.loads(schema))
 
 
 # --- Where the rubric and its reference are ---------------------------------------------------------------------------

@@ -75,13 +75,13 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path) -
     text = done.stdout.decode()
     assert done.returncode == 0
     assert "These mutants of the reference get full marks:" in text
-    assert "mutants: no criterion looks at it; try frame_at" in text
+    assert "mutants: no criterion looks at it; try frame_at or kinematics_match_reference" in text
     assert "      @@ -23,5 +23,5 @@\n" in text
     assert '      -    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n      +    <origin rpy="0 0 3.14159"/>\n' in text
     found = data(write_rubric(tmp_path), "--mutants", 5000)
     listed = {row["id"]: row for row in found["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
-    assert row["suggestion"] == "no criterion looks at it; try frame_at"
+    assert row["suggestion"] == "no criterion looks at it; try frame_at or kinematics_match_reference"
     assert (
         '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
     )
@@ -97,7 +97,10 @@ def test_a_suggestion_names_the_criterion_that_looks_and_passes(tmp_path: Path) 
     """Its tolerance or its arguments let the mutant pass."""
     found = data(write_rubric(tmp_path), "--mutants", 5000)
     listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
-    assert listed["number +0.05: joint slide/origin xyz.x"] == "no criterion looks at it; try frame_at"
+    assert (
+        listed["number +0.05: joint slide/origin xyz.x"]
+        == "no criterion looks at it; try frame_at or kinematics_match_reference"
+    )
     assert listed["number negated: link plate/visual/geometry/box size.x"].startswith("plate-box passes all the same")
 
 
@@ -228,7 +231,7 @@ def test_samples_must_get_what_they_expect(tmp_path: Path) -> None:
         ('verdict = "fine"\n', "verdict must be one of clean, degraded, rejected, missing"),
         ('lost = "plate-box"\n', "lost must be a list of ids of criteria"),
         ('lost = ["plat-box"]\n', "the rubric arm has no criterion 'plat-box'; did you mean 'plate-box'?"),
-        ("lost = [\n", "not readable as TOML"),
+        ("lost = [\n", "the list that begins on line 1 has no closing ]"),
     ],
 )
 def test_a_broken_sample_is_refused(tmp_path: Path, expected: str, complaint: str) -> None:
