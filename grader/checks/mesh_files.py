@@ -63,8 +63,8 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     if scheme.lower() in ("package", "file") or not slashes:
         return MeshFile(filename, rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
     if scheme in _WEB:
-        return MeshFile(filename, rest, "", "", "is on the web, which the grader does not read")
-    return MeshFile(filename, rest, "", "", f"is at a {scheme}:// path, which not every program finds")
+        return MeshFile(filename, rest, "", "", "it is on the web, which the grader does not read")
+    return MeshFile(filename, rest, "", "", f"it is at a {scheme}:// path, which not every program finds")
 
 
 def why_not_found(mesh: MeshFile, submission: Submission) -> str:
@@ -72,7 +72,11 @@ def why_not_found(mesh: MeshFile, submission: Submission) -> str:
 
     Raises NotDecided where that cannot be determined statically.
     """
-    if not mesh.package or not submission.packages:
+    if not submission.packages:
+        return ""
+    if not mesh.package:
+        if not mesh.doubt:
+            raise NotDecided("RViz finds no relative path; other programs may", "a mesh is at a relative path")
         return ""
     package = submission.packages[0].find(mesh.package)
     path = posixpath.normpath(mesh.path)

@@ -121,7 +121,8 @@ def _mutants_of(trial: Trial) -> Iterator[Mutant]:
         yield from mutants(trial.text(path), path)
         yield from with_visuals(trial.text(path), path, hidden)
     package = trial.reference.package
-    if package is not None and any(found.check.subject == "package" for found in criteria):
+    needs = {part.id: part.needs for part in trial.rubric.parts}
+    if package is not None and any("package" in (found.check.subject, needs[found.part]) for found in criteria):
         urdf = trial.reference.urdf
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         links = [link.name for link in robot.links] if robot is not None else []
