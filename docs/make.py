@@ -81,6 +81,7 @@ def checks() -> str:
             lines += ["", "| argument | meaning | type | default |", "|---|---|---|---|"]
         for parameter in check.parameters.values():
             default = "required" if parameter.required else f"`{json.dumps(parameter.default)}`"
+            default = "not checked" if not parameter.required and parameter.default is None else default
             meaning = escaped(check.documentation.arguments[parameter.name])
             lines.append(f"| `{parameter.name}` | {meaning} | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from decimal import Decimal
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
-from types import UnionType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pytest
 
@@ -53,8 +53,9 @@ def test_the_signature_is_a_schema(check: Check) -> None:
         assert is_supported(parameter.annotation), parameter
         assert parameter.type.name
         assert parameter.type.parse(sample(parameter.annotation)) is not None
-        assert parameter.required == (parameter.default is None)
-        assert parameter.required or parameter.type.parse(as_toml(parameter.default)) == parameter.default
+        is_unset = parameter.default is None  # either it is required, or it is not checked unless it is given
+        assert (parameter.required or NoneType in get_args(parameter.annotation)) == is_unset
+        assert is_unset or parameter.type.parse(as_toml(parameter.default)) == parameter.default
 
 
 @every_check
@@ -231,8 +232,8 @@ def is_supported(annotation: Any) -> bool:
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return is_supported(inner[0])
-    if origin is UnionType:
-        return all(map(is_supported, inner))
+    if origin in (UnionType, Union):
+        return all(is_supported(member) for member in inner if member is not NoneType)
     if origin is Literal:
         return all(isinstance(value, str) for value in inner)
     if origin is list:
@@ -247,7 +248,7 @@ def is_supported(annotation: Any) -> bool:
 def sample(annotation: Any) -> Any:
     """Return a value for a parameter, as TOML gives it."""
     origin, inner = get_origin(annotation), get_args(annotation)
-    if origin in (Annotated, UnionType):
+    if origin in (Annotated, UnionType, Union):
         return sample(inner[0])
     if origin is Literal:
         return inner[0]

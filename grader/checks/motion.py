@@ -1,17 +1,16 @@
 """Checks of the motion of a link when its joint turns."""
 
 from dataclasses import replace
-from math import atan2, degrees, hypot
+from math import hypot
 
 from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
-from grader.checks.visuals import main_visual, visual_pose, visuals
+from grader.checks.visuals import axis_place, main_visual, visual_pose, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration, last_moving
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
-from grader.robot.transforms import Vector, cross, dot, minus, unit
-from grader.source import LazyLocation
+from grader.robot.transforms import Vector, cross, degrees_between, dot, minus, unit
 
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
@@ -56,13 +55,13 @@ def rolls_forward(
     moved_low = _flat(minus(displaced.apply(low), low), upward)
     moved_high = _flat(minus(displaced.apply(high), high), upward)
     rolled = hypot(*minus(moved_low, moved_high))
-    at, detail = _axis_place(joint), f" (joint {joint.name!r})"
+    at, detail = axis_place(joint), f" (joint {joint.name!r})"
     travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
     if travel is None or rolled < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), upward):
         how = "its lowest point does not move" if travel is None else "it swivels about an upright axis"
         message = f"{link!r} does not roll when its joint turns: {how}"
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
-    off = _angle(travel, ahead)
+    off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
     message = f"a small positive turn of {link!r} {_heading(off, travel, base)}{'' if fine else '; it should drive it forward'}"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
@@ -82,7 +81,7 @@ def axis_along(
     """
     pose = robot.pose(link, relative_to=relative_to)
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
-    off = _angle(actual, expected)
+    off = degrees_between(actual, expected)
     names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", _Z_AXIS: "the z axis"}
     message = f"{names.get(axis, f'the direction {point(axis)}')} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK
@@ -114,7 +113,7 @@ def turns_about_itself(
     joint = _turning_joint(robot, link, base)
     T_joint_wheel = visual_pose(robot, link, visual, joint.child)
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
-    tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
+    tilt = min(degrees_between(turning, own), 180.0 - degrees_between(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
@@ -128,14 +127,6 @@ def turns_about_itself(
         message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} from the cylinder's axis; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
-
-
-def _axis_place(joint: Joint) -> LazyLocation | None:
-    """Return the place that gives an axis its direction: the joint's rpy, if the axis is z of a frame that is turned."""
-    is_z = joint.axis_location is not None and joint.axis is not None and unit(joint.axis) == _Z_AXIS
-    if is_z and joint.origin is not None and any(joint.origin.rpy):
-        return place(joint.origin.location, "rpy")
-    return place(joint.axis_location, "xyz") or joint.location
 
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
@@ -166,9 +157,3 @@ def _heading(off: float, travel: Vector, base: str) -> str:
     if off >= 135.0:
         return f"drives {base!r} backward"
     return f"drives {base!r} sideways, along {point(travel)}"
-
-
-def _angle(one: Vector, other: Vector) -> float:
-    """Return the angle between two unit vectors in degrees, as exact near 0 as elsewhere; NaN for a zero vector."""
-    sine, cosine = hypot(*cross(one, other)), dot(one, other)
-    return degrees(atan2(sine, cosine)) if sine or cosine else float("nan")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from typing import Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import appearance, contact, joints, launch, manual, motion, package, placement, rviz, tree
 from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
@@ -25,6 +25,7 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     tree.held_by,
     tree.joints_named,
     tree.root_of_tree,
+    tree.counts,
     placement.frame_at,
     placement.centre_at,
     placement.bottom_at_height,
@@ -35,6 +36,10 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     motion.rolls_forward,
     motion.axis_along,
     motion.turns_about_itself,
+    joints.joint_limits,
+    joints.joint_axis,
+    joints.mimics,
+    joints.joint_dynamics,
     package.package_found,
     package.package_type,
     package.build_installs,

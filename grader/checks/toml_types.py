@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import lru_cache, partial
 from math import isfinite
-from types import UnionType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from grader.robot.transforms import Vector
 
@@ -40,6 +40,7 @@ EachFromZeroToOne = Constraint("from 0 to 1 in each number", lambda values: min(
 NotZero = Constraint("a direction: not 0 in each number", any)
 
 NonNegative = Annotated[float, AtLeastZero]
+Count = Annotated[int, AtLeastZero]
 Size = Annotated[Vector, EachAtLeastZero]
 Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
@@ -92,8 +93,10 @@ def toml_type(annotation: Any) -> TomlType:
         return constrained(toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint)))
     if origin is Literal:
         return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
-    if origin is UnionType:
-        members = [toml_type(member) for member in inner]
+    if origin in (UnionType, Union):
+        members = [toml_type(member) for member in inner if member is not NoneType]  # None: the argument is absent
+        if len(members) == 1:
+            return members[0]
         name = " or ".join(member.name for member in members)
         choices = {"anyOf": [member.schema for member in members]}
         return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))

@@ -1,4 +1,4 @@
-"""The visuals of a link, for the checks that measure them."""
+"""The visuals of a link for the checks that measure them, and the places of origins and axes."""
 
 from math import inf
 from typing import Literal
@@ -7,9 +7,9 @@ from grader.checks.outcome import place
 from grader.errors import MissingElement
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Geometry, Joint, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import extent, is_empty, volume
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
 
 
@@ -76,3 +76,11 @@ def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
     if joint is None:
         return place(robot.link(link).location)
     return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)
+
+
+def axis_place(joint: Joint) -> LazyLocation | None:
+    """Return the place that gives an axis its direction: the joint's rpy, if the axis is z of a frame that is turned."""
+    is_z = joint.axis_location is not None and joint.axis is not None and unit(joint.axis) == (0.0, 0.0, 1.0)
+    if is_z and joint.origin is not None and any(joint.origin.rpy):
+        return place(joint.origin.location, "rpy")
+    return place(joint.axis_location, "xyz") or joint.location

@@ -7,7 +7,16 @@ from grader.problems import Problem
 from grader.robot import catalogue
 
 # Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
-_EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
+_EXPLAINING = (
+    catalogue.BAD_COLOUR,
+    catalogue.COLOUR_COUNT,
+    catalogue.DEGREES,
+    catalogue.UNDEFINED_MATERIAL,
+    catalogue.BAD_LIMIT,
+    catalogue.BAD_DYNAMICS,
+    catalogue.EMPTY_RANGE,
+    catalogue.LIMIT_IN_DEGREES,
+)
 _DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 

@@ -1,7 +1,6 @@
 """A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
 
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
@@ -50,11 +49,7 @@ class Inspection:
 
 def main_root(robot: Configuration) -> str | None:
     """Return the root of the largest tree; None if every link is in a loop."""
-    sizes = dict.fromkeys(robot.roots, 0)
-    for link in robot.robot.links:
-        with suppress(MissingElement, NotDecided):
-            sizes[robot.root_of(link.name)] += 1
-    return max(sizes, key=lambda root: sizes[root]) if sizes else None
+    return next(iter(robot.main_tree), None)
 
 
 def inspection_json(inspection: Inspection) -> str:

@@ -84,6 +84,9 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     if criterion.requires:
         lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
     lines += ["", *_check_lines("Check", criterion.check, criterion.arguments)]
+    if criterion.at:
+        positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
+        lines.append(_filled(f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."))
     if criterion.carried is not None:
         causes, check, arguments = criterion.carried
         title = f"If it fails and {enumerated(causes, word='or')} failed before it, the points are given if this check passes"
@@ -120,6 +123,8 @@ def _toml(value: object) -> str:
             return f"[{', '.join(map(_toml, value))}]"
         case dict():
             return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+        case None:
+            return "not checked"
         case _:
             return str(value)
 

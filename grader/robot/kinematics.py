@@ -1,6 +1,7 @@
 """Forward kinematics: the pose of every link with the joints at given positions."""
 
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from itertools import takewhile
 from math import isfinite
 
@@ -59,6 +60,16 @@ class Configuration:
     def roots(self) -> tuple[str, ...]:
         """The links without a parent joint, in file order."""
         return tuple(link.name for link in self.robot.links if link.name not in self.parent_joints)
+
+    @property
+    def main_tree(self) -> tuple[str, ...]:
+        """The links of the largest tree, its root first; empty if every link is in a loop."""
+        trees: dict[str, list[str]] = {root: [root] for root in self.roots}
+        for name in self.parent_joints:
+            with suppress(MissingElement):
+                trees[self.root_of(name)].append(name)
+        largest = max(trees.values(), key=len, default=[])
+        return tuple(largest)
 
     def root_of(self, link: str) -> str:
         """Return the root of the tree that a link is in; raises MissingElement for a link on a loop of joints."""

@@ -5,7 +5,7 @@ gives the homogeneous matrix.
 """
 
 from dataclasses import dataclass
-from math import atan2, cos, hypot, inf, sin
+from math import atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -159,3 +159,9 @@ def cross(a: Vector, b: Vector) -> Vector:
 def minus(a: Vector, b: Vector) -> Vector:
     """Return the vector from b to a."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def degrees_between(a: Vector, b: Vector) -> float:
+    """Return the angle between two directions in degrees, as exact near 0 as elsewhere; NaN for a zero vector."""
+    sine, cosine = hypot(*cross(a, b)), dot(a, b)
+    return degrees(atan2(sine, cosine)) if sine or cosine else nan

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import radians
 from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, motion, placement, tree
+from grader.checks import appearance, contact, joints, motion, placement, tree
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
@@ -85,6 +86,42 @@ def standing(*, height: float = 0.1, rpy: Numbers = "", xy: str = "0 0", wheel: 
         joint("base_joint", "fixed", "foot", "base", xyz=f"{xy} {height!r}", rpy=rpy),
         joint("wheel_joint", "continuous", "base", "wheel", xyz=(-0.15, 0.225, wheel), rpy=FORWARD, axis="0 0 1"),
         joint("caster_joint", "fixed", "base", "caster", xyz=(0.2, 0.0, -0.05)),
+    )
+
+
+def swinging(
+    *,
+    kind: str = "revolute",
+    xyz: Numbers = (0.1, 0.0, 0.2),
+    rpy: Numbers = "",
+    axis: Numbers = "0 1 0",
+    limit: str = 'lower="-1.5708" upper="0.7854" effort="10" velocity="2"',
+    more: str = "",
+) -> Scene:
+    """Return a base with an arm on a joint, and a tip that is fixed to the arm by a frame turned about x."""
+    return scene(
+        link("base"),
+        link("arm"),
+        link("tip"),
+        joint("shoulder", kind, "base", "arm", xyz=xyz, rpy=rpy, axis=axis, limit=limit, more=more),
+        joint("tip_joint", "fixed", "arm", "tip", xyz="0.3 0 0", rpy=turned(roll=90)),
+    )
+
+
+def ranged(lower: float = radians(-90), upper: float = radians(45)) -> Scene:
+    """Return a base with an arm that has these limits in radians."""
+    return swinging(limit=f'lower="{lower!r}" upper="{upper!r}" effort="10" velocity="2"')
+
+
+def gripping(*mimic: str, kind: str = "prismatic") -> Scene:
+    """Return a palm with a left finger, and a right finger whose joint has these attributes of a <mimic>."""
+    follows = f"<mimic {' '.join(mimic)}/>" if mimic else ""
+    return scene(
+        link("palm"),
+        link("left"),
+        link("right"),
+        joint("left_joint", "prismatic", "palm", "left", axis="0 1 0"),
+        joint("right_joint", kind, "palm", "right", axis="0 -1 0", more=follows),
     )
 
 
@@ -191,6 +228,17 @@ CASES = (
         failing=scene(FOOT, BASE, joint("base_joint", "fixed", "base", "foot")),
         fail_message="'foot' is not the root: it is a child of 'base' (joint 'base_joint')",
         at="<joint",
+        needs_size=False,
+    ),
+    Case(
+        tree.counts,
+        {"links": 3, "joints": 2, "moving": 1, "revolute": 1, "continuous": 0, "prismatic": 0, "fixed": 1},
+        passing=swinging(),
+        pass_message="the tree has 3 links, 2 joints, 1 moving joint, 1 revolute joint, 0 continuous joints, 0 prismatic joints"
+        " and 1 fixed joint",
+        failing=swinging(kind="continuous"),
+        fail_message="there are 0 revolute joints; there should be 1; there is 1 continuous joint; there should be 0",
+        at=None,
         needs_size=False,
     ),
     Case(
@@ -332,6 +380,63 @@ CASES = (
             "angle": lambda off: rolling(wheel=link("wheel", visual(cylinder(), rpy=turned(roll=off)))),
         },
         mesh_status="failed",
+    ),
+    Case(
+        joints.joint_limits,
+        {"link": "tip", "lower": -90.0, "upper": 45.0, "tolerance": 0.5, "effort": 10.0, "velocity": 2.0},
+        passing=swinging(),
+        pass_message="the range of the joint that moves 'tip' is -90 to 45 degrees",
+        failing=swinging(limit='lower="-1.5708" upper="1.5708" effort="20" velocity="2"'),
+        fail_message="the range of the joint that moves 'tip' is -90 to 90 degrees; it should be -90 to 45 degrees;"
+        " its effort is 20; it should be 10 (joint 'shoulder')",
+        at="upper=",
+        edges={"tolerance": lambda off: ranged(upper=radians(45 + off))},
+        needs_size=False,
+    ),
+    Case(
+        joints.joint_axis,
+        {
+            "link": "tip",
+            "relative_to": "base",
+            "direction": (0.0, 2.0, 0.0),
+            "tolerance": 1.0,
+            "through": (0.1, 5.0, 0.2),
+            "distance": 0.002,
+        },
+        passing=swinging(),
+        pass_message="the axis of the joint that moves 'tip' points along 0 1 0 in 'base' and passes 0 mm from 0.1 5 0.2 m",
+        failing=swinging(axis="0 0 1"),
+        fail_message="the axis of the joint that moves 'tip' points along 0 0 1 in 'base'; it should point along 0 1 0"
+        " (90 degrees off) (joint 'shoulder')",
+        at='xyz="0 0 1"',
+        edges={
+            "tolerance": lambda off: swinging(xyz=(0.1, 5.0, 0.2), rpy=turned(roll=off)),
+            "distance": lambda off: swinging(xyz=(0.1 + off, 0.0, 0.2)),
+        },
+        needs_size=False,
+    ),
+    Case(
+        joints.mimics,
+        {"link": "right", "leader": "left", "multiplier": -1.0, "offset": 0.1, "tolerance": 0.01},
+        passing=gripping('joint="left_joint" multiplier="-1" offset="0.1"'),
+        pass_message="the joint that moves 'right' mimics the joint that moves 'left'",
+        failing=gripping('joint="left_joint"', 'offset="0.1"'),
+        fail_message="the joint that moves 'right' mimics the joint that moves 'left'; its multiplier is 1; it should be -1"
+        " (joint 'right_joint')",
+        at="<mimic",
+        edges={"tolerance": lambda off: gripping(f'joint="left_joint" multiplier="{-1 + off!r}" offset="0.1"')},
+        needs_size=False,
+    ),
+    Case(
+        joints.joint_dynamics,
+        {"link": "tip", "friction": 0.5, "damping": 0.0, "tolerance": 0.01},
+        passing=swinging(more='<dynamics friction="0.5"/>'),
+        pass_message="the joint that moves 'tip' has <dynamics>",
+        failing=swinging(more='<dynamics damping="0.5" friction="0.5"/>'),
+        fail_message="the joint that moves 'tip' has <dynamics>; its damping is 0.5; it should be 0 (joint 'shoulder')",
+        at="damping=",
+        edges={"tolerance": lambda off: swinging(more=f'<dynamics friction="{0.5 + off!r}"/>')},
+        needs_size=False,
     ),
 )
 

@@ -108,16 +108,16 @@ def joint(
     xyz: Numbers = "",
     rpy: Numbers = "",
     axis: Numbers = "",
+    limit: str = 'lower="-1" upper="1" effort="1" velocity="1"',
     more: str = "",
 ) -> str:
     """Return a joint; revolute and prismatic joints have a limit, so that ROS 2 accepts them."""
-    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else ""
     inside = (
         f'<parent link="{parent}"/>',
         f'<child link="{child}"/>',
         _origin(xyz, rpy),
         f'<axis xyz="{numbers(axis)}"/>' if axis else "",
-        limit,
+        f"<limit {limit}/>" if limit and kind in ("revolute", "prismatic") else "",
         more,
     )
     return "\n".join((f'<joint name="{name}" type="{kind}">', *filter(None, inside), "</joint>"))

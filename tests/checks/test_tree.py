@@ -1,16 +1,19 @@
 """The tree of links: whether it loads, the joints' types and names, parents and the root."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
+from grader.checks.tree import counts, held_by, joints_named, root_of_tree, urdf_loads
 from grader.robot.joints import JOINT_TYPES
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of, mounted
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, own_message, passes
 from tests.checks.robots import Scene, joint, link, mesh, scene, visual
+from tests.command_line import run
 
 MOVING = [kind for kind in JOINT_TYPES if kind != "fixed"]
 HELD: Arguments = {"link": "wheel", "parent": "base", "joint_type": "continuous"}
@@ -36,10 +39,11 @@ def in_line(*kinds: str) -> Scene:
 
 @cases_of("tree")
 def test_facts_about_joints_have_no_measurement(case: Case) -> None:
-    """The outcome has no number, no tolerance and no unit."""
+    """The outcome has no tolerance and no unit, and only counts have numbers."""
     for found in (case.passing, case.failing):
         outcome = ask(case.check, found, **case.arguments)
-        assert (outcome.measured, outcome.expected, outcome.tolerance, outcome.unit) == (None, None, None, None)
+        assert (outcome.tolerance, outcome.unit) == (None, None)
+        assert (outcome.measured is None, outcome.expected is None) == (case.name != "counts",) * 2
 
 
 # --- held_by ----------------------------------------------------------------------------------------------------------
@@ -461,3 +465,84 @@ def test_meshes_and_movable_joints_load() -> None:
     """The content is ignored: missing meshes, wheels without an axis, a lidar in the ground."""
     passes(urdf_loads, mounted((0.0, 0.0, -9.0)).with_shape(mesh("nowhere.stl")))
     passes(urdf_loads, scene(BASE, WHEEL, joint("j", "continuous", "base", "wheel")))
+
+
+# --- counts -----------------------------------------------------------------------------------------------------------
+
+HAND = (
+    *map(link, ("palm", "left", "right", "lift", "eye")),
+    joint("left_joint", "prismatic", "palm", "left", axis="0 1 0"),
+    joint("right_joint", "prismatic", "palm", "right", axis="0 1 0", more='<mimic joint="left_joint"/>'),
+    joint("lift_joint", "planar", "palm", "lift", axis="0 0 1"),
+    joint("eye_joint", "fixed", "lift", "eye"),
+)
+
+
+def test_what_is_counted() -> None:
+    """All types count as joints; a mimic joint does not move by itself; what the rubric does not give is not counted."""
+    found = passes(counts, scene(*HAND), links=5, joints=4, moving=2, prismatic=2, fixed=1)
+    assert found == "the tree has 5 links, 4 joints, 2 moving joints, 2 prismatic joints and 1 fixed joint"
+    assert passes(counts, scene(*HAND), continuous=0) == "the tree has 0 continuous joints"
+
+
+def test_each_wrong_count_is_named() -> None:
+    """The message lists those that are wrong, with the expected number."""
+    found = fails(counts, scene(*HAND), links=6, joints=4, moving=3, revolute=1, fixed=0)
+    assert found == (
+        "there are 5 links; there should be 6; there are 2 moving joints; there should be 3;"
+        " there are 0 revolute joints; there should be 1; there is 1 fixed joint; there should be 0"
+    )
+
+
+def test_only_the_largest_tree_counts() -> None:
+    """Links that are not connected to it are not in the tree, nor is a loop, nor the joints of both."""
+    loose = (link("a"), link("b"), joint("ab", "continuous", "a", "b"))
+    loop = (link("c"), link("d"), joint("cd", "fixed", "c", "d"), joint("dc", "fixed", "d", "c"))
+    passes(counts, scene(*loose, *HAND), links=5, joints=4, continuous=0)
+    passes(counts, scene(*HAND, *loop), links=5, joints=4, fixed=1)
+    assert fails(counts, scene(*loop[:2], *loop[3:], link("palm")), links=3) == "there are 2 links; there should be 3"
+
+
+def test_a_joint_with_an_unknown_type_is_a_joint() -> None:
+    """It is of no type that is counted; which links there are does not depend on it."""
+    text = scene(*HAND).text.replace('"planar"', '"plane"')
+    passes(counts, Scene(text), links=5, joints=4, fixed=1, moving=2)
+
+
+@pytest.mark.parametrize(
+    ("written", "by", "wanted", "status"),
+    [
+        ('type="fixed"', 'type="$(env KIND)"', {"links": 5, "joints": 4}, "passed"),
+        ('type="fixed"', 'type="$(env KIND)"', {"fixed": 1}, "pending"),
+        ('mimic joint="left_joint"', 'mimic joint="$(env J)"', {"moving": 2}, "passed"),
+        ('link name="eye"', 'link name="$(env EYE)"', {"links": 5}, "pending"),
+    ],
+)
+def test_counts_of_xacro_that_is_left_open(
+    tmp_path: Path, written: str, by: str, wanted: Arguments, status: str
+) -> None:
+    """A number that depends on what only a run tells needs manual grading."""
+    xacro = (
+        scene(*HAND).text.replace(written, by).replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    )
+    (tmp_path / "hand.urdf.xacro").write_text(xacro)
+    given = ", ".join(f"{name} = {number}" for name, number in wanted.items())
+    (tmp_path / "hand.toml").write_text(
+        'id = "hand"\ntitle = "Hand"\nreference = "hand.urdf.xacro"\nurdf = "hand.urdf"\n'
+        '[[part]]\nid = "all"\ntitle = "All"\nneeds = "urdf"\n'
+        f'[[criterion]]\nid = "size"\ntitle = "Size"\npart = "all"\npoints = 1\ncheck = "counts"\nwith = {{ {given} }}\n'
+    )
+    done = run(("grade", tmp_path / "hand.urdf.xacro", "--rubric", tmp_path / "hand.toml", "--format", "json"))
+    assert [result["status"] for result in json.loads(done.stdout)["results"]] == [status]
+
+
+@pytest.mark.parametrize("number", ["-1", "1.0", '"3"'])
+def test_a_count_is_a_whole_number(tmp_path: Path, number: str) -> None:
+    """Anything else is a mistake of the rubric."""
+    (tmp_path / "r.toml").write_text(
+        'id = "r"\ntitle = "R"\nreference = "r.urdf"\nurdf = "r.urdf"\n[[part]]\nid = "all"\ntitle = "All"\nneeds = "urdf"\n'
+        f'[[criterion]]\nid = "size"\ntitle = "Size"\npart = "all"\npoints = 1\ncheck = "counts"\nwith = {{ links = {number} }}\n'
+    )
+    done = run(("rubric", "check", tmp_path / "r.toml"))
+    assert done.returncode == 2
+    assert b"links" in done.stderr

@@ -194,3 +194,13 @@ def test_without_a_default_a_criterion_needs_its_keys(tmp_path: Path) -> None:
     code, text = graded(tmp_path, "with = { xyz = [0, 0, 0.4] }\n", rubric=rubric)
     assert (code, "this criterion has no points" in text) == (2, True)
     assert "the check frame_at needs tolerance: a number" in text
+
+
+def test_explain_shows_the_pose(tmp_path: Path) -> None:
+    """The explanation of a criterion says where the joints are."""
+    more = "at = { joint_1 = 90, slide = 0.1 }\nwith = { xyz = [0.5, 0, 0] }\n"
+    code, text = graded(tmp_path, more, ARM, "explain", "posed", "--rubric", str(tmp_path / "arm.toml"))
+    assert (
+        code,
+        "The robot is posed: joint_1 = 90, slide = 0.1 (degrees or metres); its other joints are at 0." in text,
+    ) == (0, True)
