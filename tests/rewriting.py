@@ -5,40 +5,33 @@ so that a robot with a mistake in it can be rewritten, too.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
-from itertools import permutations, product
-from math import atan2, cos, hypot, pi, sin
+from itertools import product
+from math import hypot, pi
 from random import Random
-from typing import Any
 
-import numpy as np
 from hypothesis import strategies as st
 from lxml import etree
 
-Element = etree._Element
-Matrix = np.ndarray[Any, np.dtype[np.floating[Any]]]
+from grader.mutation import rewritings as seeded
+from grader.mutation.style import Style
+from grader.mutation.trees import (
+    Element,
+    add_joint,
+    end,
+    fresh,
+    link_named,
+    move_frame,
+    numbers_of,
+    origin,
+    parent_joint,
+    pose,
+    put,
+    written,
+)
+from grader.robot.transforms import IDENTITY
+
 Step = Callable[[st.DrawFn, Element], None]
 
-_VECTORS = frozenset({"xyz", "rpy", "size", "rgba"})
-_SCALARS = frozenset(
-    {
-        "radius",
-        "length",
-        "value",
-        "ixx",
-        "ixy",
-        "ixz",
-        "iyy",
-        "iyz",
-        "izz",
-        "effort",
-        "velocity",
-        "damping",
-        "k_velocity",
-    }
-)
-_COMMENTS = ("<!---->", "<!-- a robot -->", '<!-- <link name="ghost"/> -->', "<!--\n  0.6 / 4\n  -->", "<!-- $ & % -->")
 _DECLARATIONS = (
     "",
     '<?xml version="1.0"?>',
@@ -48,107 +41,12 @@ _DECLARATIONS = (
     '<?xml version="1.0"?>\n<?xml version="1.0"?>\n',
     "<!-- first a comment -->",
 )
-_FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
+_FLIP = origin((0, 0, 0), (pi, 0, 0))
 
 
 def parse(data: bytes) -> Element:
     """Return the element tree of a URDF, without comments and blank space."""
     return etree.fromstring(data, etree.XMLParser(remove_comments=True, remove_blank_text=True))
-
-
-def matrix(xyz: Iterable[float], rpy: Iterable[float]) -> Matrix:
-    """Return the 4 x 4 matrix of an origin: Rz(yaw) Ry(pitch) Rx(roll), written out as a product."""
-    roll, pitch, yaw = rpy
-    about_x = np.array([[1, 0, 0], [0, cos(roll), -sin(roll)], [0, sin(roll), cos(roll)]])
-    about_y = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
-    about_z = np.array([[cos(yaw), -sin(yaw), 0], [sin(yaw), cos(yaw), 0], [0, 0, 1]])
-    result: Matrix = np.eye(4)
-    result[:3, :3] = about_z @ about_y @ about_x
-    result[:3, 3] = list(xyz)
-    return result
-
-
-def angles(rotation: Matrix) -> tuple[float, float, float]:
-    """Return roll, pitch and yaw of a rotation; the roll is 0 if the pitch is a quarter turn."""
-    level = hypot(rotation[0, 0], rotation[1, 0])
-    pitch = atan2(-rotation[2, 0], level)
-    if level < 1e-7:
-        return 0.0, pitch, atan2(-rotation[0, 1], rotation[1, 1])
-    return atan2(rotation[2, 1], rotation[2, 2]), pitch, atan2(rotation[1, 0], rotation[0, 0])
-
-
-def written(values: Iterable[float]) -> str:
-    """Return numbers as an attribute contains them."""
-    return " ".join(f"{value:.13g}" for value in values)
-
-
-def numbers_of(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
-    """Return the numbers of an attribute."""
-    text = default if element is None else element.get(attribute, default)
-    return [float(piece) for piece in text.split()]
-
-
-def pose(owner: Element) -> Matrix:
-    """Return the pose in the `<origin>` of a joint or a visual."""
-    origin = owner.find("origin")
-    return matrix(numbers_of(origin, "xyz"), numbers_of(origin, "rpy"))
-
-
-def put(owner: Element, transform: Matrix) -> None:
-    """Write a pose into the `<origin>` of a joint or a visual."""
-    origin = owner.find("origin")
-    if origin is None:
-        origin = etree.SubElement(owner, "origin")
-    origin.set("xyz", written(transform[:3, 3]))
-    origin.set("rpy", written(angles(transform)))
-
-
-def link_named(tree: Element, name: str) -> Element | None:
-    """Return the link of this name."""
-    return next((link for link in tree.iterchildren("link") if link.get("name") == name), None)
-
-
-def end(joint: Element, role: str) -> Element:
-    """Return the `<parent>` or `<child>` of a joint."""
-    found = joint.find(role)
-    assert found is not None
-    return found
-
-
-def parent_joint(tree: Element, link: str) -> Element | None:
-    """Return the joint whose child is this link."""
-    return next((joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link), None)
-
-
-def move_frame(tree: Element, link: Element, change: Matrix) -> None:
-    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
-    name = link.get("name", "")
-    held = parent_joint(tree, name)
-    assert held is not None
-    back = np.linalg.inv(change)
-    put(held, pose(held) @ change)
-    axis = held.find("axis")
-    if axis is not None:
-        axis.set("xyz", written(back[:3, :3] @ numbers_of(axis, "xyz")))
-    for element in link:
-        put(element, back @ pose(element))
-    for joint in tree.iterchildren("joint"):
-        if end(joint, "parent").get("link") == name:
-            put(joint, back @ pose(joint))
-
-
-def fresh(tree: Element, kind: str) -> str:
-    """Return a name that nothing in the robot has."""
-    return f"extra_{kind}_{len(tree)}"
-
-
-def add_joint(tree: Element, name: str, parent: str, child: str, transform: Matrix) -> Element:
-    """Add a fixed joint."""
-    joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
-    etree.SubElement(joint, "parent", {"link": parent})
-    etree.SubElement(joint, "child", {"link": child})
-    put(joint, transform)
-    return joint
 
 
 # --- What may be drawn ------------------------------------------------------------------------------------------------
@@ -157,16 +55,11 @@ _lengths = st.floats(-1, 1).map(lambda value: round(value, 6))
 _turns = st.sampled_from((0.0, pi / 2, -pi / 2, pi, 1.57, 0.3)) | st.floats(-3.1, 3.1).map(
     lambda value: round(value, 6)
 )
-_rotations = st.builds(matrix, st.just((0.0, 0.0, 0.0)), st.tuples(_turns, _turns, _turns))
-_poses = st.builds(matrix, st.tuples(_lengths, _lengths, _lengths), st.tuples(_turns, _turns, _turns))
-_about_z = st.builds(lambda turn: matrix((0, 0, 0), (0, 0, turn)), _turns)
-_along_z = st.builds(lambda slide, turn: matrix((0, 0, slide), (0, 0, turn)), _lengths, _turns)
-_QUARTERS = tuple(
-    np.block([[signed, np.zeros((3, 1))], [np.zeros((1, 3)), np.eye(1)]])
-    for order in permutations(range(3))
-    for signs in product((1.0, -1.0), repeat=3)
-    if np.linalg.det(signed := np.eye(3)[list(order)] * signs) > 0
-)
+_rotations = st.builds(origin, st.just((0.0, 0.0, 0.0)), st.tuples(_turns, _turns, _turns))
+_poses = st.builds(origin, st.tuples(_lengths, _lengths, _lengths), st.tuples(_turns, _turns, _turns))
+_about_z = st.builds(lambda turn: origin((0, 0, 0), (0, 0, turn)), _turns)
+_along_z = st.builds(lambda slide, turn: origin((0, 0, slide), (0, 0, turn)), _lengths, _turns)
+_QUARTERS = tuple(origin((0, 0, 0), (pi / 2 * turn for turn in turns)) for turns in product(range(4), repeat=3))
 
 
 def _one_of(draw: st.DrawFn, elements: Iterable[Element]) -> Element | None:
@@ -181,19 +74,8 @@ def split_joint(draw: st.DrawFn, tree: Element) -> None:
     """Put an empty link into the middle of a joint, before it if it moves. The name stays in the chain."""
     joint = _one_of(draw, tree.iterchildren("joint"))
     assert joint is not None
-    middle = fresh(tree, "link")
-    etree.SubElement(tree, "link", {"name": middle})
-    whole, first = pose(joint), draw(_poses)
-    second = np.linalg.inv(first) @ whole
-    parent, child = end(joint, "parent"), end(joint, "child")
-    if joint.get("type") == "fixed" and draw(st.booleans()):
-        add_joint(tree, fresh(tree, "joint"), middle, child.get("link", ""), second)
-        put(joint, first)
-        child.set("link", middle)
-    else:
-        add_joint(tree, fresh(tree, "joint"), parent.get("link", ""), middle, first)
-        put(joint, second)
-        parent.set("link", middle)
+    is_first = joint.get("type") == "fixed" and draw(st.booleans())
+    seeded.split_joint(tree, joint, draw(_poses), is_first=is_first)
 
 
 def add_hub(draw: st.DrawFn, tree: Element) -> None:
@@ -204,7 +86,7 @@ def add_hub(draw: st.DrawFn, tree: Element) -> None:
     hub, child, shift = fresh(tree, "link"), end(joint, "child"), draw(_along_z)
     etree.SubElement(tree, "link", {"name": hub})
     put(joint, pose(joint) @ shift)
-    add_joint(tree, fresh(tree, "joint"), hub, child.get("link", ""), np.linalg.inv(shift))
+    add_joint(tree, fresh(tree, "joint"), hub, child.get("link", ""), shift.inverse())
     child.set("link", hub)
 
 
@@ -239,9 +121,10 @@ def turn_visual(draw: st.DrawFn, tree: Element) -> None:
     match shape.tag:
         case "box":
             turn = draw(st.sampled_from(_QUARTERS))
-            shape.set("size", written(np.abs(turn[:3, :3].T) @ numbers_of(shape, "size")))
+            length, width, height = numbers_of(shape, "size")
+            shape.set("size", written(map(abs, turn.unrotate((length, width, height)))))
         case "cylinder":
-            turn = draw(_about_z) @ draw(st.sampled_from((np.eye(4), _FLIP)))
+            turn = draw(_about_z) @ draw(st.sampled_from((IDENTITY, _FLIP)))
         case _:
             turn = draw(_rotations)
     put(visual, pose(visual) @ turn)
@@ -255,23 +138,19 @@ def _turns_about_z(joint: Element) -> bool:
 # --- Steps that say the same in other values --------------------------------------------------------------------------
 
 
-def other_angles(draw: st.DrawFn, tree: Element) -> None:
-    """Write a rotation with additional full turns, or by its other three angles."""
-    origin = _one_of(draw, tree.iter("origin"))
-    assert origin is not None
-    roll, pitch, yaw = numbers_of(origin, "rpy")
-    if draw(st.booleans()):
-        roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
-    turns = draw(st.tuples(*[st.integers(-3, 3)] * 3))
-    origin.set("rpy", written(angle + 2 * pi * turn for angle, turn in zip((roll, pitch, yaw), turns, strict=True)))
+def _seeded(step: seeded.Step) -> Step:
+    """Return a step that draws the seed of one of `grader rubric test`."""
+
+    def drawn(draw: st.DrawFn, tree: Element) -> None:
+        step(Random(draw(st.integers(0, 2**32 - 1))), tree, _NO_NAMES)
+
+    return drawn
 
 
-def scale_axis(draw: st.DrawFn, tree: Element) -> None:
-    """Scale an axis."""
-    axis = _one_of(draw, tree.iter("axis"))
-    assert axis is not None
-    factor = 10 ** draw(st.floats(-3, 3))
-    axis.set("xyz", written(factor * number for number in numbers_of(axis, "xyz")))
+_NO_NAMES = seeded.Surroundings((), lambda _: False)
+other_angles = _seeded(seeded.turn_fully)
+scale_axis = _seeded(seeded.scale_axes)
+shuffle = _seeded(seeded.shuffle)
 
 
 def nudge(draw: st.DrawFn, tree: Element) -> None:
@@ -315,7 +194,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
 # --- Steps that add what changes nothing ------------------------------------------------------------------------------
 
 
-def add_link(draw: st.DrawFn, tree: Element) -> None:
+def attach_link(draw: st.DrawFn, tree: Element) -> None:
     """Attach another link to the robot."""
     parent = _one_of(draw, tree.iterchildren("link"))
     assert parent is not None
@@ -380,20 +259,6 @@ def _add_shape(link: Element, role: str, tag: str, sizes: dict[str, str]) -> Ele
 # --- Steps that must come last, in this order -------------------------------------------------------------------------
 
 
-def shuffle(draw: st.DrawFn, tree: Element) -> None:
-    """Shuffle the elements inside each element."""
-    for owner in [tree, *tree.iter("link", "joint", "visual", "inertial")]:
-        children = list(owner)
-        order = (
-            draw(st.permutations(children))
-            if owner is tree
-            else Random(draw(st.integers(0, 99))).sample(children, len(children))
-        )
-        for child in children:
-            owner.remove(child)
-        owner.extend(order)
-
-
 def materials_into_links(draw: st.DrawFn, tree: Element) -> None:
     """Define a material inside the first visual that uses it."""
     material = _one_of(draw, tree.iterchildren("material"))
@@ -432,7 +297,7 @@ BEHAVING: tuple[Step, ...] = (
     scale_axis,
     nudge,
     shade,
-    add_link,
+    attach_link,
     add_invisible,
     add_physics,
     add_unknown_elements,
@@ -441,78 +306,6 @@ LAST: tuple[Step, ...] = (shuffle, materials_into_links, materials_into_links, r
 
 
 # --- Text -------------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Style:
-    """Options for writing an element tree as text; the text is as plain as possible with all of them off."""
-
-    random: Random
-    blanks: tuple[str, ...] = ("\n",)
-    quotes: str = '"'
-    numbers: bool = False
-    comments: bool = False
-    references: bool = False
-    orders: bool = False
-
-    def text(self, element: Element) -> str:
-        """Return an element as text."""
-        pick = self.random.choice
-        tight = self.blanks if self.orders else ("",)
-        loose = [space for space in tight if space] or [" "]
-        attributes = [(name, value) for name, value in element.attrib.items() if name not in ("nudged", "shaded")]
-        if self.orders:
-            self.random.shuffle(attributes)
-        inside = [self.attribute(str(name), str(value)) for name, value in attributes]
-        space = [pick(loose) for _ in inside]
-        opening = f"<{element.tag}{''.join(map(''.join, zip(space, inside, strict=True)))}"
-        children = [self.text(child) for child in element]
-        if not children and not (self.orders and pick((True, False))):
-            return f"{opening}{pick(tight)}/>"
-        between = [self.blank_space() for _ in range(len(children) + 1)]
-        body = "".join(map("".join, zip(between, [*children, ""], strict=True)))
-        return f"{opening}{pick(tight)}>{body}</{element.tag}{pick(tight)}>"
-
-    def blank_space(self) -> str:
-        """Return the text between two elements."""
-        comment = self.random.choice(_COMMENTS) if self.comments and self.random.random() < 0.2 else ""
-        return f"{self.random.choice(self.blanks)}{comment}{self.random.choice(self.blanks)}"
-
-    def attribute(self, name: str, value: str) -> str:
-        """Return an attribute as text."""
-        quote = self.random.choice(self.quotes)
-        if self.numbers and name in _VECTORS:
-            pieces = [self.number(piece) for piece in value.split(" ")]
-            value = "".join(f"{' ' * self.random.randint(1, 3)}{piece}" for piece in pieces)
-            value += " " * self.random.randint(0, 2)
-        elif self.numbers and name in _SCALARS:
-            value = " " * self.random.randint(0, 2) + self.number(value)
-        value = value.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
-        if self.references and value and value[0].isalnum():
-            value = f"&#{ord(value[0])};{value[1:]}"
-        equals = f"{self.random.choice(self.blanks)}={self.random.choice(self.blanks)}" if self.orders else "="
-        return f"{name}{equals}{quote}{value}{quote}"
-
-    def number(self, text: str) -> str:
-        """Return the same number in other digits."""
-        try:
-            value = Decimal(text)
-        except InvalidOperation:
-            return text
-        sign = "-" if value.is_signed() else self.random.choice(("", "+"))
-        value = value.copy_abs()
-        forms = [f"{value:e}", f"{value:E}", f"{value:e}".replace("e-", "e-0")]
-        if value.adjusted() > -20:
-            plain = f"{value:f}"
-            forms += [
-                plain,
-                f"0{plain}",
-                f"{plain}0" if "." in plain else f"{plain}.",
-                f"{plain}00" if "." in plain else f"{plain}.00",
-            ]
-            forms += [plain[1:]] if plain.startswith("0.") else []
-        return sign + self.random.choice(forms)
-
 
 _styles = st.builds(
     Style,
@@ -532,6 +325,8 @@ def rewritten(draw: st.DrawFn, tree: Element, steps: Sequence[Step]) -> bytes:
     robot = etree.fromstring(etree.tostring(tree))
     for step in steps:
         step(draw, robot)
+    for mark in ("nudged", "shaded"):
+        robot.attrib.pop(mark, "")
     style = draw(_styles)
     text = f"{draw(st.sampled_from(_DECLARATIONS))}{style.blank_space()}{style.text(robot)}{style.blank_space()}"
     if draw(st.booleans()):

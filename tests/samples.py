@@ -1,13 +1,13 @@
-"""The sample submissions, each with the contents of its expected.toml."""
+"""The sample submissions in submissions/, each with its expected.toml, as `grader rubric test` reads them."""
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
+from grader.mutation.samples import Sample as ExpectedSample
+from grader.mutation.samples import read_samples
 from grader.submission.opening import open_submission
 from grader.submission.submission import Submission
 
@@ -19,23 +19,26 @@ LAB6 = load_rubric("lab6")
 class Sample:
     """A folder of submissions/: the submission is this folder, or the path in it that expected.toml names."""
 
-    name: str
-    expected: dict[str, Any]
+    expected: ExpectedSample
+
+    @property
+    def name(self) -> str:
+        """Return the name of the folder."""
+        return self.expected.name
 
     @property
     def path(self) -> Path:
         """Return the path of the submission, relative to the project's root."""
-        return Path("submissions", self.name, str(self.expected.get("path", "")))
+        return Path("submissions", self.name, self.expected.path)
 
     @property
     def rubric(self) -> Rubric:
         """Return the rubric for its grading."""
-        named = self.expected.get("rubric", LAB6.id)
-        return LAB6 if named == LAB6.id else load_rubric(named)
+        return LAB6 if self.expected.rubric == LAB6.id else load_rubric(self.expected.rubric)
 
     def open(self) -> Submission:
         """Return the submission."""
-        return opened(self.path, self.rubric)
+        return self.expected.open(self.rubric)
 
     def grade(self) -> Report:
         """Return its report."""
@@ -53,8 +56,4 @@ def reference(rubric: Rubric = LAB6) -> Submission:
     return rubric.solution.submission
 
 
-def _read(folder: Path) -> Sample:
-    return Sample(folder.name, tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8")))
-
-
-SAMPLES = {path.parent.name: _read(path.parent) for path in sorted((ROOT / "submissions").glob("*/expected.toml"))}
+SAMPLES = {sample.name: Sample(sample) for sample in read_samples(ROOT / "submissions")}

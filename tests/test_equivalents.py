@@ -12,7 +12,8 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.opening import read_submission
-from tests.rewriting import BEHAVING, Element, Step, parse, rewritings, rewritten
+from grader.xml.parsing import Element
+from tests.rewriting import BEHAVING, Step, parse, rewritings, rewritten
 
 RUBRIC = load_rubric("lab6")
 REFERENCE = parse((RUBRIC.path.parent / RUBRIC.reference / RUBRIC.urdf).read_bytes())

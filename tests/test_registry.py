@@ -12,7 +12,6 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pytest
 
-import grader.checks
 from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import CHECKS, ENTRY_POINTS, Check, check_names, describe, find_check
 from grader.errors import RubricError
@@ -25,9 +24,11 @@ from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE
 from tests.checks.submissions import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
-SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
+
+SCALAR = str | float | bool
+CONTENT = SCALAR | list[SCALAR]
 
 every_check = pytest.mark.parametrize("check", [describe(function) for function in CHECKS], ids=NAMES)
 
@@ -44,9 +45,10 @@ def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
 @every_check
 def test_the_signature_is_a_schema(check: Check) -> None:
     """A check takes its subject, and then keyword arguments that a rubric can give, in types that TOML has."""
-    subject, *rest = inspect.signature(check.function).parameters.values()
-    assert subject.name == check.subject
-    assert subject.kind is subject.POSITIONAL_OR_KEYWORD
+    every = list(inspect.signature(check.function).parameters.values())
+    examined, rest = every[: len(check.examined)], every[len(check.examined) :]
+    assert tuple(parameter.name for parameter in examined) == check.examined
+    assert {parameter.kind for parameter in examined} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
     assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
     assert list(check.parameters) == [parameter.name for parameter in rest]
     for parameter in check.parameters.values():
@@ -212,8 +214,7 @@ def test_a_rubric_can_name_a_plugin_check(installed: list[str], tmp_path: Path) 
 
 def families() -> list[Path]:
     """Return the modules that contain checks."""
-    folder = Path(inspect.getfile(grader.checks)).parent
-    return sorted(path for path in folder.glob("*.py") if path.stem not in SHARED)
+    return sorted({Path(inspect.getfile(function)) for function in CHECKS})
 
 
 def checks_in(path: Path) -> list[str]:
@@ -237,17 +238,19 @@ def is_supported(annotation: Any) -> bool:
     if origin is Literal:
         return all(isinstance(value, str) for value in inner)
     if origin is list:
-        return inner[0] in SAMPLES
+        return inner[0] in SAMPLES or inner[0] == SCALAR
     if origin is tuple:
         return all(item in (float, Ellipsis) for item in inner) or inner == (str, Ellipsis)
     if origin is not None:
-        return issubclass(origin, Mapping) and inner == (str, str)
+        return issubclass(origin, Mapping) and inner[0] is str and inner[1] in (str, SCALAR, CONTENT)
     return annotation in SAMPLES
 
 
 def sample(annotation: Any) -> Any:
     """Return a value for a parameter, as TOML gives it."""
     origin, inner = get_origin(annotation), get_args(annotation)
+    if origin is Annotated and "enum" in (items := inner[1].schema.get("items", {})):
+        return [items["enum"][0]]
     if origin in (Annotated, UnionType, Union):
         return sample(inner[0])
     if origin is Literal:
@@ -261,8 +264,10 @@ def sample(annotation: Any) -> Any:
 
 def as_toml(value: object) -> object:
     """Return a Python value as tomllib would give it: lists for tuples, exact numbers for floats."""
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return [as_toml(item) for item in value]
+    if isinstance(value, dict):
+        return {key: as_toml(item) for key, item in value.items()}
     return Decimal(repr(value)) if isinstance(value, float) else value
 
 

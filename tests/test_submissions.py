@@ -20,29 +20,21 @@ def test_a_sample_loses_the_expected_criteria(name: str) -> None:
     sample = SAMPLES[name]
     report = sample.grade()
     urdf = sample.open().urdf
-    assert (urdf.loaded.verdict if isinstance(urdf, Read) else "missing") == sample.expected["verdict"]
+    assert (urdf.loaded.verdict if isinstance(urdf, Read) else "missing") == sample.expected.verdict
     statuses = {result.criterion.id: result.outcome.status for result in report.results}
     carried = [result.criterion.id for result in report.results if result.carried]
     lost = [name for name, status in statuses.items() if status in ("failed", "skipped") and name not in carried]
-    assert lost == sample.expected["lost"]
-    assert carried == sample.expected.get("carried", [])
-    costly = [
-        result.criterion
-        for result in report.results
-        if result.criterion.id in (*lost, *sample.expected.get("pending", []))
-    ]
+    assert lost == list(sample.expected.lost)
+    assert carried == list(sample.expected.carried)
+    costly = [result.criterion for result in report.results if result.criterion.id in (*lost, *sample.expected.pending)]
     assert report.max_score - report.score == sum(criterion.points for criterion in costly)
-    assert [name for name, status in statuses.items() if status == "pending"] == sample.expected.get("pending", [])
+    assert [name for name, status in statuses.items() if status == "pending"] == list(sample.expected.pending)
     assert "errored" not in statuses.values()
 
 
 def test_there_are_enough_samples() -> None:
     """At least five equivalents and fifteen mistakes; only the reference and the equivalents lose nothing."""
-    full = {
-        name
-        for name, sample in SAMPLES.items()
-        if not sample.expected["lost"] and len(sample.expected.get("pending", [])) < 4
-    }
+    full = {name for name, sample in SAMPLES.items() if not sample.expected.lost and len(sample.expected.pending) < 4}
     assert full == {name for name in SAMPLES if name.startswith(("reference", "equivalent-"))}
     assert len(full) >= 6
     assert len(SAMPLES) - len(full) >= 15

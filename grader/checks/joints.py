@@ -1,10 +1,9 @@
 """Checks of the joint that moves a link, which is the last joint above it that is not fixed: limits, axis, mimic, dynamics."""
 
-from collections.abc import Sequence
-from math import degrees, hypot, isfinite, isnan
-from typing import NamedTuple
+from math import degrees, hypot, isfinite
 
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
+from grader.checks.comparison import Number, compared, named, number_text, numbers_of
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
 from grader.errors import MissingElement
@@ -13,23 +12,8 @@ from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
-from grader.source import LazyLocation
 
 _EXACT = 1e-6  # for numbers that a URDF states as they are expected
-
-
-class _Number(NamedTuple):
-    """A number that is compared: its attribute, and what is said where it is wrong."""
-
-    attribute: str
-    actual: float
-    expected: float
-    tolerance: float
-    fault: str
-
-    @property
-    def is_wrong(self) -> bool:
-        return not within(self.actual, self.expected, self.tolerance)
 
 
 def joint_limits(
@@ -59,20 +43,20 @@ def joint_limits(
         message = (
             f"the joint that moves {link!r} is {joint.type}, so it has no limits; they should be {_range(lower, upper)}"
         )
-        return failed(message, place(joint.location, "type"), detail=_named(joint))
+        return failed(message, place(joint.location, "type"), detail=named(joint))
     limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
     _check_known(joint, "limit", link, is_there=limit is not None)
     fault = f"it should be {_range(lower, upper)} {units}"
     if limit is None:
-        return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=_named(joint))
+        return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=named(joint))
     low, high = (degrees(end) if joint.type == "revolute" else end for end in (limit.lower, limit.upper))
     numbers = [
-        _Number("lower", low, lower, tolerance, fault),
-        _Number("upper", high, upper, tolerance, fault),
-        *_numbers({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT),
+        Number("lower", low, lower, tolerance, fault),
+        Number("upper", high, upper, tolerance, fault),
+        *numbers_of({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT),
     ]
     message = f"the range of the joint that moves {link!r} is {_range(low, high)} {units}"
-    return _compared(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
+    return compared(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
 
 
 def joint_axis(
@@ -103,7 +87,7 @@ def joint_axis(
     joint = robot.moving_joint(link)
     if joint.type == "floating":
         message = f"the joint that moves {link!r} is floating, so it has no axis"
-        return failed(message, place(joint.location, "type"), detail=_named(joint))
+        return failed(message, place(joint.location, "type"), detail=named(joint))
     own, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
     actual, expected = T_relative_joint.rotate(own), unit(direction) or direction
     off = degrees_between(actual, expected)
@@ -113,7 +97,7 @@ def joint_axis(
     if not off <= tolerance + SLACK:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
         at = axis_place(joint)
-        return judged(False, message, actual, expected, tolerance, "deg", at=at, detail=_named(joint))
+        return judged(False, message, actual, expected, tolerance, "deg", at=at, detail=named(joint))
     if through is None:
         return judged(True, message, actual, expected, tolerance, "deg")
     away = hypot(*cross(minus(through, T_relative_joint.translation), actual))
@@ -122,7 +106,7 @@ def joint_axis(
     message += "" if fine else "; it should pass through that point"
     at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
     found = away if isfinite(away) else None
-    return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _named(joint))
+    return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else named(joint))
 
 
 def mimics(
@@ -154,15 +138,17 @@ def mimics(
         detail = f" (joint {joint.name!r})"
         if joint.mimic is not None:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
-        if not robot.robot.has_joint(last):
+        is_missing = not robot.robot.has_joint(last)
+        if is_missing or "@name" in leading.unresolved:
             robot.robot.check_complete()
+        if is_missing:
             message = f"the joint that moves {link!r} mimics a joint that does not exist"
             detail += did_you_mean(last, (other.name for other in robot.robot.joints))
         return failed(message, at, detail=detail)
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
-    numbers = _numbers({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
-    return _compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
+    numbers = numbers_of({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
+    return compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 
 def joint_dynamics(
@@ -187,11 +173,11 @@ def joint_dynamics(
     given = joint.dynamics
     _check_known(joint, "dynamics", link, is_there=given is not None)
     found = given or Dynamics()
-    numbers = _numbers({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
+    numbers = numbers_of({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
-        return failed(f"{message}; it should have one", joint.location, detail=_named(joint))
-    return _compared(message, numbers, joint, given.location if given else joint.location)
+        return failed(f"{message}; it should have one", joint.location, detail=named(joint))
+    return compared(message, numbers, joint, given.location if given else joint.location)
 
 
 def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
@@ -210,7 +196,7 @@ def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[
         if name == first.name or name in found:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
-            raise MissingElement("mimicked joint", link, message=message, detail=_named(first), location=at)
+            raise MissingElement("mimicked joint", link, message=message, detail=named(first), location=at)
         found[name] = ratio, shift
         if not robot.robot.has_joint(name):
             return found
@@ -226,39 +212,5 @@ def _check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
         raise MissingElement(tag, link, message=message, location=part.location)
 
 
-def _numbers(values: dict[str, tuple[float, float | None]], tolerance: float) -> list[_Number]:
-    """Return the numbers that are compared, by attribute: those with an expected value."""
-    return [
-        _Number(name, actual, expected, tolerance, f"its {name} is {_text(actual)}; it should be {_text(expected)}")
-        for name, (actual, expected) in values.items()
-        if expected is not None
-    ]
-
-
-def _compared(
-    message: str, numbers: Sequence[_Number], joint: Joint, element: LazyLocation | None, of: str | None = None
-) -> Outcome:
-    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN fails."""
-    faults = {number.fault: number.attribute for number in reversed(numbers) if number.is_wrong}
-    message = "; ".join((message, *reversed(faults)))
-    values = [(number.actual, number.expected) for number in numbers]
-    actual, expected = zip(*values, strict=True) if values and isfinite(sum(map(sum, values))) else (None, None)
-    tolerances = {number.tolerance for number in numbers}
-    tolerance = tolerances.pop() if len(tolerances) == 1 else None
-    at = place(element, next(reversed(faults.values()), None))
-    detail = _named(joint) if faults else ""
-    return judged(
-        not faults, message, actual, expected, tolerance, of if tolerance is not None else None, at=at, detail=detail
-    )
-
-
-def _named(joint: Joint) -> str:
-    return f" (joint {joint.name!r})"
-
-
 def _range(lower: float, upper: float) -> str:
-    return f"{_text(lower, 5)} to {_text(upper, 5)}"
-
-
-def _text(value: float, digits: int = 9) -> str:
-    return "missing or unreadable" if isnan(value) else f"{value + 0.0:.{digits}g}"
+    return f"{number_text(lower, 5)} to {number_text(upper, 5)}"

@@ -21,9 +21,10 @@ from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
+from grader.robot.likeness import turn_between
 from grader.robot.model import Mesh, Visual
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.transforms import Transform, Vector, dot, minus, rotation_from_rpy, unit
+from grader.robot.transforms import IDENTITY_ROTATION, Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 from grader.text import enumerated
 
@@ -56,7 +57,11 @@ def frame_at(
     """
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
-    return _turned(placed, _turn(pose, rpy), angle, at) if angle < _ANY_ANGLE else placed
+    return (
+        _turned(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, at)
+        if angle < _ANY_ANGLE
+        else placed
+    )
 
 
 def centre_at(
@@ -167,7 +172,7 @@ def under_the_base(
     """
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
-    turned = _turn(T_link_base, _NOT_TURNED)
+    turned = turn_between(T_link_base.rotation, IDENTITY_ROTATION)
     lowest, missing = _measured(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = []
@@ -186,13 +191,6 @@ def under_the_base(
     if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
         at = origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
-
-
-def _turn(pose: Transform, rpy: Vector) -> float:
-    """Return the angle in degrees between the rotation of a pose and that by `rpy`."""
-    # The trace of the rotation from one to the other is 1 + 2 cos(angle).
-    trace = sum(a * b for a, b in zip(pose.rotation, rotation_from_rpy(rpy), strict=True))
-    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
 def _turned(placed: Outcome, turned: float, angle: float, at: LazyLocation | None) -> Outcome:

@@ -4,18 +4,41 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import takewhile
-from typing import Any, Literal, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
-from grader.checks import appearance, contact, joints, launch, manual, motion, package, placement, rviz, tree
+from grader.checks import (
+    appearance,
+    collisions,
+    contact,
+    elements,
+    inertia,
+    joints,
+    launch,
+    manual,
+    meshes,
+    motion,
+    package,
+    placement,
+    problems,
+    reference,
+    rviz,
+    tree,
+    xacro_source,
+)
 from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
+from grader.text import enumerated
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 ENTRY_POINTS = "grader.checks"
 
 CHECKS: tuple[Callable[..., Outcome], ...] = (
     tree.urdf_loads,
+    problems.without_problems,
     appearance.shows_box,
     appearance.shows_cylinder,
     appearance.shows_sphere,
@@ -40,6 +63,12 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     joints.joint_axis,
     joints.mimics,
     joints.joint_dynamics,
+    inertia.mass_is,
+    inertia.inertia_plausible,
+    collisions.collision_matches_visual,
+    meshes.shows_mesh,
+    reference.kinematics_match_reference,
+    elements.element_present,
     package.package_found,
     package.package_type,
     package.build_installs,
@@ -52,6 +81,7 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     rviz.rviz_fixed_frame,
     rviz.rviz_shows_robot,
     rviz.rviz_display_on,
+    xacro_source.xacro_uses,
     manual.answered,
     manual.evidence_shown,
 )
@@ -131,19 +161,34 @@ def _is_subject(parameter: inspect.Parameter) -> bool:
 
 
 def check_names() -> list[str]:
-    """Return the names of all checks, including those of other packages."""
-    return [function.__name__ for function in CHECKS] + sorted(_entry_points())
+    """Return the names of all checks: the grader's own in the order of the catalogue, then those of other packages."""
+    own = [function.__name__ for function in CHECKS]
+    return own + sorted(set(_entry_points()) - set(own))
+
+
+def unused_checks() -> list[tuple[str, str]]:
+    """Return each check of another package that is not used, because the grader has one of its name, with that package."""
+    own, entries = {function.__name__ for function in CHECKS}, _entry_points()
+    return sorted((name, _package_of(entry)) for name in own & set(entries) for entry in entries[name])
 
 
 def find_check(name: str) -> Check | None:
-    """Return the check of this name; a check of another package cannot replace one of the grader's own."""
+    """Return the check of this name; a check of another package cannot replace one of the grader's own.
+
+    Raises InputError for a check of another package that cannot be used, or that two packages have.
+    """
     for function in CHECKS:
         if function.__name__ == name:
             return describe(function)
-    entry = _entry_points().get(name)
-    if entry is None:
-        return None
-    distribution = entry.dist.name if entry.dist is not None else entry.value.partition(":")[0]
+    entries = _entry_points().get(name, [])
+    if len(entries) > 1:  # which of them is found first depends on the machine
+        packages = enumerated(sorted(map(_package_of, entries)))
+        raise InputError(f"the check {name} is in several packages, {packages}: uninstall all but one")
+    return _load(name, entries[0]) if entries else None
+
+
+def _load(name: str, entry: "EntryPoint") -> Check:
+    distribution = _package_of(entry)
     try:
         return replace(describe(entry.load(), distribution), name=name)
     except KeyboardInterrupt:
@@ -154,7 +199,14 @@ def find_check(name: str) -> Check | None:
         raise InputError(f"the check {name} of the package {source} cannot be used: {reason}") from None
 
 
-def _entry_points() -> dict[str, Any]:
+def _package_of(entry: "EntryPoint") -> str:
+    return entry.dist.name if entry.dist is not None else entry.value.partition(":")[0]
+
+
+def _entry_points() -> dict[str, list["EntryPoint"]]:
     from importlib.metadata import entry_points  # reading the metadata of all packages takes longer than grading
 
-    return {entry.name: entry for entry in entry_points(group=ENTRY_POINTS)}
+    found: dict[str, list[EntryPoint]] = {}
+    for entry in entry_points(group=ENTRY_POINTS):
+        found.setdefault(entry.name, []).append(entry)
+    return found

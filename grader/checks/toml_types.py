@@ -34,16 +34,25 @@ class Constraint:
     schema: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
 
-AtLeastZero = Constraint("at least 0", lambda value: value >= 0)
-EachAtLeastZero = Constraint("at least 0 in each number", lambda values: min(values) >= 0)
-EachFromZeroToOne = Constraint("from 0 to 1 in each number", lambda values: min(values) >= 0 and max(values) <= 1)
-NotZero = Constraint("a direction: not 0 in each number", any)
+AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
+EachAtLeastZero = Constraint(
+    "at least 0 in each number", lambda values: min(values) >= 0, {"items": {"type": "number", "minimum": 0}}
+)
+EachFromZeroToOne = Constraint(
+    "from 0 to 1 in each number",
+    lambda values: min(values) >= 0 and max(values) <= 1,
+    {"items": {"type": "number", "minimum": 0, "maximum": 1}},
+)
+NotZero = Constraint("a direction: not 0 in each number", any, {"contains": {"not": {"const": 0}}})
 
 NonNegative = Annotated[float, AtLeastZero]
 Count = Annotated[int, AtLeastZero]
 Size = Annotated[Vector, EachAtLeastZero]
 Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
+
+Scalar = str | float | bool
+Content = Scalar | list[Scalar]
 
 
 def simple_type(
@@ -79,7 +88,12 @@ _SIMPLE = {
     str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS = {float: "numbers", str: "strings"}
+_PLURALS: Mapping[Any, str] = {
+    float: "numbers",
+    str: "strings",
+    Scalar: "strings, numbers or booleans",
+    Content: "strings, numbers, booleans or lists of these",
+}
 
 
 @lru_cache(maxsize=256)

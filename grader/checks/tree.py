@@ -197,11 +197,12 @@ def _counted(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     tree = robot.main_tree
     found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
     for joint in (robot.parent_joints[link] for link in tree[1:]) if set(nouns) - {"link", "joint"} else ():
-        for part in ("@type", *(("mimic", "") if "moving joint" in nouns and joint.mimic is None else ())):
+        is_moving = joint.type != "fixed" and joint.mimic is None and "mimic" not in joint.unresolved
+        for part in ("@type", *(("",) if "moving joint" in nouns and is_moving else ())):
             if part in joint.unresolved:
                 joint.unresolved[part].check()
         found[f"{joint.type} joint"] += 1
-        found["moving joint"] += joint.type != "fixed" and joint.mimic is None
+        found["moving joint"] += is_moving
     return found
 
 

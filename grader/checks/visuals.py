@@ -12,12 +12,15 @@ from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
 
+_MAX_FILE_NAME = 100  # characters that a message shows
+MAX_SHAPES = 100  # of one link that are compared with each other
+
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     shown = robot.shown.get(link)
     if shown is None:
-        _check_resolved(robot.link(link))
+        check_resolved(robot.link(link), "visual", has_none=not robot.link(link).visuals)
         shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
         robot.shown[link] = shown
     if not shown:
@@ -26,13 +29,16 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     return shown
 
 
-def _check_resolved(link: Link) -> None:
-    """Raise NotDecided or MissingElement where a visual of a link, or whether it has one, is not known because of xacro."""
-    part = link.unresolved.get("visual", link.unresolved.get("") if not link.visuals else None)
-    if part is not None:
-        part.check()
-        message = f"xacro cannot expand the visual of link {link.name!r}"
-        raise MissingElement("visual", link.name, message=message, location=part.location)
+def check_resolved(link: Link, part: str, *, has_none: bool) -> None:
+    """Raise NotDecided or MissingElement where a part of a link, such as a visual, is not known because of xacro.
+
+    If the link `has_none` that is known, it may be among the children that are not.
+    """
+    found = link.unresolved.get(part, link.unresolved.get("") if has_none else None)
+    if found is not None:
+        found.check()
+        message = f"xacro cannot expand the {part} of link {link.name!r}"
+        raise MissingElement(part, link.name, message=message, location=found.location)
 
 
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
@@ -68,6 +74,12 @@ def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -
 def shape_name(geometry: Geometry) -> str:
     """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
+
+
+def mesh_name(mesh: Mesh) -> str:
+    """Return the file name of a mesh between quotes; only the end of one that is very long."""
+    name = mesh.filename
+    return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
 
 
 def origin_place(robot: Configuration, link: str) -> LazyLocation | None:

@@ -1,14 +1,17 @@
-"""grader rubric: list, show and check rubrics."""
+"""grader rubric: list, show, write, check and test rubrics."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from grader.cli.options import rubric_ids
-from grader.cli.output import warn
+from grader.cli.options import FormatOption, rubric_ids
+from grader.cli.output import screen, warn
+from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
+from grader.usecases.writing import write_stdout
 
-_HELP = """List, show and check rubrics, and list the checks.
+_HELP = """List, show, write, check and test rubrics, and list the checks.
 
 Examples:
 
@@ -16,8 +19,14 @@ Examples:
 
   grader rubric show lab6
 
+  grader rubric new my_lab.toml --from solution.urdf
+
   grader rubric check my_lab.toml
+
+  grader rubric test my_lab.toml
 """
+_FOLDER = "A folder with samples: submissions with an expected.toml."
+_LEAST = "Exit 1 if the mutation score is less, in percent."
 rubric = typer.Typer(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
     str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
@@ -39,8 +48,11 @@ def list_rubrics() -> str:
 def show_rubric(
     name: RubricArgument,
     answers: Annotated[bool, typer.Option("--answers", help="Also show the model answers.")] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="Print tables for the lab's handout.")] = False,
 ) -> str:
     """Show the parts and criteria of a rubric with their points.
+
+    With --markdown, the tables are for students: they have no arguments of checks, no feedback and no model answers.
 
     Examples:
 
@@ -48,11 +60,9 @@ def show_rubric(
 
       grader rubric show lab6 --answers
 
-      grader rubric show my_lab.toml
+      grader rubric show my_lab.toml --markdown
     """
-    from grader.report.rubrics import rubric_text
-
-    return rubric_text(rubrics.load(name, warn, answers=answers))
+    return rubrics.shown(name, warn, answers=answers, markdown=markdown)
 
 
 @rubric.command("checks")
@@ -70,6 +80,33 @@ def list_checks() -> str:
     return checks_text()
 
 
+@rubric.command("new")
+def new_rubric(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
+    reference: Annotated[
+        str,
+        typer.Option("--from", metavar="URDF", help="The reference: a URDF, xacro, package, workspace or archive."),
+    ],
+    force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
+) -> str:
+    """Write a rubric with a criterion for each fact of a reference solution.
+
+    It is tried on the reference, which gets full marks. What no check can tell is omitted; what looks odd in the
+    solution is listed.
+
+    Examples:
+
+      grader rubric new my_lab.toml --from solution.urdf
+
+      grader rubric new my_lab.toml --from my_lab/my_robot
+
+      grader rubric new my_lab.toml --from solution.urdf --force
+    """
+    from grader.usecases.new_rubric import write_rubric
+
+    return write_rubric(file, reference, warn, force=force)
+
+
 @rubric.command("check")
 def check_rubric(file: RubricArgument) -> str:
     """Check a rubric and its reference solution.
@@ -81,3 +118,35 @@ def check_rubric(file: RubricArgument) -> str:
       grader rubric check my_lab.toml
     """
     return rubrics.check(file, warn) + "\n"
+
+
+@rubric.command("test")
+def run_test(
+    name: RubricArgument,
+    folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
+    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random choices.")] = 0,
+    mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Mutants to grade at most.")] = 500,
+    output_format: FormatOption = OutputFormat.TERMINAL,
+) -> int:
+    """Test a rubric on mutants and equivalents of its reference, and on samples.
+
+    The reference and its equivalents must lose nothing, every mutant something. Mutants that get full marks are listed with a
+    suggestion.
+
+    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the
+    rubric is broken or has no reference.
+
+    Examples:
+
+      grader rubric test lab6
+
+      grader rubric test my_lab.toml samples --fail-under 100%
+    """
+    from grader.cli.progress import progress_display
+    from grader.usecases.rubric_test import TestRequest, test
+
+    request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
+    text, code = test(request, screen(), warn, progress_display)
+    write_stdout(text)
+    return code

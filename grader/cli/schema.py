@@ -4,7 +4,7 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-SchemaName = Literal["report", "rubric", "inspect", "class", "diff"]
+SchemaName = Literal["report", "rubric", "inspect", "class", "diff", "rubric-test"]
 
 
 def schema(
@@ -12,7 +12,8 @@ def schema(
 ) -> str:
     """Print a JSON Schema of the grader's input or output.
 
-    These are reports, rubrics, inspections, classes (batch, stats, export json) and diffs.
+    These are reports, rubrics, inspections, classes (batch, stats, export json), diffs and rubric
+    tests.
 
     Examples:
 

@@ -6,7 +6,7 @@ from grader.checks.outcome import Outcome
 from grader.problems import Problem
 from grader.robot import catalogue
 
-# Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
+# Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of a link.
 _EXPLAINING = (
     catalogue.BAD_COLOUR,
     catalogue.COLOUR_COUNT,
@@ -17,20 +17,24 @@ _EXPLAINING = (
     catalogue.EMPTY_RANGE,
     catalogue.LIMIT_IN_DEGREES,
 )
-_DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
+_DROPPING = {
+    "inertial": (catalogue.BAD_INERTIAL,),
+    "visual": (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL),
+    "collision": (catalogue.BAD_COLLISION, catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL),
+}
 
 
-def explained(outcome: Outcome, problems: Iterable[Problem], link: str | None = None) -> Outcome:
-    """Return a failure with the problem that explains it: at its place, or why ROS 2 drops the visuals of a link."""
-    mistake = outcome.mistake or outcome.message
+def explained(outcome: Outcome, problems: Iterable[Problem], part: str = "", link: str = "") -> Outcome:
+    """Return a failure with the problem that explains it: at its place, or why ROS 2 drops a part of a link."""
+    mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
     for problem in problems:
-        if link is not None and problem.kind in _DROPPING and problem.subject == link:
+        if problem.kind in dropping and problem.subject == link:
             message = f"{outcome.message}: {problem.message}"
             return outcome._replace(
                 message=message, location=problem.location, mistake=mistake, problem=problem.message
             )
         explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-        if ((link is None and explains) or problem.kind.is_before_ros) and problem.location == outcome.location:
+        if ((not dropping and explains) or problem.kind.is_before_ros) and problem.location == outcome.location:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
             return outcome._replace(message=message, mistake=mistake, problem=problem.message)
     return outcome

@@ -190,8 +190,7 @@ class _Grading:
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
-        link = missing.name if missing.kind == "visual" else None
-        return Result(criterion, explained(outcome, self._subjects.problems, link))
+        return Result(criterion, explained(outcome, self._subjects.problems, missing.kind, missing.name))
 
 
 def _skipped(cause: str) -> Outcome:

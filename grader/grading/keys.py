@@ -1,11 +1,10 @@
-"""The keys of a rubric, each declared once: the loader, its messages and the JSON Schema are made from these tables."""
+"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page are made from these tables."""
 
 from collections.abc import Mapping
 from datetime import datetime
 from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
-from grader.checks.registry import CHECKS, Check, describe
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
 from grader.grading.levels import Level
 
@@ -18,7 +17,7 @@ class KeyTable(NamedTuple):
 
     name: str
     keys: Mapping[str, TomlType]
-    optional: tuple[str, ...] = ()
+    required: tuple[str, ...] = ()
 
     @property
     def schema(self) -> dict[str, Any]:
@@ -26,7 +25,7 @@ class KeyTable(NamedTuple):
         return {
             "type": "object",
             "properties": {key: dict(value.schema) for key, value in self.keys.items()},
-            "required": [key for key in self.keys if key not in self.optional],
+            "required": list(self.required),
             "additionalProperties": False,
         }
 
@@ -99,103 +98,122 @@ _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", 
 
 PART = KeyTable(
     "part",
-    {"id": _ID, "title": _TITLE, "needs": toml_type(Literal["urdf", "package", "files"]), "points": _POINTS},
-    optional=("needs", "points"),
+    {
+        "id": described(_ID, "The part's id, one word."),
+        "title": described(_TITLE, "The heading of the part in reports."),
+        "needs": described(toml_type(Literal["urdf", "package", "files"]), "What it is graded on; files: all of them."),
+        "points": described(_POINTS, "The sum of the part's points, which is then verified."),
+    },
+    required=("id", "title"),
 )
 CARRIED = KeyTable(
     "carried table",
     {
-        "from": constrained(_NAMES, Constraint("at least one id", bool, {"minItems": 1})),
-        "check": _TEXT,
-        "with": _table({"type": "object"}),
+        "from": described(
+            constrained(_NAMES, Constraint("at least one id", bool, {"minItems": 1})),
+            "The ids of criteria above this one: their mistakes can make this one fail.",
+        ),
+        "check": described(_TEXT, "The check that counts instead."),
+        "with": described(_table({"type": "object"}), "The arguments of that check."),
     },
-    optional=("with",),
+    required=("from", "check"),
 )
 CRITERION = KeyTable(
     "criterion",
     {
-        "id": _ID,
-        "part": _TEXT,
-        "about": _TEXT,
-        "title": _TITLE,
-        "points": _POINTS,
-        "check": _TEXT,
-        "with": _table({"type": "object"}),
-        "at": toml_type(Mapping[str, float]),
-        "requires": _NAMES,
-        "carried": _table(CARRIED.schema),
-        "feedback": _TEXT,
+        "id": described(
+            _ID, "The criterion's id, one word. Gradebooks and manual marks refer to it: never change it later."
+        ),
+        "part": described(_TEXT, "The id of the part that it belongs to."),
+        "about": described(_TEXT, "A heading that consecutive criteria share, such as the name of a link."),
+        "title": described(_TITLE, "What should be true, in one sentence. Students read it."),
+        "points": described(
+            _POINTS, "The points for passing, with at most four decimals. A criterion is all or nothing."
+        ),
+        "check": described(_TEXT, "The check that decides it: one of the grader, or of an installed plug-in."),
+        "with": described(_table({"type": "object"}), "The arguments of the check."),
+        "at": described(
+            toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; else 0."
+        ),
+        "requires": described(_NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
+        "carried": described(
+            _table(CARRIED.schema), "What counts instead if an earlier mistake makes the criterion fail."
+        ),
+        "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
     },
-    optional=("about", "with", "at", "requires", "carried", "feedback"),
+    required=("id", "part", "title", "points", "check"),
 )
 DEFAULTS = KeyTable(
     "defaults table",
-    {"part": _TEXT, "points": _POINTS, "about": _TEXT, "with": _table({"type": "object"})},
-    optional=("part", "points", "about", "with"),
+    {
+        "part": described(_TEXT, "The part of criteria that name none."),
+        "points": described(_POINTS, "The points of criteria that give none."),
+        "about": described(_TEXT, "The heading of criteria that give none."),
+        "with": described(
+            _table({"type": "object", "additionalProperties": {"type": "object"}}),
+            "For each check a table of arguments, for criteria that do not give them.",
+        ),
+    },
 )
-EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
+EVIDENCE = KeyTable(
+    "evidence",
+    {
+        "id": described(_ID, "The id of this piece of evidence, one word."),
+        "part": described(_TEXT, "The id of the part that it belongs to."),
+        "title": described(_TITLE, "What it should show."),
+        "names": described(
+            toml_type(tuple[str, ...]), "Labels in the name of its file, in any spelling: task 1 step 8."
+        ),
+    },
+    required=("id", "part", "title", "names"),
+)
 LATE = KeyTable(
     "late policy",
-    {"due": _TIME, "grace_minutes": _MINUTES, "percent_per_day": _PERCENT, "floor_percent": _PERCENT},
-    optional=("due", "grace_minutes", "floor_percent"),
+    {
+        "due": described(_TIME, "The deadline, with its offset from UTC."),
+        "grace_minutes": described(_MINUTES, "Minutes after the deadline that do not count as late."),
+        "percent_per_day": described(_PERCENT, "The penalty for each day begun, in percent of the maximum."),
+        "floor_percent": described(_PERCENT, "The penalty lowers no grade below this, in percent of the maximum."),
+    },
+    required=("percent_per_day",),
+)
+IGNORE = KeyTable(
+    "test.ignore",
+    {
+        "mutants": described(
+            constrained(_NAMES, Constraint("at least one pattern", bool, {"minItems": 1})),
+            "Patterns of mutants that may keep full marks, as `grader rubric test` names them.",
+        ),
+        "reason": described(_TITLE, "Why no criterion looks at what they change."),
+    },
+    required=("mutants", "reason"),
+)
+TEST = KeyTable(
+    "test table",
+    {"ignore": described(_rows(IGNORE), "Mutants that may keep full marks, with the reason.")},
 )
 RUBRIC = KeyTable(
     "rubric",
     {
-        "id": _ID,
-        "title": _TITLE,
-        "reference": _TEXT,
-        "urdf": _FILE,
-        "package": _TEXT,
-        "folders": _FOLDERS,
-        "points": _POINTS,
-        "answers": _ANSWERS,
-        "without_urdf": toml_type(Literal["failed", "manual"]),
-        "hints": toml_type(Level),
-        "defaults": _table(DEFAULTS.schema),
-        "part": _rows(PART),
-        "criterion": _rows(CRITERION),
-        "evidence": _rows(EVIDENCE),
-        "late": _table(LATE.schema),
+        "id": described(_ID, "The rubric's id, one word."),
+        "title": described(_TITLE, "The title of the lab."),
+        "reference": described(_TEXT, "The solution that must get full marks: a path relative to this file's folder."),
+        "urdf": described(_FILE, "Where a package keeps the graded file (default: robot.urdf)."),
+        "package": described(_TEXT, "The name of the graded ROS 2 package."),
+        "folders": described(_FOLDERS, "The names of the lab's folder in a repository of several labs."),
+        "points": described(_POINTS, "The sum of all points, which is then verified."),
+        "answers": described(_ANSWERS, "The file with the model answers, in this file's folder or below."),
+        "without_urdf": described(
+            toml_type(Literal["failed", "manual"]),
+            "The criteria of the URDF if there is evidence, but no URDF: failed (the default), or manual grading.",
+        ),
+        "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
+        "defaults": described(_table(DEFAULTS.schema), "Values of criteria that do not give their own."),
+        "part": described(_rows(PART), "The parts of the lab, in the order of the report."),
+        "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),
+        "evidence": described(_rows(EVIDENCE), "The pictures and documents that the lab asks for."),
+        "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
+        "test": described(_table(TEST.schema), "What `grader rubric test` should not expect of the rubric."),
     },
-    optional=(
-        "reference",
-        "urdf",
-        "package",
-        "folders",
-        "points",
-        "answers",
-        "without_urdf",
-        "hints",
-        "defaults",
-        "evidence",
-        "late",
-    ),
+    required=("id", "title", "part", "criterion"),
 )
-
-
-def rubric_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a rubric, with the arguments of every check that comes with the grader."""
-    schema = RUBRIC.schema
-    criterion = CRITERION.schema
-    rules = [_arguments_rule(describe(function)) for function in CHECKS]
-    criterion["allOf"] = rules
-    criterion["properties"]["carried"]["allOf"] = rules
-    schema["properties"]["criterion"]["items"] = criterion
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "grader rubric", **schema}
-
-
-def _arguments_rule(check: Check) -> dict[str, Any]:
-    optional = tuple(name for name, parameter in check.parameters.items() if not parameter.required)
-    arguments = KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}, optional)
-    then: dict[str, Any] = {"properties": {"with": arguments.schema}}
-    if arguments.schema["required"]:
-        then["required"] = ["with"]
-    return {"if": {"properties": {"check": {"const": check.name}}, "required": ["check"]}, "then": then}
-
-
-def _argument(check: Check, name: str) -> TomlType:
-    """Return the type of an argument with its meaning and its default for the JSON Schema."""
-    parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
-    default = {} if parameter.required else {"default": parameter.default}
-    return described(parameter.type, meaning, **default)

@@ -1,7 +1,6 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from decimal import Decimal
@@ -14,14 +13,12 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.levels import Level
 from grader.grading.reference import Reference
-from grader.grading.toml_lines import Path as TomlPath
-from grader.grading.toml_lines import key_lines, line_of
+from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
 from grader.names import did_you_mean
 from grader.robot.selectors import has_selector
 from grader.text import printable_path, shell_quoted
 
-_MAX_COMPLAINTS = 1000  # lines about one rubric
 _URDF = "robot.urdf"
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
@@ -92,6 +89,13 @@ class Late:
     floor_percent: Decimal = Decimal(0)
 
 
+class Ignored(NamedTuple):
+    """Mutants of the reference that may lose nothing: patterns of their ids, and why."""
+
+    mutants: tuple[str, ...]
+    reason: str
+
+
 @dataclass(frozen=True, slots=True)
 class Rubric:
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
@@ -117,6 +121,7 @@ class Rubric:
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
     hints: Level = "cause"
+    ignored: tuple[Ignored, ...] = ()
     solution: Reference | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -210,6 +215,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric.get("folders", ()),
         rubric.get("without_urdf", ""),
         rubric.get("hints", "cause"),
+        tuple(Ignored(**row) for row in valid.ignored),
         _solution(rubric, path),
     )
 
@@ -219,28 +225,6 @@ def _solution(rubric: TomlRow, path: Path) -> Reference | None:
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
     return Reference(place, rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
-
-
-def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the text and the table of a TOML file; raise RubricError."""
-    shown = printable_path(path)
-    try:
-        text = data.decode().removeprefix("\ufeff")
-        return text, tomllib.loads(text, parse_float=Decimal)
-    except UnicodeDecodeError:
-        raise RubricError((f"{shown}: this is not UTF-8 text",)) from None
-    except (ValueError, RecursionError, ArithmeticError) as error:
-        raise RubricError((f"{shown}: not readable as TOML: {error}",)) from None
-
-
-def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
-    """Raise RubricError with a line for each complaint, in the order of the file, if there are any."""
-    if complaints:
-        lines = key_lines(text)
-        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
-        shown, more = printable_path(path), len(found) - _MAX_COMPLAINTS
-        listed = tuple(f"{shown}:{line}: {what}" for line, _, what in found[:_MAX_COMPLAINTS])
-        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
 def _criterion(

@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from collections.abc import Iterator
 
 Path = tuple[str | int, ...]
 
@@ -16,18 +17,23 @@ _TOKEN = re.compile(
 def key_lines(text: str) -> dict[Path, int]:
     """Return the line of every table header and key of a valid TOML text, by its path; arrays count from 0."""
     lines: dict[Path, int] = {(): 1}
-    counts: dict[Path, int] = {}
-    table: Path = ()
-    for line, tokens in _statements(text):
-        if tokens[0] == "[":
-            is_array = tokens[1] == "["
-            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
-            path = table
-        else:
-            path = (*table, *_names(tokens[: tokens.index("=")]))
+    for line, path in statement_paths(text):
         for length in range(len(path)):
             lines.setdefault(path[: length + 1], line)
     return lines
+
+
+def statement_paths(text: str) -> Iterator[tuple[int, Path]]:
+    """Yield the line and the path of every table header and key of a TOML text, also of those that are there already."""
+    counts: dict[Path, int] = {}
+    table: Path = ()
+    for line, tokens in statements(text):
+        if tokens[0] == "[":
+            is_array = tokens[1] == "["
+            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
+            yield line, table
+        else:
+            yield line, (*table, *_names(tokens[: tokens.index("=")]))
 
 
 def _table(names: list[str], counts: dict[Path, int], *, is_array: bool) -> Path:
@@ -49,7 +55,7 @@ def line_of(lines: dict[Path, int], path: Path) -> int:
     return lines[path]
 
 
-def _statements(text: str) -> list[tuple[int, list[str]]]:
+def statements(text: str) -> list[tuple[int, list[str]]]:
     """Return each header and key with its value as tokens, and the line on which it begins."""
     statements: list[tuple[int, list[str]]] = []
     line, depth = 1, 0

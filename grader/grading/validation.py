@@ -8,7 +8,7 @@ from typing import Any
 from grader.checks.registry import Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, LATE, PART, RUBRIC, KeyTable
+from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST, KeyTable
 from grader.grading.toml_lines import Path
 from grader.names import did_you_mean
 from grader.text import enumerated
@@ -44,6 +44,10 @@ class Validation:
         self.criteria = self._rows("criterion", CRITERION, self._defaults)
         self.evidence = self._rows("evidence", EVIDENCE)
         self.late = self._row(("late",), self.rubric["late"], LATE) if "late" in self.rubric else None
+        self.ignored = [
+            self._row(("test", "ignore", index), row, IGNORE)
+            for index, row in enumerate(self._row(("test",), self.rubric.get("test", {}), TEST).get("ignore", ()))
+        ]
         part_ids, positions = self._positions("part"), self._positions("criterion")
         self._belongs(("defaults",), self._defaults, part_ids)
         for index, row in enumerate(self.criteria):
@@ -74,8 +78,8 @@ class Validation:
                 parsed[key] = table.keys[key].parse(value)
             except WrongValue as error:
                 self._complain((*where, key), f"{key} must be {error}, not {_shown(value)}")
-        for key in table.keys:
-            if key not in row and key not in table.optional and key not in defaults:
+        for key in table.required:
+            if key not in row and key not in defaults:
                 self._complain(where, f"this {table.name} has no {key}")
         return parsed
 

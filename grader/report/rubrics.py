@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Mapping
 
-from grader.checks.registry import Check, check_names, find_check
+from grader.checks.registry import Check, check_names, find_check, unused_checks
 from grader.errors import InputError
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
@@ -39,7 +39,7 @@ def rubric_text(rubric: Rubric) -> str:
 
 
 def checks_text() -> str:
-    """Return every check with the fact that it tests and its arguments."""
+    """Return every check with the package that it comes from, the fact that it tests, and its arguments."""
     listed = []
     for name in check_names():
         try:
@@ -48,7 +48,10 @@ def checks_text() -> str:
             listed.append(f"{name}\n  {error}\n")
             continue
         if check is not None:
-            listed.append(f"{name}\n{textwrap.indent(_filled(check.documentation.fact), '  ')}\n{_arguments(check)}")
+            fact = textwrap.indent(_filled(check.documentation.fact), "  ")
+            listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
+    for name, package in unused_checks():
+        listed.append(f"{name} ({package})\n  Not used: the grader has a check of this name.\n")
     return "\n".join(listed)
 
 
@@ -64,7 +67,8 @@ def explanation(name: str, rubric: Rubric) -> str:
     check = find_check(name)
     if check is not None:
         text = "\n\n".join(map(_filled, check.documentation.paragraphs))
-        return f"{check.name}: a check for rubrics\n\n{text}\n\n{_arguments(check)}".rstrip("\n") + "\n"
+        source = f", from the package {check.distribution}" if check.distribution else ""
+        return f"{check.name}: a check for rubrics{source}\n\n{text}\n\n{_arguments(check)}".rstrip("\n") + "\n"
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
         f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"

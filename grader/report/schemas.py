@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from grader.grading.keys import rubric_schema
+from grader.grading.schema import rubric_schema
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TEXT: dict[str, Any] = {"type": "string"}
@@ -174,9 +174,50 @@ DIFF_SCHEMA = _document(
     },
 )
 
+_LOSS = _object({**_all(_TEXT, "name diff"), "criteria": {"type": "object", "additionalProperties": _TEXT}})
+_SURVIVOR = _object({**_all(_TEXT, "id family path diff suggestion"), "line": _COUNT, "reason": _nullable(_TEXT)})
+_MARGIN = _object(
+    {
+        "criterion": _TEXT,
+        "unit": _nullable(_TEXT),
+        **_all(_POINTS, "tolerance reference"),
+        **_all(_nullable(_POINTS), "caught passed"),
+        "is_near": _FLAG,
+    }
+)
+RUBRIC_TEST_SCHEMA = _document(
+    "rubric test",
+    {
+        "schema": {"const": "grader/rubric-test/v1"},
+        "grader": _GRADER,
+        "rubric": _RUBRIC,
+        "seed": {"type": "integer"},
+        "score": {"type": "number", "minimum": 0, "maximum": 100},
+        "reference": _object({**_all(_POINTS, "score max_score pending"), "lost": _array(_TEXT)}),
+        "equivalents": _object(
+            {
+                "tried": {"type": "object", "additionalProperties": _TOTAL},
+                "unused": {"type": "object", "additionalProperties": _TEXT},
+                "lost": _array(_LOSS),
+            }
+        ),
+        "samples": _nullable(_object({**_all(_TOTAL, "tried skipped"), "different": _array(_LOSS)})),
+        "mutants": _object(_all(_TOTAL, "total tried caught same_robot ignored survived")),
+        **_all(_array(_SURVIVOR), "survivors ignored"),
+        **_all(_array(_TEXT), "unused_patterns idle"),
+        "margins": _array(_MARGIN),
+    },
+)
+
 
 def json_schema(name: str) -> dict[str, Any]:
-    """Return the schema of a report, rubric, inspection, class or diff."""
+    """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
     if name == "rubric":
         return rubric_schema()
-    return {"report": REPORT_SCHEMA, "inspect": INSPECT_SCHEMA, "class": CLASS_SCHEMA, "diff": DIFF_SCHEMA}[name]
+    return {
+        "report": REPORT_SCHEMA,
+        "inspect": INSPECT_SCHEMA,
+        "class": CLASS_SCHEMA,
+        "diff": DIFF_SCHEMA,
+        "rubric-test": RUBRIC_TEST_SCHEMA,
+    }[name]

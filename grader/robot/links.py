@@ -137,7 +137,7 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
     if reader.failed:
         return None
     mass, ixx, ixy, ixz, iyy, iyz, izz = values
-    return Inertial(mass, (ixx, ixy, ixz, iyy, iyz, izz), origin)
+    return Inertial(mass, (ixx, ixy, ixz, iyy, iyz, izz), origin, problems.location(element))
 
 
 def _read_shape(

@@ -117,6 +117,7 @@ class Inertial:
     mass: float
     inertia: tuple[float, float, float, float, float, float]
     origin: Origin = Origin()
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -16,7 +16,7 @@ from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.xml.parsing import Element, XmlDocument, read_document
+from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
@@ -28,7 +28,7 @@ _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 class Reading:
     """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
 
-    `root` is the element that it was read from, None where the text is not XML.
+    `root` is the element that it was read from, None where the text is not XML; `unresolved` has what xacro leaves open in it.
     """
 
     verdict: Verdict
@@ -36,6 +36,7 @@ class Reading:
     problems: tuple[Problem, ...]
     source: Source
     root: Element | None = field(default=None, compare=False, repr=False)
+    unresolved: Mapping[Element, Unresolved] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def is_decided(self) -> bool:
@@ -83,7 +84,7 @@ def read_robot(document: XmlDocument) -> Reading:
     listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
     if robot is not None and verdict == "rejected":
         robot = replace(robot, rejected=True, incomplete=_incomplete(document, robot))
-    return Reading(verdict, robot, tuple(listed), source, root)
+    return Reading(verdict, robot, tuple(listed), source, root, document.unresolved)
 
 
 def _read_robot(root: Element, problems: Problems) -> Robot:

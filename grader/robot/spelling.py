@@ -85,6 +85,8 @@ def _check_attributes(element: Element, problems: Problems) -> None:
 
 
 def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
+    if child.tag.startswith("{"):  # a prefix is not a misspelling
+        return
     meant = problems.closest(child.tag, allowed)
     if meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from grader.errors import MissingElement, NotDecided, RubricError
+from grader.errors import GraderError, MissingElement, NotDecided, RubricError
 from grader.text import counted, counted_points, printable
 from grader.usecases import Warn
 
@@ -22,6 +22,17 @@ def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
     if missing_answers(rubric):
         warn(missing_answers(rubric))
     return rubric
+
+
+def shown(name: str, warn: Warn, *, answers: bool, markdown: bool) -> str:
+    """Return the parts and criteria of a rubric: with or without its model answers, or in Markdown for students."""
+    from grader.report.handout import render_handout
+    from grader.report.rubrics import rubric_text
+
+    if answers and markdown:
+        raise GraderError("--markdown is for students, so it shows no model answers: leave out --answers")
+    rubric = load(name, warn, answers=answers)
+    return render_handout(rubric) if markdown else rubric_text(rubric)
 
 
 def listed() -> str:

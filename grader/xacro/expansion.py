@@ -67,6 +67,21 @@ class ExpandedSource(Source):
         return next((other for other in others if self._nodes[other].tag == name), index)
 
     @property
+    def documents(self) -> Mapping[str, Node]:
+        """The files that it was expanded from, as they are written, by their paths: this one first."""
+        return self._expander.files.documents
+
+    @property
+    def includes(self) -> Mapping[tuple[str, int], list[str]]:
+        """The files that were included, by the path of the file and the index of the tag that include them."""
+        return self._expander.files.followed
+
+    @property
+    def open_reason(self) -> str:
+        """Why something could not be expanded; empty if everything was."""
+        return next((found.reason for found in self._expander.undetermined), "")
+
+    @property
     def cost(self) -> int:
         """How much longer this takes to expand and to read than a short file."""
         return super().cost + self._expander.spent // _STEPS_OF_READING + len(self._nodes) // _ELEMENTS_OF_READING
@@ -133,7 +148,9 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
         return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", at),), (), {})
     except Undetermined as error:
         return Expansion(None, plain, (), (Open(str(error), at),), {})
-    expander = Expander(Files(workspace, path), arguments, HANDLERS, CALL)
+    files = Files(workspace, path)
+    files.documents[path] = source
+    expander = Expander(files, arguments, HANDLERS, CALL)
     root = expander.root(source)
     nodes: list[Node] = []
     unresolved: dict[Element, Unresolved] = {}

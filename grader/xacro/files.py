@@ -49,6 +49,8 @@ class Files:
     def __init__(self, workspace: Workspace, path: str) -> None:
         self._workspace = workspace
         self.open = [path]
+        self.documents: dict[str, Node] = {}  # every file that was read, as it is written
+        self.followed: dict[tuple[str, int], list[str]] = {}  # the tags that include files, and the paths of these
 
     def has_package(self, name: str) -> bool:
         """Return whether a package is, or may be, part of the submission."""
@@ -104,9 +106,10 @@ class Files:
         if self.open.count(path) and len(self.open) > _MAX_OPEN:
             raise FileFails(f"{path} includes itself again and again")
         try:
-            return read_nodes(self.read(path), path)
+            self.documents[path] = read_nodes(self.read(path), path)
         except XMLSyntaxError as error:
             raise XmlFails(f"{path} is not well-formed XML: {error.msg}") from None
+        return self.documents[path]
 
 
 def _matches(path: str, pattern: str) -> bool:

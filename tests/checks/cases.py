@@ -7,10 +7,39 @@ from typing import Any
 
 import pytest
 
-from grader.checks import appearance, contact, joints, motion, placement, tree
+from grader.checks import (
+    appearance,
+    collisions,
+    contact,
+    elements,
+    inertia,
+    joints,
+    meshes,
+    motion,
+    placement,
+    problems,
+    reference,
+    tree,
+)
 from grader.checks.outcome import Status
 from tests.checks.outcomes import AnyCheck
-from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
+from tests.checks.robots import (
+    Numbers,
+    Scene,
+    arm,
+    box,
+    collision,
+    cylinder,
+    inertial,
+    joint,
+    link,
+    mesh,
+    paint,
+    scene,
+    sphere,
+    turned,
+    visual,
+)
 
 BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
 LIDAR = link("lidar", visual(cylinder()))
@@ -123,6 +152,33 @@ def gripping(*mimic: str, kind: str = "prismatic") -> Scene:
         joint("left_joint", "prismatic", "palm", "left", axis="0 1 0"),
         joint("right_joint", kind, "palm", "right", axis="0 -1 0", more=follows),
     )
+
+
+def weighing(mass: float = 12.0, *, share: float = 1.0, xyz: Numbers = "0 0 1") -> Scene:
+    """Return a box 1 x 2 x 3 that stands on its link's frame, with its inertia but for a factor."""
+    inertia = (13.0 * share, 0.0, 0.0, 10.0 * share, 0.0, 5.0 * share)
+    shown = visual(box(1.0, 2.0, 3.0), xyz="0 0 1")
+    return scene(link("block", inertial(mass, inertia, xyz=xyz), shown))
+
+
+def colliding(z: float = 0.1) -> Scene:
+    """Return a box that is shown at a height of 0.1, and collides at another height."""
+    shape = box(0.6, 0.4, 0.2)
+    return scene(link("block", visual(shape, xyz="0 0 0.1"), collision(shape, xyz=(0.0, 0.0, z))))
+
+
+def meshed(z: float = 0.1) -> Scene:
+    """Return a mesh that is shown at a height."""
+    return scene(link("block", visual(mesh(), xyz=(0.0, 0.0, z))))
+
+
+def with_camera(*, rate: str = "30", kind: str = "camera", width: str = "640", link_name: str = "camera") -> Scene:
+    """Return a base with a camera that Gazebo simulates."""
+    image = f"<camera>\n<image>\n<width>{width}</width>\n</image>\n</camera>"
+    inside = f"<update_rate>{rate}</update_rate>\n<always_on>1</always_on>\n{image}"
+    sensor = f'<sensor name="front" type="{kind}">\n{inside}\n</sensor>'
+    camera = joint("camera_joint", "fixed", "base", "camera")
+    return scene(BASE, link("camera"), camera, f'<gazebo reference="{link_name}">\n{sensor}\n</gazebo>')
 
 
 CASES = (
@@ -436,6 +492,96 @@ CASES = (
         fail_message="the joint that moves 'tip' has <dynamics>; its damping is 0.5; it should be 0 (joint 'shoulder')",
         at="damping=",
         edges={"tolerance": lambda off: swinging(more=f'<dynamics friction="{0.5 + off!r}"/>')},
+        needs_size=False,
+    ),
+    Case(
+        inertia.mass_is,
+        {"link": "block", "mass": 12.0, "tolerance": 0.1},
+        passing=weighing(),
+        pass_message="the mass of 'block' is 12 kg",
+        failing=weighing(1.2),
+        fail_message="the mass of 'block' is 1.2 kg; it should be 12 kg (10.8 kg too small)",
+        at='value="1.2"',
+        edges={"tolerance": lambda off: weighing(12.0 + off)},
+        needs_size=False,
+    ),
+    Case(
+        inertia.inertia_plausible,
+        {"link": "block", "tolerance": 10.0},
+        passing=weighing(),
+        pass_message="the inertia of 'block' is that of a uniform solid of its visual (0 % off)",
+        failing=weighing(share=1.6),
+        fail_message="the inertia of 'block' is 60 % off that of a uniform solid of its visual:"
+        " it is 60 % too large, as for a mass of 19.2 kg",
+        at="<inertia ",
+        edges={"tolerance": lambda off: weighing(share=1.0 + off / 100.0)},
+        mesh_status="pending",
+    ),
+    Case(
+        collisions.collision_matches_visual,
+        {"link": "block", "tolerance": 0.002},
+        passing=colliding(),
+        pass_message="'block' has 1 collision shape, as shown",
+        failing=colliding(z=0.0),
+        fail_message="no collision shape of 'block' is a box 0.6 0.4 0.2 m at 0 0 0.1 m, as shown;"
+        " the nearest is a box 0.6 0.4 0.2 m at 0 0 0 m (100 mm away)",
+        at='xyz="0.0 0.0 0.0"',
+        edges={"tolerance": lambda off: colliding(z=0.1 + off)},
+    ),
+    Case(
+        meshes.shows_mesh,
+        {
+            "link": "block",
+            "file": "meshes/part.stl",
+            "scale": (1.0, 1.0, 1.0),
+            "xyz": (0.0, 0.0, 0.1),
+            "rpy": (0.0, 0.0, 0.0),
+            "tolerance": 0.002,
+        },
+        passing=meshed(),
+        pass_message="'block' shows the mesh 'package://my_robot/meshes/part.stl'",
+        failing=meshed(z=0.2),
+        fail_message="the mesh of 'block' is at 0 0 0.2 m in 'block'; it should be at 0 0 0.1 m (z 100 mm too large)"
+        " (mesh 'package://my_robot/meshes/part.stl')",
+        at='xyz="0.0 0.0 0.2"',
+        edges={"tolerance": lambda off: meshed(z=0.1 + off)},
+    ),
+    Case(
+        problems.without_problems,
+        {"problems": ["URDF074", "XACRO003"]},
+        passing=arm(),
+        pass_message="the URDF has none of the problems URDF074 and XACRO003",
+        failing=arm(axis="0 2 0"),
+        fail_message="URDF074: only the direction of an axis counts: ROS 2 normalizes it",
+        at='xyz="0 2 0"',
+        needs_size=False,
+    ),
+    Case(
+        reference.kinematics_match_reference,
+        {"links": ["wheel"], "samples": 20, "tolerance": 0.002, "angle": 1.0},
+        passing=arm(),
+        pass_message="'wheel' moves as in the reference at 27 positions of 2 joints: at most 0 mm and 0 degrees off",
+        failing=arm(xyz=(0.55, 0.0, 0.0)),
+        fail_message="'wheel' does not move as in the reference: it is 50 mm and 0 degrees off with all joints at 0",
+        at='<link name="wheel"',
+        edges={"tolerance": lambda off: arm(xyz=(0.5 + off, 0.0, 0.0)), "angle": lambda off: arm(rpy=turned(roll=off))},
+        needs_size=False,
+    ),
+    Case(
+        elements.element_present,
+        {
+            "tag": "gazebo",
+            "attributes": {"reference": "camera"},
+            "path": "sensor",
+            "values": {"@type": "camera", "update_rate": 30.0, "always_on": True, "camera/image/width": 640.0},
+            "tolerance": 0.01,
+        },
+        passing=with_camera(),
+        pass_message='there is <sensor> in <gazebo reference="camera"> with the expected values',
+        failing=with_camera(rate="10"),
+        fail_message="<sensor> in <gazebo reference=\"camera\">: 'update_rate' is 10; it should be 30",
+        at="<update_rate>",
+        edges={"tolerance": lambda off: with_camera(rate=repr(30.0 + off))},
         needs_size=False,
     ),
 )

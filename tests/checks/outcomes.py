@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -9,13 +10,17 @@ from typing import Any
 import pytest
 
 from grader.checks.outcome import Outcome, Status
-from grader.checks.registry import describe
+from grader.checks.registry import Subject, describe
 from grader.errors import MissingElement
 from grader.grading.grade import grade
+from grader.grading.reference import Reference
 from grader.grading.rubric import Criterion, Part, Rubric
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Robot
 from grader.source import Location
 from grader.submission.opening import read_submission
-from tests.checks.robots import PATH, Scene
+from grader.submission.submission import Submission
+from tests.checks.robots import ARM, PATH, Scene
 from tests.checks.submissions import Submitted
 
 AnyCheck = Callable[..., Outcome]
@@ -28,7 +33,7 @@ _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
     """Return the outcome of a check."""
-    return check(_subject(check, of), **arguments)
+    return check(*(_subject(name, of) for name in describe(check).examined), **arguments)
 
 
 def finds(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Finding:
@@ -55,9 +60,21 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
     """Return the outcome of a rubric's only criterion, which uses this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
-    single = of.text.encode() if isinstance(of, Scene) else b""
-    submission = of.submission if isinstance(of, Submitted) else read_submission(single, identity="test", path=PATH)
-    return grade(rubric, submission).results[0].outcome
+    submission = _subject("submission", of)
+    assert isinstance(submission, Submission)
+    return grade(replace(rubric, solution=_Solution()), submission).results[0].outcome
+
+
+class _Solution(Reference):
+    """A reference solution without a file: the arm."""
+
+    def __init__(self) -> None:
+        super().__init__(Path(), "", "", ())
+
+    @property
+    def robot(self) -> Configuration:
+        """Return the robot."""
+        return ARM.robot
 
 
 def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
@@ -77,11 +94,17 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     return own_message(outcome)
 
 
-def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
-    subject = describe(check).subject
+def _subject(name: Subject, of: Scene | Submitted) -> object:
+    if name == "reference":
+        return ARM.robot
     if isinstance(of, Submitted):
-        return of.package if subject == "package" else of.submission
-    return of.reading if subject == "urdf" else of.robot
+        if name in ("urdf", "robot"):
+            reading = of.submission.needed_urdf()
+            return reading if name == "urdf" else Configuration(reading.robot or Robot(""))
+        return of.package if name == "package" else of.submission
+    if name == "submission":
+        return read_submission(of.text.encode(), identity="test", path=PATH)
+    return of.reading if name == "urdf" else of.robot
 
 
 def own_message(outcome: Outcome) -> str:

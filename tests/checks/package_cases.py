@@ -8,8 +8,9 @@ from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
+from grader.checks.xacro_source import xacro_uses
 from tests.checks.outcomes import AnyCheck
-from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
+from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted
 
 _NAME = "my_robot_rviz.launch.py"
 _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
@@ -26,6 +27,7 @@ class PackageCase:
     fail_message: str
     at: tuple[str, str] | None = None
     passing: Submitted = field(default=REFERENCE, repr=False)
+    needs: str = "package"  # or "URDF"
 
     @property
     def name(self) -> str:
@@ -50,7 +52,44 @@ class PendingCase:
         return self.check.__name__
 
 
+_WHEEL = "my_robot/urdf/wheel.xacro"
+_XACRO = f"{URDF}.xacro"
+IN_XACRO = REFERENCE.without(URDF).with_files(
+    {
+        _XACRO: """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="my_robot">
+<xacro:include filename="wheel.xacro"/>
+<xacro:property name="radius" value="0.1"/>
+<xacro:property name="width" value="0.05"/>
+<link name="base_link"/>
+<xacro:wheel side="left"/>
+<xacro:wheel side="right"/>
+</robot>
+""",
+        _WHEEL: """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:macro name="wheel" params="side">
+<link name="${side}_wheel">
+<visual><geometry><cylinder radius="${radius}" length="${width / 2}"/></geometry></visual>
+</link>
+<joint name="${side}_joint" type="fixed"><parent link="base_link"/><child link="${side}_wheel"/></joint>
+</xacro:macro>
+</robot>
+""",
+    }
+)
+
 PACKAGE_CASES = (
+    PackageCase(
+        xacro_uses,
+        {"properties": ["radius", "width"], "macros": 1, "includes": ["wheel.xacro"]},
+        pass_message="my_robot.urdf.xacro and wheel.xacro: xacro with the expected properties, macros and includes",
+        failing=IN_XACRO.replacing(_WHEEL, "${width / 2}", "0.025"),
+        fail_message="the property 'width' is defined, but never used",
+        at=(_XACRO, 'name="width"'),
+        passing=IN_XACRO,
+        needs="URDF",
+    ),
     PackageCase(
         package_found,
         {"name": "my_robot"},

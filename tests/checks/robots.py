@@ -8,6 +8,8 @@ from math import radians
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Location
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
 
 PATH = "urdf/robot.urdf"
 
@@ -37,6 +39,11 @@ class Scene:
         return Configuration(found)
 
     @property
+    def submission(self) -> Submission:
+        """Return the submission of the file alone."""
+        return read_submission(self.text.encode(), identity="test", path=PATH)
+
+    @property
     def links(self) -> tuple[str, ...]:
         """Return the names of the links in file order."""
         return tuple(_LINK.findall(self.text))
@@ -61,17 +68,31 @@ def scene(*parts: str) -> Scene:
     return Scene("\n".join(('<robot name="test">', *parts, "</robot>", "")))
 
 
-def link(name: str, *visuals: str) -> str:
-    """Return a link with its visuals."""
-    if not visuals:
+def link(name: str, *children: str) -> str:
+    """Return a link with its inertial, visuals and collisions."""
+    if not children:
         return f'<link name="{name}"/>'
-    return "\n".join((f'<link name="{name}">', *visuals, "</link>"))
+    return "\n".join((f'<link name="{name}">', *children, "</link>"))
 
 
 def visual(shape: str, *, xyz: Numbers = "", rpy: Numbers = "", material: str = "") -> str:
     """Return a visual; origin and material are omitted by default."""
     inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>", material)
     return "\n".join(("<visual>", *filter(None, inside), "</visual>"))
+
+
+def collision(shape: str, *, xyz: Numbers = "", rpy: Numbers = "") -> str:
+    """Return a collision; the origin is omitted by default."""
+    inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>")
+    return "\n".join(("<collision>", *filter(None, inside), "</collision>"))
+
+
+def inertial(mass: float, inertia: Sequence[float], *, xyz: Numbers = "", rpy: Numbers = "") -> str:
+    """Return an inertial with ixx, ixy, ixz, iyy, iyz, izz."""
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    given = " ".join(f'{name}="{value!r}"' for name, value in zip(names, inertia, strict=True))
+    inside = (_origin(xyz, rpy), f'<mass value="{mass!r}"/>', f"<inertia {given}/>")
+    return "\n".join(("<inertial>", *filter(None, inside), "</inertial>"))
 
 
 def box(x: float, y: float, z: float) -> str:
@@ -140,3 +161,24 @@ def _origin(xyz: Numbers, rpy: Numbers) -> str:
 
 def _attribute(name: str, value: Numbers) -> str:
     return f' {name}="{numbers(value)}"' if value else ""
+
+
+def arm(
+    *,
+    shoulder: str = "shoulder",
+    spin: str = "spin",
+    axis: Numbers = "0 1 0",
+    xyz: Numbers = (0.5, 0.0, 0.0),
+    rpy: Numbers = "",
+) -> Scene:
+    """Return a base, an arm that swings up and down, and a wheel that turns at its end."""
+    return scene(
+        link("base"),
+        link("arm"),
+        link("wheel", visual(cylinder())),
+        joint(shoulder, "revolute", "base", "arm", xyz=(0.0, 0.0, 0.2), axis=axis),
+        joint(spin, "continuous", "arm", "wheel", xyz=xyz, rpy=rpy, axis="0 0 1"),
+    )
+
+
+ARM = arm()  # the robot of the reference solution, for checks that compare with it

@@ -10,6 +10,7 @@ from pathlib import Path
 from grader.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
 from grader.package.package import Package
+from grader.robot.kinematics import Configuration
 from grader.source import Location
 from grader.submission.opening import submission_of
 from grader.submission.submission import Submission
@@ -52,6 +53,13 @@ class Submitted:
         package = self.submission.package
         assert package is not None, sorted(self.files)
         return package
+
+    @property
+    def robot(self) -> Configuration:
+        """Return the robot in the URDF that is graded; there must be one."""
+        robot = self.submission.needed_urdf().robot
+        assert robot is not None, sorted(self.files)
+        return Configuration(robot)
 
     def data(self, path: str) -> bytes:
         """Return the bytes of a file."""

@@ -58,14 +58,17 @@ def test_a_grade_run_finds_the_same(case: PackageCase) -> None:
 
 @every_case
 def test_without_a_package_the_same_is_missed(case: PackageCase) -> None:
-    """Every check of a package says that there is none, as a criterion and, if possible, alone."""
+    """Every check of a package says that there is none, as a criterion and, if possible, alone; a check of xacro needs a URDF."""
     pictures = Submitted({"Task1_Step8.png": png()})
     outcome = graded(case.check, pictures, **case.arguments)
-    message = "the submission has no ROS 2 package: there is no package.xml"
-    assert (outcome.status, outcome.message) == ("failed", message)
+    messages = {
+        "package": "the submission has no ROS 2 package: there is no package.xml",
+        "URDF": "no URDF was submitted: the only file contains no <robot>",
+    }
+    assert (outcome.status, outcome.message) == ("failed", messages[case.needs])
     if describe(case.check).subject == "submission":
         error = missing(case.check, pictures, **case.arguments)
-        assert (error.kind, error.name) == ("package", "")
+        assert (error.kind, error.name) == (case.needs, "")
 
 
 @every_case

@@ -360,6 +360,12 @@ def test_a_loop_of_mimics() -> None:
     assert (error.kind, "mimics itself, directly or through others" in str(error)) == ("mimicked joint", True)
 
 
+def test_a_joint_with_the_name_of_its_leader() -> None:
+    """ROS 2 rejects two joints of one name; a joint that mimics its own name follows nothing."""
+    copied = Scene(gripping(LEFT).text.replace("right_joint", "left_joint"))
+    assert "mimics itself" in str(missing(mimics, copied, **MIMIC))
+
+
 def test_a_fixed_joint_follows_nothing() -> None:
     """A <mimic> in a fixed joint moves nothing."""
     with pytest.raises(MissingElement, match="no joint above 'right' moves"):
@@ -426,9 +432,9 @@ def test_dynamics_that_fail(written: str, arguments: Arguments, message: str, at
 # --- Parts that xacro leaves open -------------------------------------------------------------------------------------
 
 
-def expanded(written: str, by: str) -> Configuration:
-    """Return the arm in a file of xacro, in which this text is replaced."""
-    text = swinging(more='<dynamics friction="0.5"/>').text
+def expanded(written: str, by: str, robot: Scene | None = None) -> Configuration:
+    """Return the arm, or another robot, in a file of xacro, in which this text is replaced."""
+    text = (robot or swinging(more='<dynamics friction="0.5"/>')).text
     assert text.count(written) == 1
     xacro = text.replace(written, by).replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
     urdf = read_submission(xacro.encode(), identity="ash", path="robot.urdf.xacro").urdf
@@ -466,6 +472,31 @@ def test_a_joint_that_xacro_leaves_open(name: str, written: str, by: str) -> Non
     arguments = {**CASE[name].arguments, "link": "tip"} | ({"leader": "tip"} if name == "mimics" else {})
     with pytest.raises(NotDecided, match="is known only at run time"):
         CASE[name].check(expanded(written, by), **arguments)
+
+
+@pytest.mark.parametrize("tag", ["limit", "mimic", "dynamics"])
+def test_an_element_that_may_be_there(tag: str) -> None:
+    """What xacro adds under a condition that only a run tells may be there: its absence is no failure."""
+    perhaps = f'<xacro:if value="$(env X)"><{tag} joint="a" effort="1" velocity="1" damping="1"/></xacro:if>'
+    robot = expanded("<dynamics/>", perhaps, swinging(limit="", more="<dynamics/>"))
+    checks: dict[str, tuple[AnyCheck, Arguments]] = {
+        "limit": (joint_limits, LIMITS),
+        "mimic": (mimics, {"link": "tip", "leader": "tip"}),
+        "dynamics": (joint_dynamics, {"link": "tip", "damping": 0.0}),
+    }
+    check, arguments = checks[tag]
+    with pytest.raises(NotDecided, match="is known only at run time"):
+        check(robot, **arguments)
+
+
+@pytest.mark.parametrize("mimic", ["left_joint", "right_joint2"])
+def test_a_leader_whose_name_is_open(mimic: str) -> None:
+    """Whether the joint that is mimicked is that of the leader is known only at run time."""
+    robot = gripping(f'joint="{mimic}"')
+    more = joint("right_joint2", "prismatic", "palm", "third", axis="0 1 0")
+    text = Scene(robot.text.replace("</robot>", f'<link name="third"/>{more}</robot>'))
+    with pytest.raises(NotDecided, match="is known only at run time"):
+        mimics(expanded('joint name="left_joint"', 'joint name="$(env X)"', text), **MIMIC)
 
 
 def test_what_xacro_refuses_is_missing() -> None:

@@ -186,7 +186,12 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
     assert len(lines) == 7
     assert all(line.startswith("grader: ") and "bad.toml:" in line for line in lines)
     (tmp_path / "bad.toml").write_text("id = [\n")
-    refuse("rubric", "check", str(tmp_path / "bad.toml"), words="not readable as TOML")
+    refuse(
+        "rubric",
+        "check",
+        str(tmp_path / "bad.toml"),
+        words="bad.toml:2:1: the list that begins on line 1 has no closing ]",
+    )
 
 
 @pytest.mark.parametrize("form", ["terminal", "json"])

@@ -61,7 +61,7 @@ def in_bash(line: str) -> list[str]:
         ("grader explain URDF05", codes("URDF05")),
         ("grader explain PKG01", codes("PKG01")),
         ("grader explain frame", ["frame_at"]),
-        ("grader schema r", ["report", "rubric"]),
+        ("grader schema r", ["report", "rubric", "rubric-test"]),
         ("grader export m", ["moodle"]),
         ("grader batch x --layout n", ["nbgrader"]),
         ("grader bundle ", ["gradescope"]),

@@ -93,4 +93,4 @@ def test_the_list_of_checks_names_the_faulty_ones() -> None:
     assert done.returncode == 0
     assert b"without_annotation\n  the check without_annotation of the package hostile-checks" in done.stdout
     assert b"shows_box" in done.stdout
-    assert b"\nbehaves" in done.stdout
+    assert b"\nbehaves (hostile-checks)\n" in done.stdout

@@ -232,7 +232,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put(text.replace("points = 6", "points = -6"), rubric)
         assert "lab.toml:" in watch.err.until("\n")
         put("id = [", rubric)
-        watch.err.until("not readable as TOML")
+        watch.err.until("the list that begins on line 1 has no closing ]")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
         output = watch.out.until("\n64/70")
         assert "now failed: lidar-place\nremoved: lidar-frame\n" in output

@@ -25,7 +25,7 @@ REFERENCE_DRAFT = Draft.of(read_urdf(REFERENCE.encode()))
 REJECTED = [
     name
     for name, sample in SAMPLES.items()
-    if sample.expected.get("verdict") in ("rejected", "degraded") and "xacro" not in name and name != "empty-urdf"
+    if sample.expected.verdict in ("rejected", "degraded") and "xacro" not in name and name != "empty-urdf"
 ]
 # Problems whose samples stay as they are, with the reason.
 _BEYOND_REPAIR = {

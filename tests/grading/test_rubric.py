@@ -597,36 +597,6 @@ def test_huge_numbers_cause_no_crash(tmp_path: Path, points: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "where"),
-    [
-        ("id = \n", "line 1, column 6"),
-        ("a = 1\nb = 'open\n", "at end of document"),
-        ("a = 1\na = 2\n", "line 2"),
-        ("[a]\n[a]\n", "line 2"),
-        ("= 3\n", "line 1, column 1"),
-        ("a = 1 2\n", "line 1"),
-        ("a = 01\n", "line 1"),
-        ('a = "\\q"\n', "line 1"),
-        ("<xml/>\n", "line 1, column 1"),
-        ("{}", "line 1, column 1"),
-        ("id = yes\n", "line 1, column 6"),
-    ],
-)
-def test_invalid_toml_is_reported_with_its_location(tmp_path: Path, text: str, where: str) -> None:
-    """Text that is no TOML is refused in one line that says where."""
-    (found,) = complaints(tmp_path, text)
-    assert found.startswith(" not readable as TOML: ")
-    assert where in found
-    assert "\n" not in found
-
-
-@pytest.mark.parametrize("data", [b'id = "caf\xe9"\n', "id = 1".encode("utf-16"), b"\xff\xfe\x00", b"\x80"])
-def test_other_encodings_are_refused(tmp_path: Path, data: bytes) -> None:
-    """TOML is UTF-8; another encoding is named as that, not as invalid TOML."""
-    assert complaints(tmp_path, data) == [" this is not UTF-8 text"]
-
-
-@pytest.mark.parametrize(
     "text",
     [
         "x = " + "[" * 100_000,

@@ -13,8 +13,8 @@ from time import perf_counter
 from typing import NamedTuple
 
 from grader.grading.hints.words import message
+from grader.mutation.mutants import mutants
 from tests.hints.behaviour import behaviour, differences
-from tests.hints.mutants import mutants
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, Base, Hints, hints_for, text_after
 from tests.samples import SAMPLES
@@ -64,14 +64,14 @@ def verdicts(base: Base, count: int | None, random: Random) -> Iterator[Verdict]
     expected = behaviour(base.submission)
     those = list(mutants(base.text))
     for mutant in those if count is None else random.sample(those, min(count, len(those))):
-        submission = base.changed(mutant.text)
+        submission = base.changed(mutant.applied(base.text))
         start = perf_counter()
         hints = hints_for(submission)
         milliseconds = (perf_counter() - start) * 1e3
         if hints.lost:
             differs = differences(expected, behaviour(hints.fixed))
             is_undo = hints.is_full and text_after(base, hints) == base.text
-            label, place = f"{base.name} {mutant.change}", (base.path, mutant.line)
+            label, place = f"{base.name} {mutant.id}", (base.path, mutant.line)
             yield Verdict(mutant.family, label, hints, is_undo, tuple(differs), milliseconds, place)
 
 

@@ -83,7 +83,7 @@ def test_the_samples_differ() -> None:
     """Different mistakes make different robots."""
     forms: dict[str, list[str]] = {}
     for name, sample in SAMPLES.items():
-        if sample.expected.get("path", "").endswith(".urdf") and sample.expected["lost"]:
+        if sample.expected.path.endswith(".urdf") and sample.expected.lost:
             text = (sample.path).read_text(encoding="utf-8", errors="replace")
             forms.setdefault(hash_of(text) or name, []).append(name)
     assert [names for names in forms.values() if len(names) > 1] == []

@@ -4,12 +4,14 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from grader.edits import Proposal
-from grader.grading.hints.targets import Targets, targets_of
+from grader.grading.hints.targets import Targets, moving_child, selected, targets_of
 from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.families import Values
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Robot
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
 
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
     from grader.package.package import Package
 
 _NUMBERS = ("xyz", "size", "radius", "length", "colour")  # arguments of checks
+# Those about the joint that moves a link.
+_JOINT_NUMBERS = ("lower", "upper", "effort", "velocity", "multiplier", "offset", "damping", "friction")
 NO_TARGETS = Targets((), ())
 
 
@@ -56,7 +60,7 @@ class Proposing:
             places = [
                 result.outcome.location for result in state.results.values() if result.outcome.location is not None
             ]
-            found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria))
+            found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria, draft.robot))
         return found
 
 
@@ -64,13 +68,19 @@ def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
 
 
-def _given(criteria: Iterable[Criterion]) -> dict[str, dict[str, Values]]:
-    """Return the numbers that the arguments of criteria give for links."""
+def _given(criteria: Iterable[Criterion], robot: Robot) -> dict[str, dict[str, Values]]:
+    """Return the numbers that the arguments of criteria give for links, or for the links below the joints that move them."""
     given: dict[str, dict[str, Values]] = {}
+    posed = Configuration(robot)
     for criterion in criteria:
-        for name in _NUMBERS:
+        link = criterion.arguments.get("link")
+        if not isinstance(link, str) or criterion.at:  # numbers of a posed robot are not those in the file
+            continue
+        link = selected(posed, link)
+        for name in (*_NUMBERS, *_JOINT_NUMBERS):
             value = criterion.arguments.get(name)
-            if value is not None and isinstance(link := criterion.arguments.get("link"), str):
+            if value is not None:
                 numbers = tuple(value) if isinstance(value, list | tuple) else (value,)
-                given.setdefault(link, {})[name] = tuple(map(float, numbers))
+                of = moving_child(posed, link) if name in _JOINT_NUMBERS else link
+                given.setdefault(of, {})[name] = tuple(map(float, numbers))
     return given

@@ -25,14 +25,15 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     moved: dict[str, None] = {}
     posed = Configuration(robot)
     for criterion in criteria:
-        given = (_selected(posed, name) for name in texts(criterion.arguments))
+        given = (selected(posed, name) for name in texts(criterion.arguments))
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
+        moved |= dict.fromkeys(moving_child(posed, name) for name in named)
     return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
 
 
-def _selected(posed: Configuration, name: str) -> str:
+def selected(posed: Configuration, name: str) -> str:
     """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
     try:
         return selected_link(posed.robot, posed.parent_joints, name)
@@ -59,3 +60,11 @@ def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
             yield from chain if len(chain) <= _MAX_CHAIN else (*chain[: _MAX_CHAIN // 2], *chain[-_MAX_CHAIN // 2 :])
         except (MissingElement, NotDecided):
             yield from (named[0], other)
+
+
+def moving_child(posed: Configuration, link: str) -> str:
+    """Return the child of the joint that moves a link; the link itself where none does."""
+    try:
+        return posed.moving_joint(link).child
+    except (MissingElement, NotDecided):
+        return link

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from grader.edits import KNOWN, REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import Values, written
+from grader.robot.edits.joint_elements import joint_elements
 from grader.robot.edits.materials import coloured
 from grader.robot.edits.misplaced import misplaced
 from grader.robot.edits.poses import Poses
@@ -54,6 +55,7 @@ def _of_link(
 ) -> Iterator[Proposal]:
     if is_moved:
         yield from joint_values(draft, reference, poses, link)
+        yield from joint_elements(draft, reference, poses, link)
     if is_shown:
         yield from visual_values(draft, reference, poses, link)
         yield from moved_offsets(draft, poses, link)

@@ -13,6 +13,9 @@ COMPONENTS = {
     "size": ("the length (x)", "the width (y)", "the height (z)"),
     "rgba": ("red", "green", "blue", "the opacity"),
     "axis": ("x of the axis", "y of the axis", "z of the axis"),
+    "limit": ("the lower limit", "the upper limit", "the effort", "the velocity"),
+    "mimic": ("the multiplier", "the offset"),
+    "dynamics": ("the damping", "the friction"),
 }
 _LENGTHS = ("xyz", "size", "radius", "length", "scale")
 _ANGLE_STEP = 5.0  # degrees: what is written in degrees is a multiple
@@ -53,7 +56,7 @@ class Change(NamedTuple):
 def negated(slot: Slot) -> Iterator[Change]:
     """Negate one number, or all: a mirrored wheel, an axis that points backward, an offset to the wrong side."""
     nonzero = [index for index, value in enumerate(slot.values) if value]
-    if slot.attribute not in ("xyz", "rpy", "axis"):
+    if slot.attribute not in ("xyz", "rpy", "axis", "limit", "mimic"):
         return
     for index in nonzero:
         name = slot.component(index)
@@ -64,11 +67,12 @@ def negated(slot: Slot) -> Iterator[Change]:
 
 
 def in_radians(slot: Slot) -> Iterator[Change]:
-    """Convert degrees to radians: rpy="-90 0 0"."""
-    if slot.attribute == "rpy" and any(value and not value % _ANGLE_STEP for value in slot.values):
-        yield Change(
-            tuple(map(radians, slot.values)), "the unit of rpy{}: degrees, not radians", "convert rpy{} to radians"
-        )
+    """Convert degrees to radians: rpy="-90 0 0", lower="-90" upper="90"."""
+    angles = slot.values[: {"rpy": 3, "limit": 2}.get(slot.attribute, 0)]
+    if any(value and not value % _ANGLE_STEP for value in angles):
+        values = (*map(radians, angles), *slot.values[len(angles) :])
+        name = _called(slot)
+        yield Change(values, f"the unit of {name}{{}}: degrees, not radians", f"convert {name}{{}} to radians")
 
 
 def in_metres(slot: Slot) -> Iterator[Change]:
@@ -174,6 +178,8 @@ def number(value: float) -> str:
 
 
 def _called(slot: Slot) -> str:
+    if slot.attribute == "limit":
+        return "the limits"
     return slot.attribute if slot.attribute in ("xyz", "rpy") else f"the {slot.attribute}"
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.problems import Kind
 from grader.xml import catalogue
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
-from grader.xml.tinyxml2.values import ILLEGAL
+from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
 _DECLARATION = re.compile(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
@@ -29,7 +29,8 @@ class Difference(NamedTuple):
 class Scan(NamedTuple):
     """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
 
-    The XML has tags and attributes only, which are all that urdfdom reads.
+    The XML has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
+    text in elements, too.
     """
 
     xml: bytes
@@ -105,7 +106,9 @@ class Scanner:
         if text.startswith("<![CDATA[", position):
             if not self._open_tags:
                 self._differ("cdata", "a CDATA section outside the robot", position)
-            return self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
+            end = self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
+            self._write(text[position + 9 : end - 3] if end is not None else "")
+            return end
         if text.startswith("<!", position):
             end = self._delimited(position, "<!", ">", "<!")
             if end is not None and "doctype" not in self._noted:
@@ -141,7 +144,13 @@ class Scanner:
             self._differ("text", "text outside the robot", position)
         elif reference := REFERENCE.search(self._text, position, end):
             self._differ("reference", "a bare & (write &amp;)", reference.start())
+        self._write(decode(self._text[position:end]))
         return end
+
+    def _write(self, text: str) -> None:
+        """Write the text in an element."""
+        if self._open_tags and self._open_tags[-1][1]:
+            self._xml.append(escape(text).replace(">", "&gt;"))
 
     def _declaration(self, position: int) -> int | None:
         end = self._delimited(position, "<?", "?>", "<?")

@@ -28,14 +28,16 @@ class Tag(NamedTuple):
 
     @property
     def xml_name(self) -> str:
-        """Its name in XML."""
-        return self.name if _is_plain(self.name) else "_"
+        """Its name in XML, which may have a prefix."""
+        return self.name if all(map(_is_plain, self.name.split(":", 1))) else "_"
 
     @property
     def xml(self) -> str:
         """A start tag as XML, without attributes that mean nothing to urdfdom."""
         values = "".join(f' {key}="{escape(value)}"' for key, value in self.attributes.items() if _is_plain(key))
-        return f"<{self.xml_name}{values}{'>' if self.form == 'open' else '/>'}"
+        prefix, colon, _ = self.xml_name.partition(":")
+        declared = f' xmlns:{prefix}="{prefix}"' if colon else ""
+        return f"<{self.xml_name}{declared}{values}{'>' if self.form == 'open' else '/>'}"
 
 
 class MalformedTagError(Exception):

@@ -1,0 +1,1 @@
+"""A new rubric from a reference solution: its facts are measured, written as criteria, and tried on the reference."""

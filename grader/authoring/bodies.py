@@ -1,0 +1,87 @@
+"""Facts about the mass of a link, its inertia and its collision shapes."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from math import isfinite
+from typing import Any
+
+from grader.authoring.fact import Fact, exact, length, lengths, shown
+from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
+
+_MASS_TOLERANCE = 0.001  # kg: the default of mass_is
+_SHARE = 0.01  # of a mass for which the default tolerance is too much
+_LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
+_INERTIA_SHARE = 0.02  # of the largest moment, where the inertia is that of a mesh
+_CENTRE_TOLERANCE = 0.002  # m
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+def body_facts(link: Link) -> Iterator[Fact]:
+    """Yield the mass of a link, and that its inertia and its collision shapes fit its shapes."""
+    if link.inertial is not None and isfinite(link.inertial.mass):
+        yield _mass(link.name, exact(link.inertial.mass))
+        yield _inertia(link, link.inertial)
+    if link.collisions:
+        title = f"The collision shapes of {link.name} are those that it shows"
+        others = tuple(_collision(link.name, collision, index) for index, collision in enumerate(link.collisions))
+        fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name}, is_doubtful=True)
+        yield replace(fact, otherwise=others)
+
+
+def _mass(link: str, mass: float) -> Fact:
+    least = abs(mass) * _SHARE
+    tolerance = {"tolerance": exact(least)} if least < _MASS_TOLERANCE else {}
+    title = f"The mass of {link} is {shown([mass])} kg"
+    return Fact(link, "mass", title, "mass_is", {"link": link, "mass": mass, **tolerance})
+
+
+def _inertia(link: Link, inertial: Inertial) -> Fact:
+    """Return that an inertia fits the shapes, or else, with a larger tolerance, or for a mesh, what its numbers are."""
+    title = f"The inertia of {link.name} is that of a uniform solid of its shape, with its mass"
+    fact = Fact(link.name, "inertia", title, "inertia_plausible", {"link": link.name})
+    shapes = [shape.geometry for shape in (link.collisions or link.visuals)]
+    if any(isinstance(shape, Mesh) for shape in shapes):
+        return replace(fact, otherwise=tuple(_numbers_of(link.name, inertial)))
+    loose = replace(fact, arguments={**fact.arguments, "tolerance": _LOOSE_INERTIA}, is_doubtful=True)
+    return replace(fact, otherwise=(loose,))
+
+
+def _numbers_of(link: str, inertial: Inertial) -> Iterator[Fact]:
+    moments = dict(zip(_MOMENTS, map(exact, inertial.inertia), strict=True))
+    title = f"The inertia of {link} is {', '.join(f'{key} {shown([value])}' for key, value in moments.items())} kg m^2"
+    tolerance = exact(max(map(abs, moments.values())) * _INERTIA_SHARE)
+    yield _element(
+        link, "inertia", title, "inertial/inertia", {f"@{key}": it for key, it in moments.items()}, tolerance
+    )
+    if any(inertial.origin.xyz):
+        xyz = shown(lengths(inertial.origin.xyz))
+        title = f"The centre of mass of {link} is at {xyz} m in its frame"
+        yield _element(link, "mass-centre", title, "inertial/origin", {"@xyz": xyz}, _CENTRE_TOLERANCE)
+
+
+def _collision(link: str, collision: Collision, index: int) -> Fact:
+    """Return the size of a collision shape that is no visual shape, and where it is."""
+    values: dict[str, Any]
+    match collision.geometry:
+        case Box(size=size):
+            values, what = {"geometry/box/@size": shown(map(length, size))}, f"box {shown(size)} m"
+        case Cylinder(radius=radius, length=long):
+            values = {"geometry/cylinder/@radius": length(radius), "geometry/cylinder/@length": length(long)}
+            what = f"cylinder of radius {shown([radius])} m and length {shown([long])} m"
+        case Sphere(radius=radius):
+            values, what = {"geometry/sphere/@radius": length(radius)}, f"sphere of radius {shown([radius])} m"
+        case Mesh(filename=file, scale=scale):
+            values, what = {"geometry/mesh/@filename": file}, f"mesh {file}"
+            values |= {"geometry/mesh/@scale": shown(scale)} if scale != (1.0, 1.0, 1.0) else {}
+    title = f"{link} collides as a {what}"
+    if any(collision.origin.xyz):
+        values["origin/@xyz"] = shown(lengths(collision.origin.xyz))
+        title += f" at {values['origin/@xyz']} m in its frame"
+    return _element(
+        link, f"collision-{index + 1}" if index else "collision", title, "collision", values, _CENTRE_TOLERANCE
+    )
+
+
+def _element(link: str, aspect: str, title: str, path: str, values: Mapping[str, Any], tolerance: float) -> Fact:
+    arguments = {"tag": "link", "attributes": {"name": link}, "path": path, "values": values, "tolerance": tolerance}
+    return Fact(link, aspect, title, "element_present", arguments)

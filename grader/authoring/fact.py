@@ -1,0 +1,92 @@
+"""What is measured on a reference, and how its numbers are written."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import cos, degrees, isclose, isfinite, radians
+from typing import Any
+
+from grader.robot.transforms import Vector
+
+_DIGITS = 6  # after the point, of a length in metres or a component of a direction
+_EXACT_DIGITS = 12  # significant ones of a value that is compared exactly
+_WHOLE = 0.1  # degrees: closer angles are meant as whole ones, such as 90 for 1.57 radians
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """A fact of the reference that one check can tell: a criterion without its points.
+
+    `subject` and `aspect` make its id, `about` is its heading. `otherwise` are the facts that count instead if
+    the reference does not pass it; `is_doubtful` is set where it may then be wrong.
+    """
+
+    subject: str
+    aspect: str
+    title: str
+    check: str
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    about: str = ""
+    of_package: bool = False
+    otherwise: tuple["Fact", ...] = ()
+    is_doubtful: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Omission:
+    """Something of the reference that no criterion is about, and why."""
+
+    what: str
+    why: str
+
+
+def length(value: float) -> float:
+    """Return a measured length without what rounding has added: 0.15 for 0.15000000000000002."""
+    return round(value, _DIGITS) + 0.0
+
+
+def lengths(vector: Vector) -> list[float]:
+    """Return the components of a measured vector, each without rounding errors."""
+    return [length(value) for value in vector]
+
+
+def direction(vector: Vector) -> list[float]:
+    """Return a unit vector without rounding errors: an axis of the frame where it is close to one, as for an rpy of 1.57."""
+    cosine = cos(radians(_WHOLE))
+    return [float(round(value)) + 0.0 if max(map(abs, vector)) >= cosine else length(value) for value in vector]
+
+
+def exact(value: float) -> float:
+    """Return a value that is compared exactly, without the last digits of a binary number."""
+    return float(f"{value:.{_EXACT_DIGITS}g}") + 0.0
+
+
+def whole_degrees(angle: float) -> float:
+    """Return an angle (radians) in degrees: a whole number where it is close to one, as 90 for 1.57."""
+    value = degrees(angle)
+    nearest = float(round(value)) if isfinite(value) else value
+    return nearest + 0.0 if abs(value - nearest) <= _WHOLE else round(value, 2)
+
+
+def whole_angle(angle: float) -> float:
+    """Return an angle in radians that is a whole number of degrees where it is close to one: 1.5708 for 1.57."""
+    return round(radians(whole_degrees(angle)), 4) + 0.0
+
+
+def shown(values: Iterable[float]) -> str:
+    """Return numbers for a title: 0.15 0 0.225."""
+    return " ".join(f"{value + 0.0:.6g}" for value in values)
+
+
+def is_same(one: float, other: float) -> bool:
+    """Return whether two numbers are equal up to rounding."""
+    return isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
+
+
+def is_finite(value: Any) -> bool:
+    """Return whether all numbers in the arguments of a check are finite."""
+    match value:
+        case Mapping():
+            return all(map(is_finite, value.values()))
+        case list():
+            return all(map(is_finite, value))
+    return not isinstance(value, float) or isfinite(value)

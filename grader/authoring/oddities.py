@@ -1,0 +1,100 @@
+"""What looks odd in a reference: it gets full marks all the same, so only its author can tell whether it is right."""
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import chain, combinations
+
+from grader.authoring.fact import shown
+from grader.authoring.solution import Solution
+from grader.robot.model import Cylinder, Joint, Link, Mesh
+from grader.robot.shapes import is_empty
+from grader.robot.transforms import dot
+from grader.text import counted, enumerated
+
+_OPPOSITE = -0.999  # the cosine of the angle between two axes
+_IN_SIMULATION = ("gazebo", "ros2_control")
+_MAX_NAMED = 4
+
+
+def oddities(solution: Solution) -> Iterator[str]:
+    """Yield a line for each thing that looks odd, which names all links and joints that it is true of."""
+    yield from _problems(solution)
+    names: dict[str, list[str]] = {}
+    for link in solution.links:
+        for what in chain.from_iterable(rule(solution, link) for rule in _OF_LINKS):
+            names.setdefault(what, []).append(link.name)
+    for joint in solution.moving_joints:
+        for what in _of_joint(joint):
+            names.setdefault(what, []).append(joint.name)
+    yield from (f"{enumerated(found, _MAX_NAMED)}: {what}" for what, found in names.items())
+    yield from _mirrored_wheels(solution)
+
+
+def _problems(solution: Solution) -> Iterator[str]:
+    """Yield each kind of problem that the reader has with the file, once."""
+    numbers: dict[str, int] = {}
+    for problem in solution.reading.problems:
+        numbers[problem.code] = numbers.get(problem.code, 0) + 1
+    for problem in solution.reading.problems:
+        number = numbers.pop(problem.code, 0)
+        if number:
+            line = f" (line {problem.location.line})" if problem.location else ""
+            more = f", and {counted(number - 1, 'more such problem')}" if number > 1 else ""
+            yield f"{problem.code}: {problem.message}{line}{more}"
+
+
+def _mass(solution: Solution, link: Link) -> Iterator[str]:
+    root = solution.reading.root
+    if link.inertial is not None:
+        if not link.inertial.mass > 0:
+            yield f"the mass is {shown([link.inertial.mass])} kg"
+    elif (link.visuals or link.collisions) and any(
+        root is not None and root.find(tag) is not None for tag in _IN_SIMULATION
+    ):
+        yield "no <inertial>, though the link has shapes: a simulator ignores the link or fixes it"
+
+
+def _colour(solution: Solution, link: Link) -> Iterator[str]:
+    del solution
+    shapes = [shape for shape in link.visuals if not is_empty(shape.geometry) and not isinstance(shape.geometry, Mesh)]
+    if any(visual.material is None for visual in shapes):
+        yield "no colour, or one that is not defined, so RViz shows red"
+
+
+def _collision(solution: Solution, link: Link) -> Iterator[str]:
+    if link.visuals and not link.collisions and any(other.collisions for other in solution.links):
+        yield "a <visual>, but no <collision>, which other links have"
+
+
+_OF_LINKS: tuple[Callable[[Solution, Link], Iterator[str]], ...] = (_mass, _colour, _collision)
+
+
+def _of_joint(joint: Joint) -> Iterator[str]:
+    limit = joint.limit
+    if limit is None or joint.type not in ("revolute", "prismatic"):
+        return
+    if limit.lower > limit.upper:
+        yield f"the lower limit, {shown([limit.lower])}, is above the upper limit, {shown([limit.upper])}"
+    elif limit.lower == limit.upper:
+        yield "the limits are equal, so the joint cannot move"
+    for name, value in (("effort", limit.effort), ("velocity", limit.velocity)):
+        if value == 0:
+            yield f"the {name} is 0, so no controller can move the joint"
+
+
+def _mirrored_wheels(solution: Solution) -> Iterator[str]:
+    """Yield pairs of equal wheels on one link whose axes are opposite: then one of them turns backward to drive forward."""
+    wheels = [joint for joint in solution.moving_joints if joint.type == "continuous" and _wheel(solution, joint)]
+    for one, other in combinations(wheels, 2):
+        if one.parent == other.parent and _wheel(solution, one) == _wheel(solution, other):
+            axes = [
+                solution.robot.pose(it.child, relative_to=it.parent).rotate(solution.robot.axis(it))
+                for it in (one, other)
+            ]
+            if dot(*axes) < _OPPOSITE:
+                yield f"{one.child} and {other.child} are equal wheels with opposite axes: a positive turn of both turns the robot on the spot"
+
+
+def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:
+    shapes = [visual.geometry for visual in solution.robot.link(joint.child).visuals]
+    cylinder = next((shape for shape in shapes if isinstance(shape, Cylinder)), None)
+    return {"radius": cylinder.radius, "length": cylinder.length} if cylinder is not None else None

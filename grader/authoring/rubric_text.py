@@ -1,0 +1,123 @@
+"""The text of a new rubric: its keys, the project's tolerances as defaults, and a criterion for each fact."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from grader.authoring.fact import Fact
+from grader.authoring.ignored import Ignored
+from grader.authoring.toml_text import WIDTH, assignment, literal, table, wrapped
+from grader.text import printable
+
+_ROBOT, _PACKAGE = "robot", "package"
+_MAX_ID = 60
+_MUTANTS = "Mutants of the reference that keep full marks: `grader rubric test`"
+# The project's tolerances, which leave room for rounding but not for mistakes.
+_DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
+    "shows_box": ({"tolerance": 0.002}, "metres"),
+    "shows_cylinder": ({"tolerance": 0.002}, "metres"),
+    "shows_sphere": ({"tolerance": 0.002}, "metres"),
+    "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
+    "centre_at": ({"tolerance": 0.002}, "metres"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
+    "joint_axis": ({"tolerance": 1.0}, "degrees"),
+    "joint_limits": ({"tolerance": 1.0}, "degrees"),
+    "mass_is": ({"tolerance": 0.001}, "kilograms"),
+    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
+    "collision_matches_visual": ({"tolerance": 0.002}, "metres"),
+}
+
+
+class Head(NamedTuple):
+    """What a rubric says of the lab. `reference` is a path relative to the rubric, `package` is empty without one."""
+
+    id: str
+    title: str
+    reference: str
+    urdf: str
+    package: str
+
+
+def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored] = ()) -> str:
+    """Return a rubric with a criterion for each fact, by the ids of the criteria, and the mutants that it ignores."""
+    of_package = sum(fact.of_package for fact in facts.values())
+    lines = [
+        *_head(head, len(facts)),
+        *_defaults({fact.check for fact in facts.values()}),
+        *_part(_ROBOT, "The robot", "urdf", len(facts) - of_package),
+        *(_part(_PACKAGE, "The package", "package", of_package) if of_package else ()),
+    ]
+    about = ""
+    for name, fact in facts.items():
+        if fact.about != about:
+            about = fact.about
+            lines += ["", _heading(about)]
+        lines += _criterion(name, fact)
+    lines += ["", _heading(_MUTANTS)] if ignored else []
+    for patterns, reason in ignored:
+        lines += ["", "[[test.ignore]]", *wrapped("mutants", patterns), assignment("reason", reason)]
+    return "\n".join(lines) + "\n"
+
+
+def criterion_ids(facts: Sequence[Fact]) -> dict[str, Fact]:
+    """Return the facts by their ids: words of the names that they are about, such as upper-arm-mass."""
+    found: dict[str, Fact] = {}
+    for fact in facts:
+        words = re.sub(r"[\W_]+", "-", f"{fact.subject} {fact.aspect}".lower()).strip("-")[:_MAX_ID].strip("-")
+        name, number = words or "criterion", 1
+        while name in found:
+            number += 1
+            name = f"{words or 'criterion'}-{number}"
+        found[name] = fact
+    return found
+
+
+def _head(head: Head, points: int) -> Iterator[str]:
+    given = {
+        "id": head.id,
+        "title": head.title,
+        "reference": head.reference,
+        "urdf": head.urdf,
+        "package": head.package,
+    }
+    comments = {
+        "reference": "the solution that must get full marks",
+        "urdf": "where a package keeps the file that is graded",
+        "package": "the name of the package that is graded",
+    }
+    lines = {key: assignment(key, value) for key, value in given.items() if value}
+    width = max(len(lines[key]) for key in comments if key in lines)
+    for key, line in lines.items():
+        yield f"{line:{width}}  # {comments[key]}" if key in comments else line
+    yield assignment("points", points)
+
+
+def _defaults(checks: set[str]) -> Iterator[str]:
+    yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
+    used = {check: given for check, given in _DEFAULTS.items() if check in checks}
+    lines = {check: assignment(check, arguments) for check, (arguments, _) in used.items()}
+    if lines:
+        yield from ("", "[defaults.with]")
+        width = max(map(len, lines.values()))
+        yield from (f"{line:{width}}  # {used[check][1]}" for check, line in lines.items())
+
+
+def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
+    yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
+    yield from (assignment("needs", needs), assignment("points", points))
+
+
+def _heading(about: str) -> str:
+    return f"# --- {printable(about)} ".ljust(WIDTH, "-")
+
+
+def _criterion(name: str, fact: Fact) -> Iterator[str]:
+    yield from ("", "[[criterion]]", assignment("id", name))
+    if fact.of_package:
+        yield assignment("part", _PACKAGE)
+    if fact.about:
+        yield assignment("about", printable(fact.about))
+    yield assignment("title", printable(fact.title))
+    yield f"check = {literal(fact.check)}"
+    if fact.arguments:
+        yield from table("criterion.with", fact.arguments)

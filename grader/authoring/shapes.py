@@ -1,0 +1,119 @@
+"""Facts about what a link shows: its shapes, where they are in its frame, their colours; and its meshes."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+from grader.authoring.fact import Fact, Omission, direction, is_same, length, lengths, shown
+from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
+from grader.robot.shapes import is_empty, volume
+from grader.robot.transforms import rotation_from_rpy
+
+_Z = (0.0, 0.0, 1.0)
+
+
+def shape_facts(link: Link) -> Iterator[Fact | Omission]:
+    """Yield what a link shows, shape by shape; of several shapes of one kind all sizes, and the place of the largest."""
+    visuals = [visual for visual in link.visuals if not is_empty(visual.geometry)]
+    by_kind: dict[type[Geometry], list[Visual]] = {}
+    for visual in visuals:
+        by_kind.setdefault(type(visual.geometry), []).append(visual)
+    meshes = by_kind.pop(Mesh, [])
+    for number, visual in enumerate(meshes):
+        yield from _mesh(link.name, visual, number)
+    for kind, same in by_kind.items():
+        yield from _sizes(link.name, same)
+        largest = max(same, key=lambda visual: volume(visual.geometry))
+        name = kind.__name__.lower()
+        selected = {"shape": name} if len(visuals) > 1 else {}
+        yield _place(link.name, largest, name, selected)
+        yield from _colour(link.name, largest, name, selected)
+        if len(same) > 1:
+            yield Omission(
+                f"{link.name}: place and colour of all its {_PLURALS[kind]} but the largest",
+                "a check examines the largest shape of a kind",
+            )
+
+
+def _sizes(link: str, visuals: Sequence[Visual]) -> Iterator[Fact]:
+    """Yield a fact for each different size of shapes of one kind."""
+    seen: list[Mapping[str, Any]] = []
+    for visual in visuals:
+        check, arguments, title = _SIZES[type(visual.geometry)](visual)
+        if arguments not in seen:
+            seen.append(arguments)
+            aspect = check.removeprefix("shows_")
+            yield Fact(link, aspect, f"{link} shows a {title}", check, {"link": link, **arguments})
+
+
+def _box(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
+    assert isinstance(visual.geometry, Box)
+    edges = _along_axes(visual, visual.geometry)
+    return "shows_box", {"size": edges}, f"box {' x '.join(shown([edge]) for edge in edges)} m"
+
+
+def _cylinder(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
+    assert isinstance(visual.geometry, Cylinder)
+    radius, long = length(abs(visual.geometry.radius)), length(abs(visual.geometry.length))
+    title = f"cylinder of radius {shown([radius])} m and length {shown([long])} m"
+    return "shows_cylinder", {"radius": radius, "length": long}, title
+
+
+def _sphere(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
+    assert isinstance(visual.geometry, Sphere)
+    radius = length(abs(visual.geometry.radius))
+    return "shows_sphere", {"radius": radius}, f"sphere of radius {shown([radius])} m"
+
+
+_SIZES: Mapping[type[Geometry], Callable[[Visual], tuple[str, Mapping[str, Any], str]]] = {
+    Box: _box,
+    Cylinder: _cylinder,
+    Sphere: _sphere,
+}
+_PLURALS: Mapping[type[Geometry], str] = {Box: "boxes", Cylinder: "cylinders", Sphere: "spheres"}
+
+
+def _along_axes(visual: Visual, box: Box) -> list[float]:
+    """Return the edges of a box along the axes of its link; of a box that is turned otherwise, along its own."""
+    rotation = rotation_from_rpy(visual.origin.rpy)
+    rows = [[abs(value) for value in rotation[3 * row : 3 * row + 3]] for row in range(3)]
+    order = [row.index(max(row)) for row in rows]
+    return [length(abs(box.size[column])) for column in (order if sorted(order) == [0, 1, 2] else range(3))]
+
+
+def _place(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -> Fact:
+    """Return where a shape is in its link, and how the axis of a cylinder, or of a box that is turned, lies."""
+    xyz = lengths(visual.origin.xyz)
+    arguments: dict[str, Any] = {}
+    title = f"The centre of the {kind} of {link} is at {shown(xyz)} m in its frame"
+    if isinstance(visual.geometry, Cylinder):
+        x, y, z = (rotation_from_rpy(visual.origin.rpy)[index] for index in (2, 5, 8))
+        axis = direction((x, y, z))
+        arguments = {"axis": axis} if not is_same(abs(z), 1.0) else {}
+        arguments["angle"] = 1.0
+        title += f", its axis along {shown(axis if arguments.get('axis') else _Z)}"
+    place = {"link": link, **selected, "relative_to": link, "xyz": xyz, **arguments}
+    return Fact(link, f"{kind}-place" if selected else "place", title, "centre_at", place)
+
+
+def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -> Iterator[Fact | Omission]:
+    material = visual.material
+    if material is None:
+        yield Omission(f"{link}: the colour of its {kind}", "it has none")
+        return
+    channels = [round(channel, 4) for channel in material.rgba]
+    what = f"{kind} of {link}" if selected else link
+    title = f"{'The ' if selected else ''}{what} is shown in rgba {shown(channels)}"
+    aspect = f"{kind}-colour" if selected else "colour"
+    yield Fact(link, aspect, title, "shows_colour", {"link": link, **selected, "colour": channels})
+
+
+def _mesh(link: str, visual: Visual, number: int) -> Iterator[Fact]:
+    mesh = visual.geometry
+    assert isinstance(mesh, Mesh)
+    file = mesh.filename.partition("://")[2] or mesh.filename
+    scale, xyz, rpy = lengths(mesh.scale), lengths(visual.origin.xyz), lengths(visual.origin.rpy)
+    title = f"{link} shows the mesh {file}"
+    title += f", scaled by {shown(scale)}" if scale != [1.0, 1.0, 1.0] else ""
+    title += f", at {shown(xyz)} m in its frame" if any(xyz) else ""
+    arguments = {"link": link, "file": file, "scale": scale, "xyz": xyz, "rpy": rpy}
+    yield Fact(link, f"mesh-{number + 1}" if number else "mesh", title, "shows_mesh", arguments)

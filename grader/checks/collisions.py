@@ -1,0 +1,145 @@
+"""Checks of the collision shapes of a link."""
+
+from collections.abc import Sequence
+from math import hypot, inf
+
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
+from grader.checks.toml_types import NonNegative
+from grader.checks.visuals import MAX_SHAPES, check_resolved, mesh_name, visuals
+from grader.errors import MissingElement, NotDecided
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.likeness import Mismatch, mismatch, turn_between
+from grader.robot.model import Box, Collision, Cylinder, Geometry, Mesh, Sphere, Visual
+from grader.robot.shapes import is_empty
+from grader.robot.transforms import IDENTITY, minus
+from grader.source import LazyLocation
+from grader.text import counted
+
+_MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
+
+Element = Visual | Collision
+
+
+def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
+    """The collision shapes of a link are the shapes that it shows, each in its place.
+
+    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a size do not count. A mesh
+    is the same if it is the same file at the same scale and pose; whether another file has the same shape needs manual
+    grading.
+
+    Args:
+        link: The link that is examined.
+        tolerance: How far a centre, a size or a point of the surface may be off, in metres.
+    """
+    found = robot.link(link)
+    for part in ("visual", "collision"):
+        check_resolved(found, part, has_none=True)
+    shown = visuals(robot, link)
+    solid = tuple(collision for collision in found.collisions if not is_empty(collision.geometry))
+    if not solid:
+        message = f"link {link!r} has no collision shape with a size; it should have the shapes that it shows"
+        raise MissingElement("collision", link, message=message, location=place(found.location))
+    if max(len(shown), len(solid)) > MAX_SHAPES:
+        raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
+    partners = _partners(shown, solid, tolerance)
+    lonely = [visual for index, visual in enumerate(shown) if index not in partners.values()]
+    others = [collision for index, collision in enumerate(solid) if index not in partners]
+    if not lonely and not others:
+        return passed(f"{link!r} has {counted(len(solid), 'collision shape')}, as shown")
+    if not lonely:
+        message = f"{link!r} has a collision shape that it does not show: {_described(others[0])}"
+        return failed(message, others[0].location)
+    if not others:
+        return failed(f"no collision shape of {link!r} is {_described(lonely[0])}, as shown", lonely[0].location)
+    return _unlike(link, lonely, others, tolerance)
+
+
+def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: float) -> dict[int, int]:
+    """Return the visual that each collision shape is, by their indices: as many pairs as possible (Kuhn's algorithm)."""
+    alike = [[index for index, other in enumerate(solid) if _is_like(visual, other, tolerance)] for visual in shown]
+    partners: dict[int, int] = {}
+
+    def find(visual: int, tried: set[int]) -> bool:
+        for collision in alike[visual]:
+            if collision not in tried:
+                tried.add(collision)
+                if collision not in partners or find(partners[collision], tried):
+                    partners[collision] = visual
+                    return True
+        return False
+
+    for visual in range(len(shown)):
+        find(visual, set())
+    return partners
+
+
+def _is_like(visual: Visual, collision: Collision, tolerance: float) -> bool:
+    off = _mismatch(visual, collision, tolerance)
+    return off is not None and off.largest <= tolerance + SLACK
+
+
+def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatch | None:
+    """Return how far two shapes differ; None for shapes of different kinds, and for different meshes."""
+    a, b = visual.geometry, collision.geometry
+    T_link_a, T_link_b = placed_by(IDENTITY, visual.origin), placed_by(IDENTITY, collision.origin)
+    if not isinstance(a, Mesh) and not isinstance(b, Mesh):
+        return mismatch(a, T_link_a, b, T_link_b, tolerance + SLACK)
+    if a != b:
+        return None
+    angle = turn_between(T_link_a.rotation, T_link_b.rotation)
+    apart = hypot(*minus(T_link_a.translation, T_link_b.translation))
+    return Mismatch(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
+
+
+def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float) -> Outcome:
+    """Return the outcome for visuals without a collision shape, and collision shapes without a visual."""
+    files = {visual.geometry.filename for visual in lonely if isinstance(visual.geometry, Mesh)}
+    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
+    if len(meshes) == len(others) and all(isinstance(visual.geometry, Mesh) for visual in lonely):
+        unknown = next((mesh for mesh in meshes if mesh.filename not in files), None)
+        if unknown is not None:
+            cause = "mesh files are not opened"
+            what = f"whether the collision mesh {mesh_name(unknown)} of {link!r} has the shape that is shown"
+            return pending(f"{what} cannot be determined: {cause}; needs manual grading", cause)
+    pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
+    off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
+    differences, at = _differences(nearest, off, tolerance)
+    message = f"no collision shape of {link!r} is {_described(visual)}, as shown; the nearest is {_described(nearest)}"
+    return failed(f"{message}{differences}", at or nearest.location)
+
+
+def _rank(off: Mismatch | None) -> tuple[bool, float]:
+    """Return the order of pairs: those of one kind first, then by the difference."""
+    return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
+
+
+def _differences(nearest: Collision, off: Mismatch | None, tolerance: float) -> tuple[str, LazyLocation | None]:
+    """Return how a collision shape differs from the visual that it should be, and the place to look at."""
+    if off is None:
+        return "", nearest.geometry.location
+    found = [
+        (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
+        (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
+        (f"turned by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
+    ]
+    wrong = [row for row in found if not row[1] <= tolerance + SLACK]
+    text = " and ".join(text for text, *_ in wrong)
+    return f" ({text})", place(wrong[0][2], wrong[0][3])
+
+
+def _described(element: Element) -> str:
+    """Return a shape with its sizes, and its place in the link."""
+    return f"{_sized(element.geometry)} at {point(element.origin.xyz)} m"
+
+
+def _sized(geometry: Geometry) -> str:
+    match geometry:
+        case Box(size=size):
+            return f"a box {point(size)} m"
+        case Cylinder(radius=radius, length=length):
+            return f"a cylinder of radius {point((radius,))} m and length {point((length,))} m"
+        case Sphere(radius=radius):
+            return f"a sphere of radius {point((radius,))} m"
+        case Mesh(scale=scale):
+            return f"the mesh {mesh_name(geometry)}{'' if scale == Mesh('').scale else f' scaled by {point(scale)}'}"

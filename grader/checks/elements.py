@@ -1,0 +1,204 @@
+"""Checks of the XML elements of a URDF, whatever reads them: Gazebo, ros2_control, transmissions."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from grader.checks.outcome import Outcome, failed, passed
+from grader.checks.toml_types import Content, NonNegative, Scalar
+from grader.errors import MissingElement, NotDecided
+from grader.names import did_you_mean
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading
+from grader.source import LazyLocation
+from grader.submission.submission import Submission
+from grader.text import enumerated, first_lines, quoted
+from grader.xml.element_values import (
+    Found,
+    are_there,
+    attribute,
+    elements_at,
+    is_same,
+    name_of,
+    numbers_of,
+    steps_of,
+    text_of,
+    texts_at,
+)
+from grader.xml.parsing import Element, Unresolved
+
+_MAX_NAMED = 5  # elements and values in a message
+_INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
+
+
+class _Wanted(NamedTuple):
+    """What a rubric looks for."""
+
+    tag: str
+    attributes: Mapping[str, Scalar]
+    path: str
+    values: Mapping[str, Content]
+    tolerance: float
+
+    @property
+    def element(self) -> str:
+        """The element below <robot>: <gazebo reference="camera_link">."""
+        given = (f' {key}="{text_of(value)}"' for key, value in self.attributes.items())
+        return f"<{self.tag}{''.join(given)}>"
+
+    @property
+    def inner(self) -> str:
+        """The element at the path in it: <sensor> in <gazebo>."""
+        steps = steps_of(self.path)
+        return f"{''.join(f'<{step}>' for step in steps)} in {self.element}" if steps else self.element
+
+    def fits(self, element: Element) -> bool:
+        """Return whether an element has the attributes."""
+        given = ((attribute(element, key), value) for key, value in self.attributes.items())
+        return all(text is not None and is_same(text, value, self.tolerance) for text, value in given)
+
+    def may_fit(self, element: Element, unresolved: Unresolved | None) -> bool:
+        """Return whether an element, of which not all may be known, can have the attributes."""
+        left = {key: value for key, value in self.attributes.items() if unresolved and key not in unresolved.attributes}
+        if unresolved is not None and unresolved.content is not None:
+            left = {key: value for key, value in left.items() if attribute(element, key) is not None}
+        return self._replace(attributes=left).fits(element) if unresolved else self.fits(element)
+
+    def wrong(self, element: Element) -> list[str]:
+        """Return the keys of the values that an element does not have."""
+        return [key for key, value in self.values.items() if not self._has(element, key, value)]
+
+    def _has(self, element: Element, key: str, value: Content) -> bool:
+        texts = [_readable(found.text) for found in texts_at(element, key)]
+        return are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
+
+
+def element_present(
+    robot: Configuration,
+    submission: Submission,
+    *,
+    tag: str,
+    attributes: Mapping[str, Scalar] | None = None,
+    path: str = "",
+    values: Mapping[str, Content] | None = None,
+    tolerance: NonNegative = 1e-6,
+) -> Outcome:
+    """Directly in the robot is an element with the given attributes, and in it one with all of the given values.
+
+    Numbers, and lists of numbers in a text, are compared as numbers; true is equal to 1, and false to 0. Of xacro, the expanded
+    text counts. Comments do not count.
+
+    Args:
+        tag: The name of the element, such as gazebo, ros2_control, transmission or link, with its prefix if it has one.
+        attributes: The attributes of this element, by their names.
+        path: The element in it that is examined: names with slashes between, such as "sensor/camera"; by default, the
+            element itself.
+        values: What the examined element contains. A key is a path in it, which ends with "@name" for an attribute, such as
+            "camera/image/width" or "plugin/@filename". If elements are repeated, one of them must have the value; for a list
+            of values, a different one must have each.
+        tolerance: How far a number may be off, in the number's own unit.
+    """
+    del robot  # the elements are read from the text, but only where there is a robot
+    wanted = _Wanted(tag, attributes or {}, path, values or {}, tolerance)
+    reading = submission.needed_urdf()
+    if reading.root is None:
+        if reading.undetermined:
+            raise NotDecided(reading.undetermined, reading.undetermined)
+        raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
+    outcome = _searched(reading, reading.root, wanted)
+    if outcome.status == "failed":
+        _check_known(reading, reading.root, wanted)
+    return outcome
+
+
+def _searched(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
+    tags = [child for child in root if name_of(child) == wanted.tag]
+    if not tags:
+        return _no_tag(reading, root, wanted)
+    fitting = [element for element in tags if wanted.fits(element)]
+    if not fitting:
+        return _no_attributes(reading, tags, wanted)
+    found = [inner for element in fitting for inner in elements_at(element, steps_of(wanted.path))]
+    if not found:
+        return _no_path(reading, fitting[0], wanted)
+    best = min(found, key=lambda element: len(wanted.wrong(element)))
+    wrong = wanted.wrong(best)
+    if not wrong:
+        return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
+    faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
+    texts = texts_at(best, wrong[0]) or [Found("", best)]
+    at = _place(reading, texts[0].element, texts[0].attribute)
+    return failed(f"{wanted.inner}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at)
+
+
+def _no_tag(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
+    inside = next((element for element in root.iter() if element is not root and name_of(element) == wanted.tag), None)
+    message = f"there is no <{wanted.tag}> directly in <robot>"
+    if inside is not None:
+        above = inside.getparent()
+        detail = f"; there is one in <{name_of(above)}>" if above is not None else ""
+        return failed(message, _place(reading, inside), detail=detail)
+    return failed(message, detail=did_you_mean(wanted.tag, {name_of(element) for element in root}))
+
+
+def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: _Wanted) -> Outcome:
+    given = [{key: attribute(element, key) for key in wanted.attributes} for element in tags]
+    texts = (" ".join(f'{key}="{value}"' for key, value in one.items() if value is not None) for one in given)
+    shown = dict.fromkeys(f"<{wanted.tag} {text}>" if text else f"<{wanted.tag}>" for text in texts)
+    detail = f"; the file has {enumerated([*shown], _MAX_NAMED)}"
+    for key, value in wanted.attributes.items():
+        found = [one[key] or "" for one in given]
+        detail += _case(found, [value]) or did_you_mean(text_of(value), filter(None, found))
+    return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
+
+
+def _no_path(reading: Reading, element: Element, wanted: _Wanted) -> Outcome:
+    steps = steps_of(wanted.path)
+    while steps and not elements_at(element, steps[:-1]):
+        steps.pop()
+    above = elements_at(element, steps[:-1])[0]
+    message = f"there is no {wanted.inner}"
+    return failed(message, _place(reading, above), detail=did_you_mean(steps[-1], {name_of(child) for child in above}))
+
+
+def _fault(key: str, found: Sequence[Found], expected: Content) -> str:
+    """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
+    wanted = expected if isinstance(expected, list) else [expected]
+    should = f"it should be {enumerated([_shown(value) for value in wanted])}"
+    if not found:
+        return f"{key!r} is missing; {should}"
+    texts = [_readable(text.text) for text in found]
+    return f"{key!r} is {enumerated([*map(_shown, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
+
+
+def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
+    """Return a note that a text differs from a wanted one in upper and lower case only."""
+    lower = {text.lower() for text in texts if text not in wanted}
+    is_alike = any(isinstance(value, str) and value not in texts and value.lower() in lower for value in wanted)
+    return " (upper and lower case differ)" if is_alike else ""
+
+
+def _shown(value: Scalar) -> str:
+    text = text_of(value)
+    return text if not isinstance(value, str) or numbers_of(text) else quoted(text)
+
+
+def _readable(text: str) -> str:
+    return _INSTALLED.sub(r"$(find \1)", text)
+
+
+def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:
+    assert reading.root is not None
+    tag = next(index for index, other in enumerate(reading.root.iter()) if other is element)
+    return LazyLocation(reading.source, tag, name)
+
+
+def _check_known(reading: Reading, root: Element, wanted: _Wanted) -> None:
+    """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
+    tags = (child for child in root if name_of(child) == wanted.tag)
+    fitting = (child for child in tags if wanted.may_fit(child, reading.unresolved.get(child)))
+    for element in (root, *(inner for child in fitting for inner in child.iter())):
+        found = reading.unresolved.get(element)
+        for reason in (*found.attributes.values(), found.content) if found is not None else ():
+            if reason:
+                raise NotDecided(reason, reason)

@@ -1,0 +1,133 @@
+"""The file that a <mesh> names: the end of its path, and whether a build of the submission puts it there."""
+
+import posixpath
+import re
+from typing import NamedTuple
+
+from grader.errors import NotDecided
+from grader.names import closest
+from grader.package.cmake import read_cmake
+from grader.package.package import Package
+from grader.submission.submission import Submission
+from grader.text import quoted
+
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL)  # one letter is a disk of Windows
+_ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
+_ONE_MACHINE = "exists on one machine only; use package://"
+_BACKSLASH = "has a \\ in its path; separate folders by /"
+_WEB = ("http", "https", "ftp")
+
+
+class MeshFile(NamedTuple):
+    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does not find such a name.
+
+    `doubt` says why it cannot be determined whether it does.
+    """
+
+    path: str
+    package: str = ""
+    fault: str = ""
+    doubt: str = ""
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """The package, the folders and the name."""
+        whole = posixpath.normpath(f"{self.package}/{self.path}".replace("\\", "/"))
+        return tuple(step for step in whole.split("/") if step)
+
+    def ends_in(self, other: "MeshFile", *, any_case: bool = False) -> bool:
+        """Return whether the path ends in all the steps of another one."""
+        steps, end = self.steps, other.steps
+        if any_case:
+            steps, end = (tuple(map(str.casefold, path)) for path in (steps, end))
+        return steps[-len(end) :] == end != ()
+
+
+def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
+    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been expanded in it."""
+    found = _SCHEME.fullmatch(filename)
+    scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
+    fault = _BACKSLASH if "\\" in filename else ""
+    shared = _found_by_xacro(rest) if is_expanded and scheme in ("", "file") else None
+    if shared is not None:
+        return MeshFile(shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)")
+    if scheme == "package" and slashes:
+        package, _, path = rest.partition("/")
+        return MeshFile(path, package, fault)
+    if not scheme:
+        is_absolute = _ABSOLUTE.match(filename) is not None
+        return MeshFile(rest, "", f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault)
+    if scheme == "file":
+        return MeshFile(rest, "", f"is at a file:// path, which {_ONE_MACHINE}")
+    if scheme.lower() in ("package", "file") or not slashes:
+        return MeshFile(rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
+    if scheme in _WEB:
+        return MeshFile(rest, "", "", "is on the web, which the grader does not read")
+    return MeshFile(rest, "", "", f"is at a {scheme}:// path, which not every program finds")
+
+
+def why_not_found(mesh: MeshFile, submission: Submission) -> str:
+    """Return why ROS 2 does not find the file of a package after a build; empty if it does, or if no package was submitted.
+
+    Raises NotDecided where that cannot be determined statically.
+    """
+    if not mesh.package or not submission.packages:
+        return ""
+    package = submission.packages[0].find(mesh.package)
+    path = posixpath.normpath(mesh.path)
+    if package is None:
+        return _without_package(mesh.package, path, submission)
+    if path.startswith("../") or path in ("..", "."):
+        return "is outside of its package"
+    name = posixpath.basename(path)
+    held = [file for file in package.tree.files if posixpath.basename(file) == name]
+    if not held:
+        if submission.tree.unopened:
+            raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
+        similar = closest(name, map(posixpath.basename, package.tree.files))
+        return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
+    return _not_installed(package, f"share/{mesh.package}/{path}", held)
+
+
+def _found_by_xacro(path: str) -> tuple[str, str] | None:
+    """Return the package and the path in it where $(find ...) has given a path."""
+    from grader.xacro.texts import INSTALLED  # late: most URDFs are no xacro
+
+    found = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
+    return (found[1], found[2]) if found is not None else None
+
+
+def _without_package(name: str, path: str, submission: Submission) -> str:
+    """Return that no package of the submission has a name; raise NotDecided if another source may have one."""
+    holding = [package.name for package in submission.packages if path in package.tree.files]
+    meant = closest(name, [package.name for package in submission.packages]) or next(iter(holding), None)
+    if meant is None:
+        reason = "a mesh is in a package that is not part of the submission"
+        raise NotDecided(f"the package {quoted(name)} is not part of the submission", reason)
+    return f"names the package {quoted(name)}; the submission has {quoted(meant)}"
+
+
+def _not_installed(package: Package, target: str, held: list[str]) -> str:
+    """Return why a build does not install a file of a package at a path; empty if it does."""
+    setup = package.setup
+    if package.is_cmake:
+        cmake = read_cmake(package.tree)
+        installed, entry = cmake.installed, "install(DIRECTORY ...) in CMakeLists.txt"
+        doubt = "" if cmake.is_certain else "cannot determine statically what CMakeLists.txt installs"
+    elif setup is None:
+        return "is not installed: its package has no setup.py"
+    elif setup.fault is not None:
+        if setup.fault.sure:
+            return "is not installed: Python cannot read setup.py"
+        installed, entry, doubt = {}, "", f"setup.py cannot be read ({setup.fault.message})"
+    else:
+        installed, entry = setup.installed(), "data_files in setup.py"
+        doubt = "cannot determine statically what setup.py installs" if setup.unknown else ""
+    if target in installed:
+        return ""
+    if doubt:
+        raise NotDecided(doubt, doubt)
+    elsewhere = next((path for path, source in installed.items() if source in held), None)
+    if elsewhere is not None:
+        return f"is looked for at {target}, but a build installs it as {elsewhere}"
+    return f"is not installed: add {held[0]} to {entry}, for {posixpath.dirname(target)}"

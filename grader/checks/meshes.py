@@ -1,0 +1,143 @@
+"""Checks of the meshes that a link shows: which file, where a build puts it, its scale and its pose. No mesh is opened."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from grader.checks.mesh_files import MeshFile, mesh_file, why_not_found
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, measured_point, passed, pending, place
+from grader.checks.toml_types import NonNegative
+from grader.checks.visuals import mesh_name, shape_name, visual_pose, visuals
+from grader.errors import MissingElement, NotDecided
+from grader.robot.kinematics import Configuration
+from grader.robot.likeness import turn_between
+from grader.robot.model import Mesh, Visual
+from grader.robot.transforms import Vector, rotation_from_rpy
+from grader.source import LazyLocation
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from grader.text import quoted
+
+_ANGLE = 1.0  # degrees that a mesh may be turned
+_BEST_FIRST = ("passed", "pending", "failed")
+
+
+class _ShownMesh(NamedTuple):
+    """A visual that shows a mesh, and what the name of its file means."""
+
+    link: str
+    visual: Visual
+    mesh: Mesh
+    file: MeshFile
+
+
+class _Pose(NamedTuple):
+    """The scale and the pose that a mesh should have in a frame; None where any will do."""
+
+    frame: str
+    scale: Vector | None
+    xyz: Vector | None
+    rpy: Vector | None
+    tolerance: float
+
+
+def shows_mesh(
+    robot: Configuration,
+    submission: Submission,
+    *,
+    link: str,
+    file: str,
+    scale: Vector | None = None,
+    xyz: Vector | None = None,
+    rpy: Vector | None = None,
+    tolerance: NonNegative = 0.002,
+    relative_to: str = "",
+) -> Outcome:
+    """A link shows a mesh file, which ROS 2 finds on every machine.
+
+    Any visual of the link may be the mesh; the file is not opened. Absolute and `file://` paths fail. The file of a
+    `package://` path must be in the submission where a build of its package installs it, if a package was submitted.
+    `file://$(find my_robot)` in xacro means the same.
+
+    Args:
+        link: The link that is examined.
+        file: The end of the path of the mesh, in whole folders and with the name; upper and lower case differ.
+        scale: The scale along x, y and z.
+        xyz: Where the origin of the mesh is, in metres.
+        rpy: How the mesh is turned, in radians about fixed axes, within 1 degree.
+        tolerance: How far each coordinate may be off, in metres, and each scale, as a share of itself.
+        relative_to: The link in whose frame the pose is, by default the link itself.
+    """
+    shown = visuals(robot, link)
+    is_expanded = isinstance(submission.urdf, Read) and submission.urdf.is_expanded
+    meshes = [
+        _ShownMesh(link, visual, visual.geometry, mesh_file(visual.geometry.filename, is_expanded=is_expanded))
+        for visual in shown
+        if isinstance(visual.geometry, Mesh)
+    ]
+    if not meshes:
+        message, at = (
+            f"{link!r} shows {shape_name(shown[0].geometry)}; it should show a mesh",
+            shown[0].geometry.location,
+        )
+        raise MissingElement("mesh", link, message=message, location=place(at))
+    named = [it for it in meshes if it.file.ends_in(mesh_file(file))]
+    if not named:
+        return _another_file(meshes, file)
+    wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
+    outcomes = [_examined(robot, submission, it, wanted) for it in named]
+    return min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
+
+
+def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
+    """Return the failure of a link that shows other meshes only."""
+    wanted = mesh_file(file)
+    alike = [it for it in meshes if it.file.ends_in(wanted, any_case=True)]
+    it = (alike or meshes)[0]
+    reason = "; upper and lower case differ" if alike else ""
+    message = f"{it.link!r} shows the mesh {mesh_name(it.mesh)}"
+    return failed(f"{message}; its path should end in {quoted(file)}{reason}", place(it.mesh.location, "filename"))
+
+
+def _examined(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
+    """Return the outcome for one mesh of the right name."""
+    name, fault, doubt, cause = mesh_name(it.mesh), it.file.fault, it.file.doubt, it.file.doubt
+    try:
+        fault = fault or why_not_found(it.file, submission)
+    except NotDecided as reason:
+        doubt, cause = str(reason), reason.cause
+    wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
+    wrong += _differences(robot, it, wanted)
+    if wrong:
+        return failed("; ".join(text for text, _ in wrong), wrong[0][1], detail=f" (mesh {name})")
+    if doubt:
+        text = f"whether ROS 2 finds the mesh {name} of {it.link!r} cannot be determined: {doubt}; needs manual grading"
+        return pending(text, cause)
+    return passed(f"{it.link!r} shows the mesh {name}")
+
+
+def _differences(robot: Configuration, it: _ShownMesh, wanted: _Pose) -> Iterator[tuple[str, LazyLocation | None]]:
+    """Yield what is wrong with the scale and the pose of a mesh, and where."""
+    scale = it.mesh.scale
+    if wanted.scale is not None and not all(map(_is_scaled, scale, wanted.scale, [wanted.tolerance] * 3)):
+        yield f"its scale is {_plain(scale)}; it should be {_plain(wanted.scale)}", place(it.mesh.location, "scale")
+    if wanted.xyz is None and wanted.rpy is None:
+        return
+    pose = visual_pose(robot, it.link, it.visual, wanted.frame)
+    origin = it.visual.origin.location
+    if wanted.xyz is not None:
+        what = f"the mesh of {it.link!r}"
+        placed = measured_point(what, pose.translation, wanted.xyz, wanted.tolerance, wanted.frame)
+        if placed.status == "failed":
+            yield placed.message, place(origin, "xyz") or place(it.visual.location)
+    if wanted.rpy is not None:
+        angle = turn_between(pose.rotation, rotation_from_rpy(wanted.rpy))
+        if not angle <= _ANGLE + SLACK:
+            yield f"its orientation is {in_degrees(angle)} off", place(origin, "rpy") or place(it.visual.location)
+
+
+def _is_scaled(actual: float, expected: float, tolerance: float) -> bool:
+    return abs(actual - expected) <= (tolerance + SLACK) * abs(expected)
+
+
+def _plain(scale: Vector) -> str:
+    return " ".join(f"{value:.6g}" for value in scale)

@@ -1,0 +1,53 @@
+"""The check of the problems that the reader finds in a URDF, and in the xacro that it is written in."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from grader.checks.outcome import Outcome, failed, passed, pending
+from grader.checks.toml_types import Constraint
+from grader.errors import MissingElement
+from grader.problems import Problem
+from grader.robot.catalogue import CATALOGUE, UNLISTED
+from grader.robot.reader import Reading
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from grader.text import counted, enumerated
+from grader.xacro.catalogue import XACRO_CATALOGUE
+
+_CODES = [kind.code for kind in (*CATALOGUE, *XACRO_CATALOGUE)]
+_KNOWN = Constraint(
+    "codes of problems of a URDF or of xacro, such as URDF012 (`grader explain CODE` describes one)",
+    lambda codes: set(codes) <= set(_CODES),
+    {"items": {"enum": _CODES}},
+)
+Codes = Annotated[list[str], _KNOWN]
+_MAX_NAMED = 5  # codes in a message
+
+
+def without_problems(urdf: Reading, submission: Submission, *, problems: Codes) -> Outcome:
+    """The URDF has none of these problems.
+
+    What cannot be determined statically needs manual grading.
+
+    Args:
+        problems: The codes of the problems, such as "URDF051" or "XACRO002".
+    """
+    if isinstance(submission.urdf, Read):
+        found = [problem for problem in submission.urdf.problems if problem.code in problems]
+        certain = [problem for problem in found if problem.kind.effect != "undetermined"]
+        if certain:
+            return _problem(certain)
+        open_ones = [it for it in submission.urdf.problems if it.kind.effect == "undetermined" or it.kind is UNLISTED]
+        if open_ones:
+            first = open_ones[0]
+            return pending(f"{first.message}; needs manual grading", first.message, first.location)
+    if urdf.robot is None:
+        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
+    return passed(f"the URDF has none of the problems {enumerated(problems, _MAX_NAMED)}")
+
+
+def _problem(found: Sequence[Problem]) -> Outcome:
+    first, more = found[0], len(found) - 1
+    others = f" (and {counted(more, 'more such problem')})" if more else ""
+    outcome = failed(f"{first.code}: {first.message}{others}", first.location, problem=first.message)
+    return outcome._replace(mistake=f"{first.code}: {first.kind.title}")

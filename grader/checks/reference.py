@@ -1,0 +1,130 @@
+"""Checks that compare a robot with that of the rubric's reference solution."""
+
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+from grader.checks.motion_comparison import MotionComparison
+from grader.checks.outcome import Outcome, failed, place
+from grader.checks.toml_types import Constraint, NonNegative
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.names import did_you_mean
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint
+from grader.robot.pairing import RobotPair, movers
+from grader.robot.sampling import SINGLE
+from grader.robot.selectors import selected_link
+from grader.text import counted, enumerated, quoted
+
+Match = Literal["name", "order"]
+Samples = Annotated[
+    int, Constraint("from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000})
+]
+_MAX_NAMED = 8  # joints in a message
+
+
+def kinematics_match_reference(
+    robot: Configuration,
+    reference: Configuration,
+    *,
+    links: list[str],
+    samples: Samples = 100,
+    tolerance: NonNegative = 0.002,
+    angle: NonNegative = 1.0,
+    match: Match = "name",
+    relative_to: str = "",
+) -> Outcome:
+    """The links move as those of the reference solution when its joints move within their limits.
+
+    Compared are the pose with all joints at 0, those with one joint at an end of its range or between, and random ones, which
+    are always the same. Mimic joints follow. A joint that moves a link, and has no counterpart in the reference, fails.
+
+    Args:
+        links: The links whose motion is compared.
+        samples: The number of random positions of all joints.
+        tolerance: How far the origin of a link may be off, in metres.
+        angle: How far the orientation of a link may be off, in degrees.
+        match: How joints are paired: by their names, or in their order along the chains to the links.
+        relative_to: The link in whose frame poses are compared; by default the root of the reference, or that of the
+            robot if it has no link of this name.
+    """
+    bases = _bases(robot, reference, links, relative_to)
+    pairs = [(_selected(robot, link), _of_reference(reference, link)) for link in links]
+    joints = _paired(robot, reference, bases, pairs, match)
+    if isinstance(joints, Outcome):
+        return joints
+    pair = RobotPair((robot, reference), bases, pairs, joints, tolerance, angle)
+    return MotionComparison(pair, samples).outcome()
+
+
+def _selected(robot: Configuration, link: str) -> str:
+    name = selected_link(robot.robot, robot.parent_joints, link)
+    robot.link(name)
+    return name
+
+
+def _of_reference(reference: Configuration, link: str) -> str:
+    """Return the name of a link of the reference; raises InputError, because no student can do anything about it."""
+    try:
+        return _selected(reference, link)
+    except (MissingElement, NotDecided) as error:
+        raise InputError(f"the reference cannot be compared with: {error}") from None
+
+
+def _bases(robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str) -> tuple[str, str]:
+    """Return the links in whose frames the poses of the robot and of the reference are compared."""
+    if relative_to:
+        return _selected(robot, relative_to), _of_reference(reference, relative_to)
+    root = reference.root_of(_of_reference(reference, links[0]))
+    return root if robot.robot.has_link(root) else _selected(robot, "@root"), root
+
+
+def _paired(
+    robot: Configuration,
+    reference: Configuration,
+    bases: tuple[str, str],
+    pairs: Sequence[tuple[str, str]],
+    match: Match,
+) -> list[tuple[Joint, Joint]] | Outcome:
+    """Return the joints of the robot that move links, each with that of the reference, or the failure to pair them."""
+    own = movers(robot, bases[0], [link for link, _ in pairs])
+    others = movers(reference, bases[1], [link for _, link in pairs])
+    shown = enumerated([quoted(link) for link, _ in pairs], _MAX_NAMED)
+    if match == "order":
+        if len(own) != len(others):
+            message = f"{counted(len(own), 'joint')} on the chains to {shown}; there should be {len(others)}"
+            return failed(message, detail=f" (joints {_named(own) or 'none'})")
+        joints = [*zip(own.values(), others.values(), strict=True)]
+    else:
+        _check_names(robot, [*others])
+        joints = [(robot.joint(name), joint) for name, joint in others.items()]
+        extra = [name for name in own if name not in others]
+        if extra:
+            message = f"a joint on the chains to {shown} has no counterpart in the reference"
+            return failed(message, own[extra[0]].location, detail=f" (joint {quoted(extra[0])})")
+    return next(filter(None, (_wrong_type(*found) for found in joints)), joints)
+
+
+def _named(names: Sequence[str] | dict[str, Joint]) -> str:
+    return enumerated([*map(quoted, names)], _MAX_NAMED)
+
+
+def _check_names(robot: Configuration, names: Sequence[str]) -> None:
+    """Raise MissingElement for joints that are not there."""
+    missing = [name for name in names if not robot.robot.has_joint(name)]
+    if not missing:
+        return
+    robot.robot.check_complete()
+    known = tuple(joint.name for joint in robot.robot.joints)
+    message = f"there is no joint {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no joint')}"
+    guess = did_you_mean(missing[0], known) or f"; the file has: {_named(known) or 'none'}"
+    raise MissingElement("joint", missing[0], known, message=message, detail=guess)
+
+
+def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
+    """Return the failure of a joint that cannot move as its counterpart does: it should turn, and slides."""
+    if joint.type == other.type or {joint.type, other.type} <= {"revolute", "continuous"} or other.type not in SINGLE:
+        return None
+    if "@type" in joint.unresolved:
+        joint.unresolved["@type"].check()
+    message = f"the joint is {joint.type or 'of no type'}; it should be {other.type}"
+    return failed(message, place(joint.location, "type"), detail=f" (joint {quoted(joint.name)})")

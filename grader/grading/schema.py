@@ -1,0 +1,72 @@
+"""The JSON Schema of a rubric, for editors: its keys, and the arguments of every installed check."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from grader.checks.registry import Check, check_names, find_check
+from grader.checks.toml_types import TomlType, described
+from grader.errors import InputError
+from grader.grading.keys import CRITERION, DEFAULTS, RUBRIC, KeyTable
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
+_Schema = dict[str, Any]
+
+
+def rubric_schema() -> _Schema:
+    """Return the JSON Schema of a rubric, with the arguments of every check, also of installed plug-ins."""
+    named = {name: _usable(name) for name in check_names()}
+    checks = [check for check in named.values() if check is not None]
+    facts = [check.documentation.fact if check is not None else "" for check in named.values()]
+    schema, criterion = RUBRIC.schema, CRITERION.schema
+    for row in (criterion, criterion["properties"]["carried"]):
+        row["properties"]["check"] |= {"enum": list(named), "x-taplo": {"docs": {"enumValues": facts}}}
+        # In a row with allOf, taplo completes no key.
+        row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
+    criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
+    schema["properties"]["criterion"]["items"] = criterion
+    defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
+    schema["properties"]["defaults"]["properties"]["with"] |= {"properties": defaults, "additionalProperties": False}
+    definitions = {check.name: _arguments(check) for check in checks}
+    definitions["arguments"] = {"allOf": [_if_check(check, {"$ref": f"#/$defs/{check.name}"}) for check in checks]}
+    definitions |= _complete(checks)
+    # Only the loader knows which of the missing keys the defaults give.
+    complete = {"properties": {"criterion": {"items": {"$ref": "#/$defs/complete"}}}}
+    schema |= {"if": {"not": {"required": ["defaults"]}}, "then": complete}
+    return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
+
+
+def _usable(name: str) -> Check | None:
+    try:
+        return find_check(name)
+    except InputError:  # in another package: a rubric that names it is refused
+        return None
+
+
+def _complete(checks: Iterable[Check]) -> _Schema:
+    """Return definitions of what else is required in a rubric without defaults: of its criteria, and of what they carry."""
+    needed = [(check, [name for name, it in check.parameters.items() if it.required]) for check in checks]
+    rules = [_if_check(check, {"required": names}) for check, names in needed if names]
+    of_check = {"$ref": "#/$defs/needed"}
+    required = [key for key in CRITERION.schema["required"] if key in DEFAULTS.keys]
+    complete = {**of_check, "required": required, "properties": {"carried": of_check}}
+    return {"needed": {"allOf": rules}, "complete": complete}
+
+
+def _if_check(check: Check, arguments: _Schema) -> _Schema:
+    """Return the rule that the arguments of a check, where a table names it, meet a schema."""
+    then: _Schema = {"properties": {"with": arguments}}
+    if "required" in arguments:
+        then["required"] = ["with"]
+    return {"if": {"properties": {"check": {"const": check.name}}, "required": ["check"]}, "then": then}
+
+
+def _arguments(check: Check) -> _Schema:
+    """Return the schema of the arguments of a check, none of which is required."""
+    return KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}).schema
+
+
+def _argument(check: Check, name: str) -> TomlType:
+    """Return the type of an argument with its meaning and its default."""
+    parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
+    default = {} if parameter.required else {"default": parameter.default}
+    return described(parameter.type, meaning, **default)

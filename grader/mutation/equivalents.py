@@ -1,0 +1,146 @@
+"""Equivalents of a reference: the same robot in another file. Each must keep full marks."""
+
+from collections.abc import Callable, Iterator, Mapping
+from random import Random
+from typing import Any, NamedTuple
+
+from grader.grading.rubric import Criterion, Rubric
+from grader.mutation import as_xacro, rewritings
+from grader.mutation.references import names_in
+from grader.mutation.rewritings import Step, Surroundings, words_of_foreign
+from grader.mutation.style import Style
+from grader.mutation.trees import Element, copied
+from grader.robot.model import Robot
+
+_STEPS: Mapping[str, Step] = {
+    "order of elements": rewritings.shuffle,
+    "fixed joints split": rewritings.split_joints,
+    "frames moved": rewritings.move_frames,
+    "full turns": rewritings.turn_fully,
+    "axes scaled": rewritings.scale_axes,
+    "renamed": rewritings.rename,
+}
+_AS_XACRO: Mapping[str, Callable[[Random, str], str | None]] = {
+    "xacro properties": as_xacro.with_properties,
+    "xacro macro": as_xacro.with_macro,
+}
+_SPELLING, _LAYOUT, SEVERAL = "spelling of numbers", "layout of the text", "several at once"
+FAMILIES = (*_STEPS, _SPELLING, _LAYOUT, *_AS_XACRO, SEVERAL)
+_OF_EACH, _OF_SEVERAL = 4, 12  # rewritings of a family
+_MOST_STEPS = 4
+
+_POSES = ("fixed joints split", "frames moved", "full turns", "axes scaled")
+_OWN_TAGS = ("link", "joint", "material")
+
+
+class Equivalent(NamedTuple):
+    """Another text for the robot: its families, in words, whether it is xacro, and the text with only its layout changed."""
+
+    family: str
+    name: str
+    text: str
+    before: str
+    is_xacro: bool
+
+
+def _for_counts(arguments: Mapping[str, Any]) -> tuple[str, ...]:
+    """Splitting a joint adds a link and a fixed joint."""
+    return (
+        ("fixed joints split",) if any(arguments.get(key) is not None for key in ("links", "joints", "fixed")) else ()
+    )
+
+
+def _for_kinematics(arguments: Mapping[str, Any]) -> tuple[str, ...]:
+    """The joints are paired by name, or by their order in the file."""
+    return ("order of elements",) if arguments.get("match") == "order" else ("renamed",)
+
+
+def _for_elements(arguments: Mapping[str, Any]) -> tuple[str, ...]:
+    """The text of an element that ROS 2 reads is compared, not what it means."""
+    return (*_POSES, "renamed") if arguments.get("tag") in _OWN_TAGS else ()
+
+
+# The families that a check forbids. Names in the arguments of any check are renamed nowhere, and their frames are not moved. Problems
+# that `without_problems` forbids are looked for in each rewriting, and `xacro_uses` is not asked about any.
+FORBIDDEN: Mapping[str, Callable[[Mapping[str, Any]], tuple[str, ...]]] = {
+    "counts": _for_counts,
+    "kinematics_match_reference": _for_kinematics,
+    "element_present": _for_elements,
+}
+UNASKED = ("xacro_uses",)  # checks of the text itself
+
+
+def forbidden(rubric: Rubric) -> dict[str, str]:
+    """Return the families that a criterion forbids, with its id."""
+    found: dict[str, str] = {}
+    for criterion in rubric.criteria:
+        for family in _forbidden_by(criterion):
+            found.setdefault(family, criterion.id)
+    return found
+
+
+def _forbidden_by(criterion: Criterion) -> tuple[str, ...]:
+    rule = FORBIDDEN.get(criterion.check.name)
+    return rule(criterion.arguments) if rule is not None else ()
+
+
+class Equivalents:
+    """The rewritings of a robot that a rubric does not forbid; those that `kept` names are renamed nowhere."""
+
+    def __init__(self, rubric: Rubric, root: Element, robot: Robot, kept: set[str], seed: int) -> None:
+        self._root, self._robot, self._seed = root, robot, seed
+        self._forbidden = forbidden(rubric)
+        self._named = kept | words_of_foreign(root)
+        self._is_structural = any(name.startswith("@") for name in names_in(rubric))
+
+    def all(self) -> Iterator[Equivalent]:
+        """Yield the rewritings, of each family some."""
+        for family in FAMILIES:
+            for number in range(_OF_SEVERAL if family == SEVERAL else _OF_EACH):
+                found = self._made(family, number) if family not in self._forbidden else None
+                if found is not None:
+                    yield found
+
+    def _made(self, family: str, number: int) -> Equivalent | None:
+        random = Random(f"{self._seed} {family} {number}")
+        tree = copied(self._root)
+        before = _plain(tree)
+        names = [family] if family != SEVERAL else self._several(random)
+        done = [name for name in names if name not in _STEPS or _STEPS[name](random, tree, self._around)]
+        text = self._styled(random, tree, done)
+        for name in [name for name in done if name in _AS_XACRO]:
+            rewritten = _AS_XACRO[name](random, text)
+            done = done if rewritten is not None else [other for other in done if other != name]
+            text = rewritten if rewritten is not None else text
+        if not done:
+            return None
+        name = f"{family} {number + 1}" + (f": {', '.join(done)}" if family == SEVERAL else "")
+        return Equivalent(family, name, text, before, any(name in _AS_XACRO for name in done))
+
+    def _several(self, random: Random) -> list[str]:
+        steps = [name for name in _STEPS if name not in self._forbidden]
+        chosen = random.sample(steps, min(len(steps), random.randint(2, _MOST_STEPS)))
+        others = [name for name in (_SPELLING, _LAYOUT) if random.random() < 0.5]
+        return chosen + others + ([random.choice(list(_AS_XACRO))] if random.random() < 0.3 else [])
+
+    def _styled(self, random: Random, tree: Element, families: list[str]) -> str:
+        if _LAYOUT in families:
+            blanks = ("", " ", "\n", "\n\n    ")
+            return Style(random, blanks, "\"'", _SPELLING in families, comments=True, orders=True).text(tree)
+        return Style(random, numbers=_SPELLING in families).text(tree)
+
+    @property
+    def _around(self) -> Surroundings:
+        return Surroundings(self._named, self._may_move)
+
+    def _may_move(self, link: str) -> bool:
+        """Return whether nothing speaks of the frame of a link; @root, @tip and @moved:2 name links by structure."""
+        parents = [joint for joint in self._robot.joints if joint.child == link]
+        if link in self._named or len(parents) != 1:
+            return False
+        is_tip = all(joint.parent != link for joint in self._robot.joints)
+        return not self._is_structural or (parents[0].type == "fixed" and not is_tip)
+
+
+def _plain(tree: Element) -> str:
+    return Style(Random(0)).text(tree)

@@ -1,0 +1,69 @@
+"""The margin of each tolerance: how far the reference is from it, and which deviations of mutants it tells apart."""
+
+from math import atan2, degrees, hypot
+from typing import NamedTuple
+
+from grader.checks.outcome import SLACK, Outcome, Value
+from grader.grading.report import Result
+from grader.robot.transforms import cross, dot, unit
+
+_NEAR = 0.5  # of the tolerance: a reference that is farther off is near the limit
+_NOTHING = 1e-9
+
+
+class Margin(NamedTuple):
+    """The tolerance of a criterion, and deviations in its unit: of the reference, the smallest that failed, the largest that passed.
+
+    `caught` and `passed` are None where no mutant had such a deviation.
+    """
+
+    criterion: str
+    unit: str
+    tolerance: float
+    reference: float
+    caught: float | None = None
+    passed: float | None = None
+
+    @property
+    def is_near(self) -> bool:
+        """Return whether the reference uses more than half of the tolerance."""
+        return self.reference > max(_NEAR * self.tolerance, _NOTHING)
+
+    def with_mutant(self, result: Result) -> "Margin":
+        """Return the margin with the result of a mutant; one that failed or passed for another reason changes nothing."""
+        off = deviation(result.outcome)
+        if off is None or (result.outcome.unit or "") != self.unit:
+            return self
+        is_within = off <= self.tolerance + SLACK
+        if result.outcome.status == "failed" and not is_within:
+            return self._replace(caught=min(off, self.caught if self.caught is not None else off))
+        if result.outcome.status == "passed" and is_within:
+            return self._replace(passed=max(off, self.passed if self.passed is not None else off))
+        return self
+
+
+def margin_of(result: Result) -> Margin | None:
+    """Return the margin of a criterion of the reference; None where its outcome is no deviation within a tolerance."""
+    outcome = result.outcome
+    off = deviation(outcome)
+    if off is None or outcome.tolerance is None or outcome.status != "passed" or off > outcome.tolerance + SLACK:
+        return None
+    return Margin(result.criterion.id, outcome.unit or "", outcome.tolerance, off)
+
+
+def deviation(outcome: Outcome) -> float | None:
+    """Return how far the measured value is from the expected one: the largest difference of several numbers, or the angle in degrees."""
+    measured, expected = _numbers(outcome.measured), _numbers(outcome.expected)
+    if not measured or not expected or len(expected) not in (1, len(measured)):
+        return None
+    if outcome.unit == "deg" and len(measured) == len(expected) == 3:  # directions
+        one, other = unit((measured[0], measured[1], measured[2])), unit((expected[0], expected[1], expected[2]))
+        return degrees(atan2(hypot(*cross(one, other)), dot(one, other))) if one and other else None
+    pairs = zip(measured, expected if len(expected) > 1 else expected * len(measured), strict=True)
+    return max(abs(one - other) for one, other in pairs)
+
+
+def _numbers(value: Value) -> tuple[float, ...]:
+    values = value if isinstance(value, tuple) else (value,)
+    numbers = tuple(one for one in values if isinstance(one, int | float) and not isinstance(one, bool))
+    return numbers if len(numbers) == len(values) else ()

@@ -1,0 +1,175 @@
+"""Mutants of a URDF or xacro text: every single edit that a family of mistakes allows."""
+
+import re
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+from math import degrees
+from typing import NamedTuple
+
+from grader.mutation.elements import Attribute, Element, elements, names, text_of
+
+_NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_NAMES = ("name", "link", "joint", "reference")
+_UNTOUCHED = ("version", "encoding", "params")
+_TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", "Fixed", "rotating")
+_COMPONENTS = {
+    **dict.fromkeys(("xyz", "size", "scale"), ("x", "y", "z")),
+    "rpy": ("roll", "pitch", "yaw"),
+    "rgba": ("red", "green", "blue", "alpha"),
+}
+
+
+class Mutant(NamedTuple):
+    """One file of a solution with one mistake.
+
+    `id` is stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`. From `start` to `end`
+    the text becomes `new`; a file that is `renamed` gets this path, and one that `is_deleted` is gone. `tags` are those of the
+    element that is changed, from the root, and the attribute with an @.
+    """
+
+    id: str
+    family: str
+    path: str
+    line: int
+    start: int = 0
+    end: int = 0
+    new: str = ""
+    renamed: str = ""
+    is_deleted: bool = False
+    tags: tuple[str, ...] = ()
+
+    def applied(self, text: str) -> str:
+        """Return the text of its file with the mistake."""
+        return text[: self.start] + self.new + text[self.end :]
+
+
+class Change(NamedTuple):
+    """A change of a text between two offsets: its family, its place by names, and what distinguishes it from others there."""
+
+    family: str
+    label: str
+    start: int
+    end: int
+    new: str
+    detail: str = ""
+    tags: tuple[str, ...] = ()
+
+
+def mutants(text: str, path: str = "") -> Iterator[Mutant]:
+    """Yield every mutant of a URDF or xacro once."""
+    return as_mutants(text, path, _changes(text))
+
+
+def as_mutants(text: str, path: str, changes: Iterable[Change]) -> Iterator[Mutant]:
+    """Yield the mutants that changes of a file make, each once and with an id of its own."""
+    seen: set[tuple[int, int, str]] = set()
+    ids: dict[str, int] = {}
+    for change in changes:
+        key = (change.start, change.end, change.new)
+        if key in seen or text[change.start : change.end] == change.new:
+            continue
+        seen.add(key)
+        name = f"{change.family}: {change.label}{f' -> {change.detail}' if change.detail else ''}"
+        ids[name] = ids.get(name, 0) + 1
+        name += f" ({ids[name]})" if ids[name] > 1 else ""
+        line = text.count("\n", 0, change.start) + 1
+        yield Mutant(name, change.family, path, line, *key, tags=change.tags)
+
+
+def _changes(text: str) -> Iterator[Change]:
+    found = elements(text)
+    known = {tag: names(text, found, tag) for tag in ("link", "joint", "material")}
+    for element in found:
+        for attribute in element.attributes:
+            yield from _of_attribute(text, element, attribute, known)
+        span = text_of(text, element)
+        if span is not None and element.parent >= 0:
+            yield from of_value(text, element.label, span, "", (*element.tags, "@"))
+        if element.parent >= 0:
+            yield from _of_element(text, element, found[element.parent])
+
+
+def _of_attribute(text: str, element: Element, attribute: Attribute, known: dict[str, list[str]]) -> Iterator[Change]:
+    name, span = attribute.name, attribute.value
+    label, tags = f"{element.label} {name}", (*element.tags, f"@{name}")
+    yield Change("attribute deleted", label, attribute.start - 1, attribute.end, "", tags=tags)
+    name_end = attribute.start + len(name)
+    yield Change("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags=tags)
+    if name in _NAMES:
+        kind = element.tag if element.tag in known else name if name in known else "link"
+        yield from of_name(text, label, span, known[kind], tags)
+    elif name == "type" and element.tag == "joint":
+        yield from (Change("type", label, *span, other, other, tags) for other in _TYPES)
+    elif name not in _UNTOUCHED and not name.startswith("xmlns"):
+        yield from of_value(text, element.label, span, name, tags)
+    if name == "lower":
+        upper = next((other for other in element.attributes if other.name == "upper"), None)
+        if upper is not None:
+            first, last = sorted((span, upper.value))
+            swapped = text[slice(*last)] + text[first[1] : last[0]] + text[slice(*first)]
+            yield Change("limits exchanged", element.label, first[0], last[1], swapped, tags=tags)
+
+
+def of_name(
+    text: str, label: str, span: tuple[int, int], others: Iterable[str], tags: tuple[str, ...] = ()
+) -> Iterator[Change]:
+    """Yield changes of a name: misspelt, in other case, or another name that exists."""
+    name = text[slice(*span)]
+    yield Change("name misspelt", label, *span, misspelt(name), tags=tags)
+    yield Change("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags=tags)
+    family = "material exchanged" if "material" in tags[-2:] else "name exchanged"
+    yield from (Change(family, label, *span, other, other, tags) for other in others if other != name)
+
+
+def of_value(text: str, label: str, span: tuple[int, int], name: str, tags: tuple[str, ...] = ()) -> Iterator[Change]:
+    """Yield changes of a value: of each number in it, else of the text."""
+    start, end = span
+    pieces = [(start + found.start(), start + found.end()) for found in _NUMBER.finditer(text[start:end])]
+    label = f"{label} {name}".rstrip()
+    parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
+    for part, (low, high) in zip(parts, pieces, strict=True):
+        for family, number in _altered(float(text[low:high])):
+            yield Change(family, part, low, high, f"{number:.6g}", tags=tags)
+    for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
+        swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
+        yield Change("number exchanged", part, low, high, swapped, tags=tags)
+    if not pieces and text[start:end].strip():
+        yield Change("text misspelt", label, start, end, misspelt(text[start:end]), tags=tags)
+        if name == "filename":
+            yield Change("text in other case", label, start, end, text[start:end].swapcase(), tags=tags)
+
+
+def _parts(name: str, count: int) -> list[str]:
+    """Return what tells the numbers of a value apart: .x, .y and .z of an xyz."""
+    known = _COMPONENTS.get(name, ())
+    return [""] if count == 1 else [f".{part}" for part in (known if len(known) == count else range(1, count + 1))]
+
+
+def _altered(value: float) -> Iterable[tuple[str, float]]:
+    return (
+        ("number negated", -value),
+        ("number x10", value * 10),
+        ("number /10", value / 10),
+        ("number +0.05", value + 0.05),
+        ("number -0.05", value - 0.05),
+        ("number zero", 0.0),
+        ("number halved", value / 2),
+        ("number doubled", value * 2),
+        ("number in degrees", degrees(value)),
+    )
+
+
+def _of_element(text: str, element: Element, parent: Element) -> Iterator[Change]:
+    own, label, tags = text[element.start : element.end], element.label, element.tags
+    yield Change("element deleted", label, element.start, element.end, "", tags=tags)
+    if not element.is_foreign:  # whether a simulator reads the second one depends on the simulator
+        yield Change("element duplicated", label, element.end, element.end, f"\n{own}", tags=tags)
+    if parent.parent >= 0:
+        between = text[parent.start : element.start]
+        yield Change("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags=tags)
+
+
+def misspelt(name: str) -> str:
+    """Return a text without the letter in its middle."""
+    middle = len(name) // 2
+    return name[:middle] + name[middle + 1 :] if len(name) > 3 else f"{name}x"

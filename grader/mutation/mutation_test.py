@@ -1,0 +1,128 @@
+"""Grade the mutants of a rubric's reference: each must lose something, and each criterion be failed by some mutant."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from random import Random
+
+from grader.mutation.diffs import hunk
+from grader.mutation.margins import margin_of
+from grader.mutation.mutants import Mutant, mutants
+from grader.mutation.package_mutants import package_mutants
+from grader.mutation.result import MutantResults, Survivor
+from grader.mutation.suggestions import suggestion
+from grader.mutation.trial import Trial
+from grader.submission.urdf import Read
+
+Step = Callable[[], None]  # shows that one more mutant is graded
+
+
+class MutationTest:
+    """The mutants of one reference, at most `most` of them, sampled evenly over the families."""
+
+    def __init__(self, trial: Trial, most: int, seed: int) -> None:
+        self.trial = trial
+        self.all = list(_mutants_of(trial))
+        self.chosen = sampled(self.all, most, Random(seed))
+        self.caught = self.same = 0
+        self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
+        self.idle = dict.fromkeys(trial.tested)
+
+    def run(self, step: Step) -> MutantResults:
+        """Grade the mutants and return what became of them."""
+        survivors = [found for mutant in self.chosen for found in self._graded(mutant, step)]
+        self._try_others()
+        ignored = [found for found in survivors if found.reason]
+        left = [found for found in survivors if not found.reason]
+        return MutantResults(
+            len(self.all),
+            len(self.chosen),
+            self.caught,
+            self.same,
+            tuple(left),
+            tuple(ignored),
+            self._unused(),
+            tuple(self.idle),
+            tuple(self.margins.values()),
+        )
+
+    def _graded(self, mutant: Mutant, step: Step) -> Iterable[Survivor]:
+        """Grade a mutant, and return it if it loses nothing although it is another robot."""
+        step()
+        submission = self.trial.submission(mutant)
+        if submission is None:
+            self.caught += 1
+            return ()
+        is_lost = False
+        for result in self.trial.results(mutant, submission, self.trial.expected):
+            name = result.criterion.id
+            if result.outcome.status == "failed":
+                self.idle.pop(name, None)
+            if name in self.margins:
+                self.margins[name] = self.margins[name].with_mutant(result)
+            is_lost |= self.trial.is_lost(result)
+        if is_lost:
+            self.caught += 1
+        elif self.trial.is_same(mutant, submission):
+            self.same += 1
+        else:
+            return (self._survivor(mutant),)
+        return ()
+
+    def _survivor(self, mutant: Mutant) -> Survivor:
+        rubric, urdf = self.trial.rubric, self.trial.reference.urdf
+        reason = next(
+            (row.reason for row in rubric.ignored if any(fnmatchcase(mutant.id, it) for it in row.mutants)), ""
+        )
+        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot), reason)
+
+    def _diff(self, mutant: Mutant) -> str:
+        if mutant.renamed:
+            return f"rename {mutant.path} to {mutant.renamed}"
+        if mutant.is_deleted:
+            return f"delete {mutant.path}"
+        text = self.trial.text(mutant.path)
+        return hunk(mutant.path, text, mutant.applied(text))
+
+    def _try_others(self) -> None:
+        """Find out whether mutants that were not sampled fail the criteria that no other one fails."""
+        chosen = {mutant.id for mutant in self.chosen}
+        for mutant in self.all:
+            if not self.idle:
+                return
+            submission = self.trial.submission(mutant) if mutant.id not in chosen else None
+            if submission is not None:
+                for result in self.trial.results(mutant, submission, list(self.idle)):
+                    if result.outcome.status == "failed":
+                        self.idle.pop(result.criterion.id, None)
+
+    def _unused(self) -> tuple[str, ...]:
+        patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]
+        ids = [mutant.id for mutant in self.all]
+        return tuple(pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in ids))
+
+
+def _mutants_of(trial: Trial) -> Iterator[Mutant]:
+    """Yield the mutants of the robot, and of the package if a criterion looks at it."""
+    for path in trial.robot_files:
+        yield from mutants(trial.text(path), path)
+    package = trial.reference.package
+    if package is not None and any(trial.expected[name].criterion.check.subject == "package" for name in trial.tested):
+        urdf = trial.reference.urdf
+        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        links = [link.name for link in robot.links] if robot is not None else []
+        yield from package_mutants(package, links, trial.text)
+
+
+def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:
+    """Return at most so many mutants, in their order: of each family the same number, as far as it has as many."""
+    families: dict[str, list[int]] = defaultdict(list)
+    for index, mutant in enumerate(every):
+        families[mutant.family].append(index)
+    chosen: list[int] = []
+    for number, name in enumerate(sorted(families, key=lambda name: (len(families[name]), name))):
+        share = -(-(most - len(chosen)) // (len(families) - number))
+        indexes = families[name]
+        chosen += random.sample(indexes, min(share, len(indexes), most - len(chosen)))
+    return [every[index] for index in sorted(chosen)]

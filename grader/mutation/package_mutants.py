@@ -1,0 +1,162 @@
+"""Mutants of a package: a file deleted or renamed, and mistakes in package.xml, setup.py, launch files and RViz files."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
+
+from grader.mutation.elements import elements, text_of
+from grader.mutation.mutants import Change, Mutant, as_mutants, misspelt, mutants
+from grader.mutation.python_mutants import launch_changes, setup_changes
+from grader.package.package import MANIFEST, SETUP, Package
+from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.source import Location, Source
+
+# Files for people: without them the package does the same.
+_FOR_PEOPLE = (".md", ".rst", ".txt", ".pdf", ".docx", ".png", ".jpg", ".jpeg", ".gif", ".svg", ".mp4")
+_FOR_PEOPLE_TOO = re.compile(r"(^|/)(test|tests|doc|docs|\.[^/]*)/|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$")
+_BUILD_TYPES = ("ament_python", "ament_cmake")
+_XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
+_DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
+_SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
+
+Text = Callable[[str], str]  # returns the text of a file by its path in the submission
+
+
+def package_mutants(package: Package, links: Iterable[str], text: Text) -> Iterator[Mutant]:
+    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a file."""
+    names = list(links)
+    for own in package.tree.files:
+        path = package.path(own)
+        if not own.lower().endswith(_FOR_PEOPLE) and not _FOR_PEOPLE_TOO.search(own):
+            yield Mutant(f"file deleted: {own}", "file deleted", path, 1, is_deleted=True, tags=("file",))
+            folder, slash, name = path.rpartition("/")
+            renamed = f"{folder}{slash}{misspelt(name)}"
+            yield Mutant(f"file renamed: {own}", "file renamed", path, 1, renamed=renamed, tags=("file",))
+        changes = _changes(package, own, names)
+        if changes is not None:
+            content = text(path)
+            yield from as_mutants(content, path, changes(path, own, content))
+
+
+def _changes(package: Package, own: str, links: list[str]) -> Callable[[str, str, str], Iterator[Change]] | None:
+    """Return what yields the changes of a file; None for one in which no mistakes are made here."""
+    if own == MANIFEST:
+        return _manifest
+    if own == SETUP:
+        return setup_changes
+    if own in package.rviz_files:
+        return lambda path, label, text: _rviz(path, label, text, links)
+    if own in package.launch_files:
+        return next((made for ending, made in _LAUNCH.items() if own.endswith(ending)), None)
+    return None
+
+
+def _manifest(path: str, label: str, text: str) -> Iterator[Change]:
+    """Yield changes of the name and the build type; the dependencies are not read here."""
+    del path
+    for element in elements(text):
+        span = text_of(text, element)
+        if element.tag not in ("name", "build_type") or span is None:
+            continue
+        place, tags = f"{label} {element.tag}", (MANIFEST,)
+        yield Change("text misspelt", place, *span, misspelt(text[slice(*span)]), tags=tags)
+        yield Change("element deleted", place, element.start, element.end, "", tags=tags)
+        if element.tag == "build_type":
+            yield from (Change("build type", place, *span, other, other, tags) for other in _BUILD_TYPES)
+
+
+def _launch_xml(path: str, label: str, text: str) -> Iterator[Change]:
+    for mutant in mutants(text, path):
+        if mutant.family in _XML_FAMILIES:
+            place = f"{label} {mutant.id.partition(': ')[2]}"
+            yield Change(mutant.family, place, mutant.start, mutant.end, mutant.new, tags=("launch",))
+
+
+def _launch_yaml(path: str, label: str, text: str) -> Iterator[Change]:
+    root, source = _yaml(path, text), Source(path, text)
+    actions = root.get("launch") if root else None
+    for number, item in enumerate(actions.items if actions else (), 1):
+        yield Change("action removed", f"{label} {number}", *_lines(source, item), "", tags=("launch",))
+        for scalar in _scalars(item):
+            yield from _misspelt(source, label, scalar, ("launch",))
+
+
+_LAUNCH = {
+    ".py": launch_changes,
+    ".xml": _launch_xml,
+    ".launch": _launch_xml,
+    ".yaml": _launch_yaml,
+    ".yml": _launch_yaml,
+}
+
+
+def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Change]:
+    """Yield changes of the fixed frame, and of each display: deleted, disabled, its class or topic misspelt."""
+    root, source, tags = _yaml(path, text), Source(path, text), ("rviz",)
+    frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
+    if frame is not None and frame.text:
+        start, end = _span(source, frame)
+        yield Change("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
+        yield from (Change("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text)
+    displays = root.get("Visualization Manager", "Displays") if root else None
+    for display in displays.items if displays else ():
+        title = display.get("Name") or display.get("Class")
+        place = f"{label} {title.text if title else ''}".rstrip()
+        yield Change("display deleted", place, *_lines(source, display), "", tags=tags)
+        enabled = display.get("Enabled")
+        if enabled is not None and enabled.text == "true":
+            yield Change("display disabled", place, *_span(source, enabled), "false", tags=tags)
+        for keys in _DISPLAY_TEXTS:
+            node = display.get(*keys)
+            if node is not None and node.text:
+                yield from _misspelt(source, f"{place} {'/'.join(keys)}", node, tags)
+
+
+def _misspelt(source: Source, label: str, node: Node, tags: tuple[str, ...]) -> Iterator[Change]:
+    start, end = _span(source, node)
+    text = source.text[start:end].strip("'\"")
+    if text:
+        start = source.text.index(text, start)
+        yield Change("text misspelt", f"{label} {text}", start, start + len(text), misspelt(text), tags=tags)
+
+
+def _yaml(path: str, text: str) -> Node | None:
+    try:
+        return read_yaml(text.encode("utf-8", "surrogateescape"), path)
+    except YamlFault:
+        return None
+
+
+def _scalars(node: Node) -> Iterator[Node]:
+    match node.value:
+        case str():
+            yield node
+        case list(items):
+            yield from chain.from_iterable(map(_scalars, items))
+        case dict(values):
+            yield from chain.from_iterable(map(_scalars, values.values()))
+
+
+def _span(source: Source, node: Node) -> tuple[int, int]:
+    start = _offset(source, node.location)
+    scalar = _SCALAR.match(source.text, start)
+    return start, scalar.end() if scalar else start
+
+
+def _offset(source: Source, location: Location) -> int:
+    return source.offset(location.line, location.column)
+
+
+def _lines(source: Source, item: Node) -> tuple[int, int]:
+    """Return the offsets of the lines of an item of a list: up to the next line that is not as deep as its keys."""
+    start = source.offset(item.location.line, 1)
+    depth = item.location.column - 1  # that of its first key, behind the dash
+    number = item.location.line + 1
+    last = source.text.count("\n") + 1
+    while number <= last and (not source.line(number).strip() or _depth(source.line(number)) >= depth):
+        number += 1
+    return start, source.offset(number, 1) if number <= last else len(source.text)
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip())

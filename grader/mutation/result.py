@@ -1,0 +1,87 @@
+"""The result of testing a rubric."""
+
+from collections.abc import Mapping
+from decimal import Decimal
+from typing import NamedTuple
+
+from grader.grading.report import Report
+from grader.mutation.margins import Margin
+from grader.mutation.mutants import Mutant
+
+
+class Survivor(NamedTuple):
+    """A mutant that loses nothing: its diff of one hunk, and what may catch it. `reason` is that of the rubric that ignores it."""
+
+    mutant: Mutant
+    diff: str
+    suggestion: str
+    reason: str = ""
+
+
+class MutantResults(NamedTuple):
+    """What became of the mutants: `total` exist, `tried` were graded, `same` of these turned out to be the same robot.
+
+    `survivors` lose nothing, and the rubric does not ignore them as it does those in `ignored`. `unused` are patterns of the
+    rubric that match no mutant, `idle` criteria that no mutant fails, `untested` those that the reference does not pass.
+    """
+
+    total: int
+    tried: int
+    caught: int
+    same: int
+    survivors: tuple[Survivor, ...]
+    ignored: tuple[Survivor, ...]
+    unused: tuple[str, ...]
+    idle: tuple[str, ...]
+    margins: tuple[Margin, ...]
+
+    @property
+    def score(self) -> Decimal:
+        """The mutation score: the share of the mutants that lose something, in percent, without those that the rubric ignores."""
+        count = self.caught + len(self.survivors)
+        return Decimal(100 * self.caught) / count if count else Decimal(100)
+
+
+class Loss(NamedTuple):
+    """Criteria that lose points although they must not, each with its message."""
+
+    name: str
+    criteria: Mapping[str, str]
+    diff: str = ""
+
+
+class EquivalentResults(NamedTuple):
+    """How many rewritings of the reference were graded, by family, those that lose points, and why a family was not used."""
+
+    tried: Mapping[str, int]
+    unused: Mapping[str, str]
+    losses: tuple[Loss, ...] = ()
+
+
+class SampleResults(NamedTuple):
+    """How many samples were graded, how many belong to another rubric, and what differs from their expected.toml."""
+
+    tried: int
+    skipped: int
+    different: tuple[Loss, ...] = ()
+
+
+class RubricTest(NamedTuple):
+    """The result for a rubric; `samples` is None where no folder was given."""
+
+    reference: Report
+    seed: int
+    mutants: MutantResults
+    equivalents: EquivalentResults
+    samples: SampleResults | None = None
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """The criteria that the reference does not pass, without those that need manual grading."""
+        results = self.reference.results
+        return tuple(found.criterion.id for found in results if found.outcome.status not in ("passed", "pending"))
+
+    @property
+    def is_sound(self) -> bool:
+        """Return whether no correct robot loses anything, and each sample what it should."""
+        return not (self.lost or self.equivalents.losses or (self.samples is not None and self.samples.different))

@@ -1,0 +1,176 @@
+"""Rewritings of a robot, each of a family: another file, the same robot. A step returns whether it could change anything."""
+
+from collections.abc import Callable, Collection
+from math import pi
+from random import Random
+from typing import NamedTuple
+
+from grader.mutation.elements import FOREIGN
+from grader.mutation.trees import (
+    Element,
+    add_joint,
+    add_link,
+    end,
+    fresh,
+    move_frame,
+    numbers_of,
+    origin,
+    own_elements,
+    parent_joint,
+    pose,
+    put,
+    some,
+    vector_of,
+    written,
+)
+from grader.robot.transforms import Transform, unit
+
+_SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
+_SLIDING = "prismatic"
+_TURNING = ("revolute", "continuous")
+
+
+class Surroundings(NamedTuple):
+    """What a rewriting must leave as it is: `named` is renamed nowhere, and frames are moved only where `may_move` is true."""
+
+    named: Collection[str]
+    may_move: Callable[[str], bool]
+
+
+Step = Callable[[Random, Element, Surroundings], bool]
+
+
+def shuffle(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Change the order of elements: links, joints and materials, and those inside of each."""
+    del around
+    for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
+        children = list(owner)
+        shuffled = random.sample(children, len(children))
+        for child in children:
+            owner.remove(child)
+        owner.extend(_stable(children, shuffled))
+    return True
+
+
+def _stable(before: list[Element], after: list[Element]) -> list[Element]:
+    """Return the shuffled elements with those whose order matters in it: the first of several origins counts."""
+    materials = [element.get("name") for element in before if element.tag == "material"]
+    free = _SORTED if len(set(materials)) == len(materials) else tuple(tag for tag in _SORTED if tag != "material")
+    queues: dict[str, list[Element]] = {}
+    for element in before:
+        if element.tag not in free:
+            queues.setdefault(str(element.tag), []).append(element)
+    return [queues[str(element.tag)].pop(0) if str(element.tag) in queues else element for element in after]
+
+
+def split_joints(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Put an empty link into the middle of fixed joints; their names stay in the chain."""
+    del around
+    fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
+    for joint in some(random, fixed):
+        split_joint(tree, joint, _any_pose(random), is_first=random.random() < 0.5)
+    return bool(fixed)
+
+
+def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
+    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper half keeps the name."""
+    middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
+    add_link(tree, middle)
+    second = first.inverse() @ pose(joint)
+    if is_first:
+        add_joint(tree, fresh(tree, "joint"), middle, child.get("link", ""), second)
+        put(joint, first)
+        child.set("link", middle)
+    else:
+        add_joint(tree, fresh(tree, "joint"), parent.get("link", ""), middle, first)
+        put(joint, second)
+        parent.set("link", middle)
+
+
+def move_frames(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Move the frames of links together with what is in them, where nothing speaks of the frame."""
+    links = [link for link in tree.iterchildren("link") if around.may_move(link.get("name", ""))]
+    moved = False
+    for link in some(random, links):
+        joint = parent_joint(tree, link.get("name", ""))
+        change = _allowed_move(random, joint) if joint is not None else None
+        if change is not None:
+            move_frame(tree, link, change)
+            moved = True
+    return moved
+
+
+def _allowed_move(random: Random, joint: Element) -> Transform | None:
+    """Return a change of a child's frame that leaves the motion of the joint as it is; None if there is none."""
+    kind, change = joint.get("type"), _any_pose(random)
+    if kind in ("fixed", _SLIDING):
+        return change
+    axis = unit(vector_of(joint.find("axis"), "xyz", "1 0 0"))
+    if kind not in _TURNING or axis is None:
+        return None
+    x, y, z = axis
+    slide = random.uniform(-1, 1)
+    return Transform(translation=(x * slide, y * slide, z * slide)) @ Transform(change.rotation)
+
+
+def turn_fully(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Write rotations with additional full turns, or by their other three angles."""
+    del around
+    origins = list(own_elements(tree, "origin"))
+    for found in some(random, origins):
+        found.set("rpy", written(other_angles(random, numbers_of(found, "rpy"))))
+    return bool(origins)
+
+
+def other_angles(random: Random, rpy: list[float]) -> list[float]:
+    """Return other angles of the same rotation."""
+    roll, pitch, yaw = rpy
+    if random.random() < 0.5:
+        roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
+    return [angle + 2 * pi * random.randint(-3, 3) for angle in (roll, pitch, yaw)]
+
+
+def scale_axes(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Scale axes of joints."""
+    del around
+    axes = list(own_elements(tree, "axis"))
+    for axis in some(random, axes):
+        factor = 10 ** random.uniform(-2, 2)
+        axis.set("xyz", written(factor * number for number in numbers_of(axis, "xyz")))
+    return bool(axes)
+
+
+def rename(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Rename links, joints and materials that nothing but this file refers to."""
+    changed = False
+    for tag in ("link", "joint", "material"):
+        elements = own_elements(tree, tag) if tag == "material" else tree.iterchildren(tag)
+        names = dict.fromkeys(element.get("name", "") for element in elements)
+        for name in some(random, [name for name in names if name and name not in around.named]):
+            _rename(tree, tag, name, f"{name}_{random.randint(2, 99)}x")
+            changed = True
+    return changed
+
+
+_REFERENCES = {"link": ("link",), "joint": ("joint",), "material": ()}
+
+
+def _rename(tree: Element, tag: str, name: str, new: str) -> None:
+    for element in own_elements(tree, "*"):
+        if element.tag == tag and element.get("name") == name:
+            element.set("name", new)
+        for attribute in _REFERENCES[tag]:
+            if element.get(attribute) == name and element.tag in ("parent", "child", "mimic"):
+                element.set(attribute, new)
+
+
+def _any_pose(random: Random) -> Transform:
+    xyz = [round(random.uniform(-1, 1), 6) for _ in range(3)]
+    return origin(xyz, [round(random.uniform(-3, 3), 6) for _ in range(3)])
+
+
+def words_of_foreign(tree: Element) -> set[str]:
+    """Return the words in the elements for simulators and controllers."""
+    found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
+    values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
+    return {word for value in values for word in value.split()}

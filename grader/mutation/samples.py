@@ -1,0 +1,152 @@
+"""Sample submissions: folders with an expected.toml, which says what their report must be."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from grader.checks.toml_types import TomlType, WrongValue, simple_type, toml_type
+from grader.errors import InputError, RubricError
+from grader.files.reading import read_capped
+from grader.grading.grade import grade
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Rubric
+from grader.grading.toml_file import complain_of, read_toml
+from grader.mutation.result import Loss, SampleResults
+from grader.names import did_you_mean
+from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from grader.text import printable_path
+
+EXPECTED = "expected.toml"
+_TEXT = toml_type(str)
+_IDS = simple_type(
+    "a list of ids of criteria",
+    {"type": "array", "items": {"type": "string"}},
+    lambda value: isinstance(value, list) and all(isinstance(name, str) for name in value),
+    tuple,
+)
+_KEYS: Mapping[str, TomlType] = {
+    **dict.fromkeys(("about", "path", "rubric"), _TEXT),
+    "verdict": toml_type(Literal["clean", "degraded", "rejected", "missing"]),
+    **dict.fromkeys(("lost", "carried", "pending"), _IDS),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A folder with an expected.toml; the submission is this folder, or the path in it.
+
+    `lost`, `carried` and `pending` are criteria: those that lose their points, those that keep them because an earlier mistake
+    makes them fail, and those that need manual grading. All others pass. Without `rubric` it is for any rubric, and without
+    `verdict` ROS 2's verdict does not matter.
+    """
+
+    folder: Path
+    about: str = ""
+    path: str = ""
+    rubric: str = ""
+    verdict: str = ""
+    lost: tuple[str, ...] = ()
+    carried: tuple[str, ...] = ()
+    pending: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of its folder."""
+        return self.folder.name
+
+    def open(self, rubric: Rubric) -> Submission:
+        """Return the submission, opened as the command line does. Raises InputError."""
+        path = str(self.folder / self.path)
+        return open_submission(path, wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+
+    def expected(self, name: str) -> str:
+        """Return what must become of a criterion, in words."""
+        return next((words for kind, words in _WORDS.items() if name in getattr(self, kind)), "passes")
+
+
+_WORDS = {"lost": "loses its points", "carried": "is carried forward", "pending": "needs manual grading"}
+
+
+def read_samples(folder: Path) -> list[Sample]:
+    """Return the samples in a folder, by their names. Raises RubricError for a broken expected.toml, InputError without any."""
+    if not folder.is_dir():
+        raise InputError(f"{printable_path(folder)} is not a folder with samples")
+    found = [_sample(path) for path in sorted(folder.glob(f"*/{EXPECTED}"))]
+    if not found:
+        raise InputError(f"{printable_path(folder)} has no samples: no folder in it has an {EXPECTED}")
+    return found
+
+
+def _sample(path: Path) -> Sample:
+    text, table = read_toml(read_capped(path, advice=""), path)
+    complaints: list[tuple[tuple[str | int, ...], str]] = []
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in _KEYS:
+            hint = did_you_mean(key, _KEYS) or f"; it has: {', '.join(_KEYS)}"
+            complaints.append(((key,), f"an {EXPECTED} has no key {key!r}{hint}"))
+            continue
+        try:
+            values[key] = _KEYS[key].parse(value)
+        except WrongValue as error:
+            complaints.append(((key,), f"{key} must be {error}"))
+    complain_of(complaints, text, path)
+    return Sample(path.parent, **values)
+
+
+def tested_samples(rubric: Rubric, samples: list[Sample], step: Callable[[], None]) -> SampleResults:
+    """Return which samples of a rubric differ from what they expect. Raises RubricError where one names no criterion of it."""
+    own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
+    _check_names(rubric, own)
+    different: list[Loss] = []
+    for sample in own:
+        step()
+        found = dict(differences(sample, rubric))
+        if found:
+            different.append(Loss(sample.name, found))
+    return SampleResults(len(own), len(samples) - len(own), tuple(different))
+
+
+def _check_names(rubric: Rubric, samples: list[Sample]) -> None:
+    known = [criterion.id for criterion in rubric.criteria]
+    wrong = [
+        f"{printable_path(sample.folder / EXPECTED)}: the rubric {rubric.id} has no criterion {name!r}{did_you_mean(name, known)}"
+        for sample in samples
+        for name in (*sample.lost, *sample.carried, *sample.pending)
+        if name not in known
+    ]
+    if wrong:
+        raise RubricError(tuple(wrong))
+
+
+def differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
+    """Yield what differs from the expected report: a criterion, or `verdict`, and a message."""
+    try:
+        submission = sample.open(rubric)
+    except InputError as error:
+        yield "submission", f"cannot be read: {error}"
+        return
+    report = grade(rubric, submission)
+    verdict = submission.urdf.loaded.verdict if isinstance(submission.urdf, Read) else "missing"
+    if sample.verdict not in ("", verdict):
+        yield "verdict", f"is {verdict}, expected {sample.verdict}"
+    yield from _differing(sample, report)
+
+
+def _differing(sample: Sample, report: Report) -> Iterator[tuple[str, str]]:
+    graded = {result.criterion.id: result for result in report.results}
+    for criterion in report.rubric.criteria:
+        result, expected = graded.get(criterion.id), sample.expected(criterion.id)
+        actual = _actual(result) if result is not None else "is not graded"
+        if actual != expected and (result is not None or expected != "passes"):
+            message = f": {result.outcome.message}" if result is not None else ""
+            yield criterion.id, f"{actual}, expected: {expected}{message}"
+
+
+def _actual(result: Result) -> str:
+    status = result.outcome.status
+    kind = "carried" if result.carried else "lost" if result.is_lost else status
+    return _WORDS.get(kind, "passes" if status == "passed" else status)

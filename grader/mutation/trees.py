@@ -1,0 +1,133 @@
+"""The element tree of a URDF, for rewriting a robot: poses, frames, joints."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from random import Random
+from typing import TypeVar
+
+from lxml import etree
+
+from grader.mutation.elements import FOREIGN
+from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+from grader.xml.parsing import Element
+
+__all__ = ["Element"]
+_Item = TypeVar("_Item")
+
+
+def copied(root: Element) -> Element:
+    """Return a copy of a tree, without comments."""
+    copy = etree.fromstring(etree.tostring(root, with_tail=False))
+    for element in list(copy.iter(etree.Comment, etree.ProcessingInstruction)):
+        above = element.getparent()
+        if above is not None:
+            above.remove(element)
+    return copy
+
+
+def origin(xyz: Iterable[float], rpy: Iterable[float]) -> Transform:
+    """Return the transform of an origin."""
+    x, y, z = xyz
+    roll, pitch, yaw = rpy
+    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+
+
+def written(values: Iterable[float]) -> str:
+    """Return numbers as an attribute contains them."""
+    return " ".join(f"{value + 0.0:.13g}" for value in values)
+
+
+def numbers_of(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
+    """Return the numbers of an attribute."""
+    text = default if element is None else element.get(attribute, default)
+    return [float(piece) for piece in text.split()]
+
+
+def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
+    """Return the three numbers of an attribute."""
+    x, y, z = numbers_of(element, attribute, default)
+    return x, y, z
+
+
+def pose(owner: Element) -> Transform:
+    """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
+    found = owner.find("origin")
+    return origin(numbers_of(found, "xyz"), numbers_of(found, "rpy"))
+
+
+def put(owner: Element, transform: Transform) -> None:
+    """Write a pose into the `<origin>` of an element."""
+    found = owner.find("origin")
+    if found is None:
+        if transform == IDENTITY:
+            return
+        found = etree.SubElement(owner, "origin")
+    found.set("xyz", written(transform.translation))
+    found.set("rpy", written(transform.rpy))
+
+
+def link_named(tree: Element, name: str) -> Element | None:
+    """Return the link of this name."""
+    return next((link for link in tree.iterchildren("link") if link.get("name") == name), None)
+
+
+def end(joint: Element, role: str) -> Element:
+    """Return the `<parent>` or `<child>` of a joint."""
+    found = joint.find(role)
+    assert found is not None
+    return found
+
+
+def parent_joint(tree: Element, link: str) -> Element | None:
+    """Return the joint whose child is this link."""
+    return next((joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link), None)
+
+
+def move_frame(tree: Element, link: Element, change: Transform) -> None:
+    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
+    name = link.get("name", "")
+    held = parent_joint(tree, name)
+    assert held is not None
+    back = change.inverse()
+    put(held, pose(held) @ change)
+    axis = held.find("axis")
+    if axis is not None:
+        axis.set("xyz", written(back.rotate(vector_of(axis, "xyz"))))
+    elif held.get("type") != "fixed":
+        etree.SubElement(held, "axis", {"xyz": written(back.rotate((1.0, 0.0, 0.0)))})
+    for element in link.iterchildren("visual", "collision", "inertial"):
+        put(element, back @ pose(element))
+    for joint in tree.iterchildren("joint"):
+        if end(joint, "parent").get("link") == name:
+            put(joint, back @ pose(joint))
+
+
+def fresh(tree: Element, kind: str) -> str:
+    """Return a name that nothing in the robot has."""
+    return f"extra_{kind}_{len(tree)}"
+
+
+def add_joint(tree: Element, name: str, parent: str, child: str, transform: Transform) -> Element:
+    """Add a fixed joint."""
+    joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
+    etree.SubElement(joint, "parent", {"link": parent})
+    etree.SubElement(joint, "child", {"link": child})
+    put(joint, transform)
+    return joint
+
+
+def add_link(tree: Element, name: str) -> Element:
+    """Add an empty link."""
+    return etree.SubElement(tree, "link", {"name": name})
+
+
+def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
+    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a simulator."""
+    for child in tree:
+        if child.tag not in FOREIGN:
+            yield from child.iter(*tags)
+
+
+def some(random: Random, items: Iterable[_Item]) -> Sequence[_Item]:
+    """Return one to three items, or none where there are none."""
+    found = list(items)
+    return random.sample(found, min(len(found), random.randint(1, 3)))

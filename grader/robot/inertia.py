@@ -1,0 +1,121 @@
+"""Mass, mass centre and inertia of uniform solids, alone or together, and the principal moments of an inertia tensor.
+
+The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks of
+dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
+"""
+
+from collections.abc import Iterable
+from math import copysign, hypot, isfinite, nan
+from typing import NamedTuple
+
+from grader.robot.model import Box, Sphere
+from grader.robot.shapes import Shape, volume
+from grader.robot.transforms import Rotation, Transform, Vector, dot, minus
+
+Tensor = tuple[float, float, float, float, float, float]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
+
+_MAX_SWEEPS = 12  # of Jacobi rotations, which converge quadratically: 3 x 3 matrices need 6
+
+
+class MassProperties(NamedTuple):
+    """The mass of a body in kg, its mass centre in metres, and its inertia about that centre, along the axes of one frame."""
+
+    mass: float
+    centre: Vector
+    inertia: Tensor
+
+
+def solid_inertia(shape: Shape, mass: float) -> Tensor:
+    """Return the inertia of a uniform solid about its centre, along the axes of the shape."""
+    if isinstance(shape, Box):
+        x, y, z = (edge * edge for edge in shape.size)
+        return (mass * (y + z) / 12.0, 0.0, 0.0, mass * (x + z) / 12.0, 0.0, mass * (x + y) / 12.0)
+    squared = shape.radius * shape.radius
+    if isinstance(shape, Sphere):
+        every = 0.4 * mass * squared
+        return (every, 0.0, 0.0, every, 0.0, every)
+    across = mass * (3.0 * squared + shape.length * shape.length) / 12.0
+    return (across, 0.0, 0.0, across, 0.0, 0.5 * mass * squared)
+
+
+def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> MassProperties:
+    """Return the mass properties of shapes of one density and of this mass together; each comes with its T_frame_shape.
+
+    What two shapes share counts twice. Raises ValueError for shapes without a volume, and for numbers that are too large.
+    """
+    placed = [(shape, pose, volume(shape)) for shape, pose in shapes]
+    total = sum(volume for _, _, volume in placed)
+    if not (total > 0.0 and isfinite(total)):
+        raise ValueError("the shapes have no volume that can be computed")
+    parts = [(shape, pose, mass * (volume / total)) for shape, pose, volume in placed]
+    return together(
+        MassProperties(part, pose.translation, turned(solid_inertia(shape, part), pose.rotation))
+        for shape, pose, part in parts
+    )
+
+
+def together(bodies: Iterable[MassProperties]) -> MassProperties:
+    """Return the mass properties of bodies that are fixed to each other; the sum of their masses must not be 0."""
+    every = list(bodies)
+    mass = sum(body.mass for body in every)
+    x, y, z = (sum(body.mass * body.centre[axis] for body in every) / mass for axis in range(3))
+    moved = (shifted(body.inertia, body.mass, minus(body.centre, (x, y, z))) for body in every)
+    return MassProperties(mass, (x, y, z), _tensor(map(sum, zip(*moved, strict=True))))
+
+
+def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:
+    """Return an inertia that is given along the axes of b along the axes of a."""
+    xx, xy, xz, yy, yz, zz = inertia
+    rows = (T_a_b[:3], T_a_b[3:6], T_a_b[6:])
+    first, second, third = (
+        (a * xx + b * xy + c * xz, a * xy + b * yy + c * yz, a * xz + b * yz + c * zz) for a, b, c in rows
+    )
+    return (
+        dot(first, rows[0]), dot(first, rows[1]), dot(first, rows[2]),
+        dot(second, rows[1]), dot(second, rows[2]), dot(third, rows[2]),
+    )  # fmt: skip
+
+
+def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
+    """Return the inertia of a body about a point at `offset` from its mass centre, in metres (parallel axis theorem)."""
+    x, y, z = offset
+    away = (y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y)
+    return _tensor(about + mass * square for about, square in zip(inertia, away, strict=True))
+
+
+def difference(a: Tensor, b: Tensor) -> float:
+    """Return the largest moment, in size, of the difference of two inertias, about any axis; NaN where it overflows."""
+    moments = principal_moments(_tensor(one - other for one, other in zip(a, b, strict=True)))
+    return max(abs(moments[0]), abs(moments[2]))
+
+
+def principal_moments(inertia: Tensor) -> Vector:
+    """Return the principal moments, smallest first, by Jacobi rotations; NaN for numbers that are too large."""
+    scale = max(map(abs, inertia))
+    if not (isfinite(sum(inertia)) and isfinite(scale)):
+        return (nan, nan, nan)
+    if scale == 0.0:
+        return (0.0, 0.0, 0.0)
+    xx, xy, xz, yy, yz, zz = (value / scale for value in inertia)
+    moments, products = [xx, yy, zz], [yz, xz, xy]  # a product is at the index of the axis that it is not about
+    for p, q, r in ((1, 2, 0), (0, 2, 1), (0, 1, 2)) * _MAX_SWEEPS:
+        if products[r] == 0.0:
+            continue
+        ratio = (moments[q] - moments[p]) / (2.0 * products[r])
+        tangent = copysign(1.0, ratio) / (abs(ratio) + hypot(ratio, 1.0))
+        cosine = 1.0 / hypot(tangent, 1.0)
+        sine = tangent * cosine
+        moments[p] -= tangent * products[r]
+        moments[q] += tangent * products[r]
+        products[p], products[q], products[r] = (
+            cosine * products[p] + sine * products[q],
+            cosine * products[q] - sine * products[p],
+            0.0,
+        )
+    smallest, middle, largest = sorted(moments)
+    return (smallest * scale, middle * scale, largest * scale)
+
+
+def _tensor(values: Iterable[float]) -> Tensor:
+    xx, xy, xz, yy, yz, zz = values
+    return (xx, xy, xz, yy, yz, zz)

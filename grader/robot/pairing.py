@@ -1,0 +1,96 @@
+"""Two robots whose joints are paired: how far links of one are from those of the other with the joints at the same positions."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import asin, degrees, dist, inf, sqrt
+from typing import NamedTuple
+
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint, Robot
+from grader.robot.transforms import Transform
+
+_LEAST = 1e-9  # of a tolerance: below it, only rounding differs
+
+
+class Offset(NamedTuple):
+    """How far a link is from its place, in metres and degrees, with the joints at these positions."""
+
+    link: str
+    distance: float
+    angle: float
+    positions: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotPair:
+    """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
+
+    Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an angle.
+    """
+
+    robots: tuple[Configuration, Configuration]
+    bases: tuple[str, str]
+    links: Sequence[tuple[str, str]]
+    joints: Sequence[tuple[Joint, Joint]]
+    tolerance: float
+    angle: float
+
+    def offset(self, positions: tuple[float, ...], turned: int | None = None) -> Offset:
+        """Return the largest offset with the joints at these positions; the one with the index `turned` moves the other way."""
+        own = {
+            joint.name: -position if index == turned else position
+            for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
+            if joint.mimic is None  # a mimic joint follows
+        }
+        other = {joint.name: position for (_, joint), position in zip(self.joints, positions, strict=True)}
+        posed = [_posed(robot, given) for robot, given in zip(self.robots, (own, other), strict=True)]
+        found = []
+        for names in self.links:
+            poses = [
+                robot.pose(link, relative_to=base) for robot, link, base in zip(posed, names, self.bases, strict=True)
+            ]
+            distance = dist(poses[0].translation, poses[1].translation)
+            found.append(Offset(names[0], distance, _angle(*poses), positions))
+        return max(found, key=lambda offset: (self.times(offset), offset.distance))
+
+    def times(self, offset: Offset) -> float:
+        """Return how many times an offset is larger than the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
+        shares = offset.distance / max(self.tolerance, _LEAST), offset.angle / max(self.angle, _LEAST)
+        return max(round(share, 6) if share >= 0 else inf for share in shares)
+
+
+def _posed(robot: Configuration, positions: Mapping[str, float]) -> Configuration:
+    return Configuration(robot.robot, positions, holding=robot.parent_joints)
+
+
+def _angle(one: Transform, other: Transform) -> float:
+    """Return the angle between two orientations in degrees: exact near 0, where the trace of the rotation is not."""
+    return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
+
+
+def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
+    """Return the joints that move links relative to a base by their names, along the chain to each link.
+
+    Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided where a mimic is not known.
+    """
+    found: dict[str, Joint] = {}
+    for link in links:
+        for joint in robot.between(base, link):
+            leader = _leader(robot.robot, joint)
+            if leader is not None and leader.type != "fixed":
+                found.setdefault(leader.name, leader)
+    return found
+
+
+def _leader(robot: Robot, joint: Joint) -> Joint | None:
+    """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
+    passed: set[str] = set()
+    while True:
+        if "mimic" in joint.unresolved:
+            joint.unresolved["mimic"].check()
+        if joint.mimic is None:
+            return joint
+        passed.add(joint.name)
+        if joint.mimic.joint in passed or not robot.has_joint(joint.mimic.joint):
+            return None
+        joint = robot.joint(joint.mimic.joint)

@@ -1,0 +1,102 @@
+"""Write a rubric from a reference solution."""
+
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from grader.authoring.draft import Draft, draft
+from grader.authoring.fact import Omission
+from grader.authoring.rubric_text import Head
+from grader.authoring.solution import Solution
+from grader.checks.tree import urdf_loads
+from grader.errors import GraderError, InputError
+from grader.robot.kinematics import Configuration
+from grader.submission.opening import STANDARD_INPUT, open_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Absent, Read, Unreadable
+from grader.text import enumerated, printable, printable_path, shell_quoted
+from grader.usecases import Warn
+from grader.usecases.rubrics import summary
+from grader.usecases.writing import save_bytes
+
+_URDF = "robot.urdf"
+_MAX_NAMED = 4
+
+
+def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
+    """Write a rubric of the facts of a reference and return what it contains, omits, and what to do next. Raises GraderError."""
+    _check_target(file, force=force)
+    solution = _solution(reference, warn)
+    made = draft(solution, _head(file, reference, solution.submission), file)
+    save_bytes(file, made.data)
+    return "".join(f"{printable(line)}\n" for line in _lines(file, made))
+
+
+def _check_target(file: Path, *, force: bool) -> None:
+    shown = printable_path(file)
+    if file.suffix != ".toml":
+        raise GraderError(f"a rubric is a .toml file: give a name that ends in .toml, not {shown}")
+    if os.path.lexists(file) and not force:
+        raise GraderError(f"{shown} exists already: give another name, or --force to replace it")
+
+
+def _solution(reference: str, warn: Warn) -> Solution:
+    """Return the reference, which ROS 2 must load; raise GraderError."""
+    if reference == STANDARD_INPUT:
+        raise GraderError("--from takes a file or folder, which the rubric names as its reference")
+    submission, shown = open_submission(reference, wanted=_URDF), printable_path(reference)
+    match submission.urdf:
+        case Absent():
+            raise InputError(f"{shown} has no URDF: no file in it has a <robot>")
+        case Unreadable(reason=reason):
+            raise InputError(reason)
+        case Read(reading=reading, loaded=loaded):
+            loading = urdf_loads(loaded)
+            if reading.robot is None or loading.status != "passed":
+                raise InputError(
+                    f"{shown} is no reference solution: {loading.message} (see `grader inspect {shell_quoted(reference)}`)"
+                )
+    if submission.other_candidates:
+        others = enumerated([file.path for file in submission.other_candidates], _MAX_NAMED)
+        warn(f"the rubric is made from {submission.path}; other candidates: {others}")
+    return Solution(submission, reading, Configuration(reading.robot))
+
+
+def _head(file: Path, reference: str, submission: Submission) -> Head:
+    words = re.sub(r"[\s_-]+", " ", printable(file.stem)).strip() or "lab"
+    place = _relative(Path(reference), file.parent)
+    package, path = submission.package, submission.path or ""
+    if package is not None and package.holds(path):
+        path = path.removeprefix(f"{package.folder}/")
+    return Head(words.replace(" ", "-"), words[0].upper() + words[1:], place, path, package.name if package else "")
+
+
+def _relative(reference: Path, folder: Path) -> str:
+    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is no text."""
+    try:
+        path = os.path.relpath(reference.resolve(), folder.resolve())
+    except ValueError:  # on another drive
+        path = str(reference.resolve())
+    try:
+        path.encode()
+    except UnicodeEncodeError:
+        raise GraderError(f"the path {printable_path(path)} is not UTF-8: rename it") from None
+    return path.replace(os.sep, "/")
+
+
+def _lines(file: Path, made: Draft) -> Iterator[str]:
+    yield f"wrote {printable_path(file)}: {summary(made.rubric)}; its reference gets full marks"
+    if made.rubric.reference.startswith(("..", "/")):
+        yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
+    yield from (f"omitted: {line}" for line in _grouped(made.omissions))
+    yield from (f"odd: {line}" for line in made.oddities)
+    yield f"next: grader rubric test {shell_quoted(file)}"
+
+
+def _grouped(omissions: Iterable[Omission]) -> Iterator[str]:
+    """Yield what is omitted, in one line for each reason."""
+    by_reason: dict[str, list[str]] = {}
+    for omission in omissions:
+        by_reason.setdefault(omission.why, []).append(omission.what)
+    yield from (f"{enumerated(names, _MAX_NAMED)}: {why}" for why, names in by_reason.items())

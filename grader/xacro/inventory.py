@@ -1,0 +1,107 @@
+"""The properties and macros that xacro files define, and the names that they use, as they are written."""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.xacro.macros import read_parameters
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Place
+from grader.xacro.tags import HANDLERS
+from grader.xacro.texts import PIECE
+
+_STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
+_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*)*(?!\s*=[^=])")
+
+Definitions = dict[str, list[Place]]
+
+
+@dataclass(frozen=True, slots=True)
+class Inventory:
+    """The definitions in files, each with its places, and what is used; `dynamic` are tags whose names are evaluated."""
+
+    properties: Definitions = field(default_factory=dict)
+    macros: Definitions = field(default_factory=dict)
+    used: set[str] = field(default_factory=set)
+    called: set[str] = field(default_factory=set)
+    includes: list[Place] = field(default_factory=list)
+    dynamic: list[Place] = field(default_factory=list)
+
+    def define(self, definitions: Definitions, name: str, place: Place) -> None:
+        """Note a definition, or that its name is evaluated."""
+        if "$" in name:
+            self.dynamic.append(place)
+        elif name:
+            definitions.setdefault(name, []).append(place)
+
+
+def take_inventory(documents: Iterable[Node]) -> Inventory:
+    """Return what files define and use. A parameter of a macro is no use of a property of its name."""
+    found, roots = Inventory(), [*documents]
+    spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
+    waiting = [(root, frozenset[str]()) for root in roots]
+    while waiting:
+        node, hidden = waiting.pop()
+        own = _note_tag(node, found)
+        texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
+        names = {name for text in texts for name in _names_in(text, spaces)}
+        found.used.update(names - hidden - {own})
+        waiting += [(child, hidden | _hidden_in(node, found)) for child in node.elements]
+    return found
+
+
+def _every(root: Node) -> Iterator[Node]:
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        waiting += node.elements
+
+
+def _note_tag(node: Node, found: Inventory) -> str:
+    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is no use of it."""
+    name = node.attributes.get("name", "")
+    match node.tag:
+        case "xacro:property":
+            if node.attributes.get("remove") in (None, "false"):
+                found.define(found.properties, name, node.place)
+            return name
+        case "xacro:macro":
+            found.define(found.macros, name.removeprefix("xacro:"), node.place)
+        case "xacro:include":
+            found.includes.append(node.place)
+        case "xacro:insert_block":
+            found.used.add(name)
+        case "xacro:call":
+            called = node.attributes.get("macro", "")
+            found.called.add(called.rpartition(".")[2])
+            if "$" in called:
+                found.dynamic.append(node.place)
+        case tag if tag.startswith("xacro:") and tag not in HANDLERS:
+            found.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
+    return ""
+
+
+def _hidden_in(node: Node, found: Inventory) -> frozenset[str]:
+    """Return the names that are parameters in an element; a forwarded one is a use of the caller's property."""
+    if node.tag != "xacro:macro":
+        return frozenset()
+    try:
+        parameters = read_parameters(node.attributes.get("params", ""))
+    except (ExpressionFails, Undetermined):
+        return frozenset()
+    found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
+    return frozenset(parameter.name.lstrip("*") for parameter in parameters)
+
+
+def _names_in(text: str, spaces: set[str]) -> Iterator[str]:
+    """Yield the names in the expressions of a text: the first of a dotted name, and what is after a namespace."""
+    for piece in PIECE.finditer(text) if "$" in text else ():
+        if piece["substitution"] is not None:
+            yield from _names_in(piece["substitution"], spaces)
+        for found in _NAME.finditer(_STRING.sub("''", piece["expression"] or "")):
+            first, *rest = found[0].split(".")
+            yield first
+            if first in spaces:
+                yield from rest

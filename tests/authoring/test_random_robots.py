@@ -1,0 +1,76 @@
+"""Rubrics of random robots: each loads, and its reference gets full marks."""
+
+import tomllib
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.command_line import run
+
+numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
+sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}")
+vectors = st.tuples(numbers, numbers, numbers).map(" ".join)
+axes = st.sampled_from(("0 0 1", "0 -1 0", "2 0 0", "1 1 1", "0.3 -0.2 0.9"))
+channels = st.floats(0, 1).map(lambda value: f"{value:.3g}")
+origins = st.builds('<origin xyz="{}" rpy="{}"/>'.format, vectors, vectors) | st.just("")
+shapes = st.one_of(
+    st.builds('<box size="{} {} {}"/>'.format, sizes, sizes, sizes),
+    st.builds('<cylinder radius="{}" length="{}"/>'.format, sizes, sizes),
+    st.builds('<sphere radius="{}"/>'.format, sizes),
+    st.builds('<mesh filename="package://ash/{}.stl"/>'.format, st.sampled_from(("a", "b"))),
+).map("<geometry>{}</geometry>".format)
+colours = st.builds('<material name=""><color rgba="{} {} {} 1"/></material>'.format, channels, channels, channels)
+visuals = st.builds("<visual>{}{}{}</visual>".format, origins, shapes, colours | st.just(""))
+collisions = st.builds("<collision>{}{}</collision>".format, origins, shapes)
+inertials = st.builds(
+    '<inertial>{}<mass value="{}"/><inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial>'.format,
+    origins,
+    sizes,
+    sizes,
+    sizes,
+    sizes,
+)
+limits = st.builds('<limit lower="{}" upper="{}" effort="{}" velocity="{}"/>'.format, numbers, numbers, sizes, sizes)
+dynamics = st.builds('<dynamics damping="{}" friction="{}"/>'.format, sizes, sizes)
+kinds = st.sampled_from(("fixed", "continuous", "revolute", "prismatic", "planar", "floating"))
+
+
+@st.composite
+def urdfs(draw: st.DrawFn) -> str:
+    """Return a robot of up to six links, in a random order, some of whose joints mimic the first."""
+    parts, first = [], ""
+    for index in range(draw(st.integers(1, 6))):
+        inside = draw(st.lists(visuals, max_size=2)) + draw(st.lists(collisions | inertials, max_size=1))
+        parts.append(f'<link name="l{index}">{"".join(inside)}</link>')
+        if index:
+            kind = draw(kinds)
+            ends = f'<parent link="l{draw(st.integers(0, index - 1))}"/><child link="l{index}"/>'
+            more = draw(limits) if kind in ("revolute", "prismatic") else ""
+            more += draw(dynamics | st.just("")) + draw(origins)
+            more += f'<axis xyz="{draw(axes)}"/>' if kind != "fixed" else ""
+            if first and kind in ("revolute", "prismatic") and draw(st.booleans()):
+                more += f'<mimic joint="{first}" multiplier="{draw(numbers)}"/>'
+            elif kind in ("revolute", "prismatic"):
+                first = first or f"j{index}"
+            parts.append(f'<joint name="j{index}" type="{kind}">{ends}{more}</joint>')
+    return f'<robot name="ash">{"".join(draw(st.permutations(parts)))}</robot>'
+
+
+@settings(max_examples=40, deadline=None)
+@given(text=urdfs())
+def test_a_random_reference_gets_full_marks(text: str) -> None:
+    """Every rubric loads and gives its reference all points; the frame and the joint of each link are criteria."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "robot.urdf").write_text(text)
+        done = run(("rubric", "new", folder / "lab.toml", "--from", folder / "robot.urdf"))
+        assert (done.returncode, done.stderr) == (0, b"")
+        checked = run(("rubric", "check", folder / "lab.toml"))
+        assert checked.stdout.decode().endswith("its reference gets full marks\n"), checked.stderr
+        assert run(("grade", folder / "robot.urdf", "--rubric", folder / "lab.toml")).returncode == 0
+        rows = tomllib.loads((folder / "lab.toml").read_text())["criterion"]
+        links = {f"l{index}" for index in range(1, text.count("<link "))}
+        for check in ("frame_at", "held_by"):
+            assert {row["with"]["link"] for row in rows if row["check"] == check} == links

@@ -1,0 +1,217 @@
+"""The collision shapes of a link against its visuals: as solids, in place, one to one."""
+
+from math import pi
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.collisions import collision_matches_visual
+from grader.robot.model import Box, Cylinder, Sphere
+from grader.robot.shapes import Shape
+from grader.robot.transforms import Transform, Vector, rotation_about, rotation_from_rpy
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
+from tests.checks.robots import Numbers, Scene, box, collision, cylinder, link, mesh, scene, sphere, turned, visual
+
+CLOSE: Arguments = {"link": "arm", "tolerance": 0.002}
+BRICK, ROD, BALL = box(0.6, 0.4, 0.2), cylinder(0.1, 0.5), sphere(0.1)
+_angle = st.floats(-3.0, 3.0)
+_rpy = st.tuples(_angle, _angle, _angle)
+
+
+def arm(*shapes: str) -> Scene:
+    """Return a link with these visuals and collisions."""
+    return scene(link("arm", *shapes))
+
+
+# --- Equal solids -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("shape", "other", "rpy"),
+    [
+        (BRICK, BRICK, turned(roll=180)),
+        (BRICK, BRICK, turned(yaw=180)),
+        (BRICK, box(0.4, 0.6, 0.2), turned(yaw=90)),
+        (BRICK, box(0.2, 0.4, 0.6), turned(pitch=-90)),
+        (BRICK, box(0.4, 0.2, 0.6), turned(roll=90, yaw=90)),
+        (BRICK, box(-0.6, 0.4, -0.2), ""),
+        (box(0.1, 0.1, 0.3), box(0.1, 0.1, 0.3), turned(yaw=90)),
+        (ROD, ROD, turned(roll=180)),
+        (ROD, ROD, turned(yaw=37)),
+        (BALL, BALL, turned(roll=11, pitch=-70, yaw=37)),
+        (mesh(), mesh(), turned(yaw=0.9)),
+    ],
+)
+def test_symmetries_do_not_matter(shape: str, other: str, rpy: Numbers) -> None:
+    """A solid that is turned onto itself, or a box on its side with its edges exchanged, is the same solid."""
+    body = arm(visual(shape, xyz="1 2 3"), collision(other, xyz="1 2 3", rpy=rpy))
+    assert passes(collision_matches_visual, body, **CLOSE) == "'arm' has 1 collision shape, as shown"
+
+
+@pytest.mark.parametrize(
+    ("shape", "other", "rpy", "told"),
+    [
+        (BRICK, BRICK, turned(yaw=90), "turned by 90 degrees"),
+        (BRICK, BRICK, turned(roll=2), "turned by 2 degrees"),
+        (BRICK, box(0.6, 0.4, 0.21), "", "of a size 10 mm off"),
+        (box(0.1, 0.1, 0.3), box(0.1, 0.1, 0.3), turned(yaw=45), "turned by 45 degrees"),
+        (ROD, ROD, turned(roll=90), "turned by 90 degrees"),
+        (ROD, cylinder(0.11, 0.5), "", "of a size 10 mm off"),
+        (ROD, cylinder(0.1, 0.4), "", "of a size 100 mm off"),
+        (BALL, sphere(0.2), "", "of a size 100 mm off"),
+        (mesh(), mesh(), turned(yaw=1.1), "turned by 1.1 degrees"),
+    ],
+)
+def test_other_solids_fail(shape: str, other: str, rpy: Numbers, told: str) -> None:
+    """The message says in what the nearest collision shape differs."""
+    body = arm(visual(shape), collision(other, rpy=rpy))
+    assert fails(collision_matches_visual, body, **CLOSE).endswith(f"({told})")
+
+
+SHAPES = ((Box((0.6, 0.4, 0.2)), BRICK), (Cylinder(0.1, 0.5), ROD), (Sphere(0.1), BALL))
+SYMMETRIES = {Box: ((1.0, 0.0, 0.0), pi), Cylinder: ((0.0, 0.0, 1.0), 0.7), Sphere: ((0.6, 0.0, 0.8), 2.1)}
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.sampled_from(SHAPES), _rpy)
+def test_turned_solids(shape: tuple[Shape, str], rpy: Vector) -> None:
+    """However both are turned, a symmetry changes nothing, and a shift along any axis of the link counts in full."""
+    kind, text = shape
+    pose = Transform(rotation_from_rpy(rpy), (0.1, 0.2, 0.3))
+    same = (pose @ Transform(rotation_about(*SYMMETRIES[type(kind)]))).rpy
+    shown = visual(text, xyz=pose.translation, rpy=rpy)
+    for off, status in ((0.0, "passed"), (0.0019, "passed"), (0.0021, "failed"), (-0.0021, "failed")):
+        body = arm(shown, collision(text, xyz=(0.1, 0.2 + off, 0.3), rpy=same))
+        assert ask(collision_matches_visual, body, **CLOSE).status == status
+
+
+@pytest.mark.parametrize("edge", range(3))
+@pytest.mark.parametrize(("off", "status"), [(0.0019, "passed"), (0.0021, "failed"), (-0.0021, "failed")])
+def test_each_size_has_the_tolerance(edge: int, off: float, status: str) -> None:
+    """Each edge of a box may be off by the tolerance."""
+    size = [0.6, 0.4, 0.2]
+    size[edge] += off
+    body = arm(visual(BRICK), collision(box(size[0], size[1], size[2])))
+    assert ask(collision_matches_visual, body, **CLOSE).status == status
+
+
+# --- One to one -------------------------------------------------------------------------------------------------------
+
+
+def test_several_shapes_in_any_order() -> None:
+    """The order of the shapes does not matter, and shapes without a size do not count."""
+    shown = [visual(BRICK), visual(ROD, xyz="0 0 0.35"), visual(BALL, xyz="0 0 0.6"), visual(box(0.0, 0.0, 0.0))]
+    solid = [collision(BALL, xyz="0 0 0.6"), collision(sphere(0.0)), collision(ROD, xyz="0 0 0.35"), collision(BRICK)]
+    assert passes(collision_matches_visual, arm(*shown, *solid), **CLOSE) == "'arm' has 3 collision shapes, as shown"
+
+
+def test_near_shapes_find_their_partners() -> None:
+    """Where a shape fits two others, all get a partner if that is possible."""
+    shown = [visual(BALL, xyz="0 0 0.0015"), visual(BALL, xyz="0 0 0")]
+    solid = [collision(BALL, xyz="0 0 0.001"), collision(BALL, xyz="0 0 0.003")]
+    assert ask(collision_matches_visual, arm(*shown, *solid), **CLOSE).status == "passed"
+    assert ask(collision_matches_visual, arm(*reversed(shown), *reversed(solid)), **CLOSE).status == "passed"
+
+
+def test_one_shape_is_no_partner_of_two() -> None:
+    """Two visuals in one place need two collision shapes."""
+    message = fails(collision_matches_visual, arm(visual(BALL), visual(BALL, xyz="0 0 0"), collision(BALL)), **CLOSE)
+    assert message == "no collision shape of 'arm' is a sphere of radius 0.1 m at 0 0 0 m, as shown"
+
+
+def test_a_shape_that_is_not_shown() -> None:
+    """A collision shape without a visual fails, at that shape."""
+    extra = arm(visual(BRICK), collision(BRICK), collision(ROD, xyz="0 0 1"))
+    assert fails(collision_matches_visual, extra, **CLOSE) == (
+        "'arm' has a collision shape that it does not show: a cylinder of radius 0.1 m and length 0.5 m at 0 0 1 m"
+    )
+
+
+def test_another_kind_of_shape() -> None:
+    """A box around a cylinder is not the cylinder; the message names both."""
+    body = arm(visual(ROD), collision(box(0.2, 0.2, 0.5)))
+    assert fails(collision_matches_visual, body, at="<box", **CLOSE) == (
+        "no collision shape of 'arm' is a cylinder of radius 0.1 m and length 0.5 m at 0 0 0 m, as shown;"
+        " the nearest is a box 0.2 0.2 0.5 m at 0 0 0 m"
+    )
+
+
+def test_the_nearest_shape_is_named() -> None:
+    """Of several wrong shapes, the message is about the most similar pair."""
+    shown = [visual(BRICK), visual(ROD)]
+    body = arm(*shown, collision(BALL), collision(cylinder(0.1, 0.5), xyz="0 0 0.01"))
+    message = fails(collision_matches_visual, body, at='xyz="0 0 0.01"', **CLOSE)
+    assert message.endswith("the nearest is a cylinder of radius 0.1 m and length 0.5 m at 0 0 0.01 m (10 mm away)")
+
+
+def test_no_collision() -> None:
+    """A link without collision shapes fails, at the link; one that shows nothing misses its visual."""
+    for shapes in ((visual(BRICK),), (visual(BRICK), collision(sphere(0.0)))):
+        assert fails(collision_matches_visual, arm(*shapes), at="<link ", **CLOSE) == (
+            "link 'arm' has no collision shape with a size; it should have the shapes that it shows"
+        )
+    assert missing(collision_matches_visual, arm(visual(BRICK)), **CLOSE).kind == "collision"
+    assert missing(collision_matches_visual, arm(collision(BRICK)), **CLOSE).kind == "visual"
+
+
+def test_a_collision_that_ros_cannot_read() -> None:
+    """The message says why ROS 2 drops it."""
+    bad = arm(visual(BRICK), collision('<box sise="1 1 1"/>'))
+    assert "<box> has no size" in fails(collision_matches_visual, bad, at="<box sise", **CLOSE)
+
+
+# --- Meshes -----------------------------------------------------------------------------------------------------------
+
+HULL = mesh("package://my_robot/meshes/hull.stl")
+
+
+@pytest.mark.parametrize(
+    ("solid", "status"),
+    [
+        (collision(mesh()), "passed"),
+        (collision(mesh(), xyz="0 0 0.0019"), "passed"),
+        (collision(mesh(), xyz="0 0 0.0021"), "failed"),
+        (collision(mesh(scale="2 2 2")), "failed"),
+        (collision(HULL), "pending"),
+        (collision(HULL) + collision(HULL, xyz="1 0 0"), "pending"),
+        (collision(BRICK), "failed"),
+        (collision(HULL) + collision(BRICK), "failed"),
+    ],
+)
+def test_meshes(solid: str, status: str) -> None:
+    """A mesh is the same file at the same scale and pose; another file may have the same shape, and no box has."""
+    assert graded(collision_matches_visual, arm(visual(mesh()), solid), **CLOSE).status == status
+
+
+def test_a_mesh_for_a_box() -> None:
+    """A mesh is no box, even if nothing else is shown."""
+    assert graded(collision_matches_visual, arm(visual(BRICK), collision(mesh())), **CLOSE).status == "failed"
+
+
+def test_what_is_pending_is_told() -> None:
+    """The message names the mesh that is not shown."""
+    outcome = graded(collision_matches_visual, arm(visual(mesh()), collision(HULL)), **CLOSE)
+    assert outcome.message == (
+        "whether the collision mesh 'package://my_robot/meshes/hull.stl' of 'arm' has the shape that is shown"
+        " cannot be determined: mesh files are not opened; needs manual grading"
+    )
+
+
+# --- Absurd numbers ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e160, 1e300])
+@pytest.mark.parametrize("far", ["0 0 0", "1e300 1e300 1e300", "-1e308 1e308 1e308"])
+def test_absurd_numbers(size: float, far: str) -> None:
+    """Overflow never passes a shape in another place, and never breaks the check."""
+    for text in (box(size, size, size), sphere(size), cylinder(size, size)):
+        here = visual(text)
+        status = graded(collision_matches_visual, arm(here, collision(text, xyz=far)), **CLOSE).status
+        assert status == ("passed" if far == "0 0 0" else "failed")
+
+
+def test_very_many_shapes() -> None:
+    """A link with more shapes than are compared needs manual grading."""
+    shapes = [shape for _ in range(101) for shape in (visual(BALL), collision(BALL))]
+    assert graded(collision_matches_visual, arm(*shapes), **CLOSE).status == "pending"
