@@ -97,7 +97,7 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
         if not file or submission.is_single or any(_ends(path, file) for path in source.documents):
             return source
     elif not file or submission.is_single:
-        others = [path for path in submission.tree.files if path.lower().endswith(".xacro")]
+        others = [path for path in submission.tree.files if path.lower().endswith(".xacro") and path != urdf.path]
         if others:
             message = (
                 f"the graded URDF is {urdf.path}, which is no xacro, but there is {enumerated(others, _MAX_NAMED)}"
