@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path, PurePosixPath
 
 from grader.errors import InputError
+from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, shipped_rubrics
 
 SECONDS = 300  # of the ten minutes that Gradescope gives
@@ -45,10 +46,20 @@ def autograder_zip(rubric: Rubric) -> bytes:
 
 
 def _reference(rubric: Rubric, folder: str) -> dict[str, bytes]:
-    """Return the files of the reference solution, by which hints are found; none where it is not below the rubric's folder."""
+    """Return the files of the reference solution, by which hints are found and with which checks compare.
+
+    Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
+    """
     root = rubric.path.parent
     place = root / rubric.reference
-    if not rubric.reference or rubric.hints == "none" or ".." in PurePosixPath(rubric.reference).parts:
+    is_outside = ".." in PurePosixPath(rubric.reference).parts
+    if rubric.solution is not None and rubric.compares_with_reference:
+        grade(rubric, rubric.solution.submission)  # raises GraderError where it cannot be compared with
+        if is_outside:
+            raise InputError(
+                f"{rubric.id}: a check compares with the reference {rubric.reference}, which must be below the rubric's folder"
+            )
+    elif not rubric.reference or rubric.hints == "none" or is_outside:
         return {}
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
     own = (

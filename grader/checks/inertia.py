@@ -10,17 +10,17 @@ from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES, check_resolved
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
-from grader.robot.inertia import MassProperties, difference, principal_moments, turned, uniform_solid
+from grader.robot.inertia import MassProperties, difference, principal_moments, turned, uniform_solid, with_volume
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Inertial, Link, Mesh
+from grader.robot.model import Geometry, Inertial, Link, Mesh
 from grader.robot.separation import penetration
-from grader.robot.shapes import Shape, UnknownShape, bounding_radius, is_empty, volume
+from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
 _ROUNDING = 0.01  # of the largest principal moment: what rounded numbers may add to it in a thin plate, where the others are equal to it
-_CENTRE = 0.002  # metres that a mass centre may be off
-_CENTRE_SHARE = 0.02  # of the size that a mass centre may be off
+_CENTRE = 0.002  # metres that a centre of mass may be off
+_CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
 _OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
 _COMPONENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -45,10 +45,10 @@ def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: No
 
 
 def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
-    """The inertia and the mass centre of a link are those of a uniform solid of its shapes with its mass.
+    """The inertia and the centre of mass of a link are those of a uniform solid of its shapes with its mass.
 
     The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual grading. The mass must be
-    positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The mass centre
+    positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The centre of mass
     may be 2 mm or 2 % of the size off, whichever is more.
 
     Args:
@@ -82,7 +82,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
-        wrong.append(f"the mass centre of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
+        wrong.append(f"the centre of mass of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
     if wrong and _overlapping(shapes):
         reason = f"the {what} of a link overlap, so their solid is not known"
         raise NotDecided(f"{'; '.join(wrong)}, but the {what} overlap", reason)
@@ -127,20 +127,19 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
     found = robot.link(link)
     for word, elements in (("collision shape", found.collisions), ("visual", found.visuals)):
         check_resolved(found, word.partition(" ")[0], has_none=True)
-        placed = {(element.geometry, element.origin): None for element in elements if not is_empty(element.geometry)}
-        for geometry, _ in placed:
-            if isinstance(geometry, Mesh):
-                raise UnknownShape(geometry)
-        shapes = [
-            (geometry, placed_by(IDENTITY, origin))
-            for geometry, origin in placed
-            if not isinstance(geometry, Mesh) and volume(geometry) > 0.0
-        ]
-        if len(shapes) > MAX_SHAPES:
+        placed = with_volume(elements)
+        if len(placed) > MAX_SHAPES:
             raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
+        shapes = [(_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed]
         if shapes:
             return word + "s" * (len(shapes) > 1), shapes
     raise _without_volume(found)
+
+
+def _measurable(geometry: Geometry) -> Shape:
+    if isinstance(geometry, Mesh):
+        raise UnknownShape(geometry)
+    return geometry
 
 
 def _without_volume(link: Link) -> MissingElement:

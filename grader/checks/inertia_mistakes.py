@@ -40,7 +40,7 @@ def _candidates(solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]
     xx, xy, xz, yy, yz, zz = solid.inertia
     yield "ixy, ixz and iyz had the other sign", (xx, -xy, -xz, yy, -yz, zz)
     yield (
-        "it were about the origin of the link, not about the mass centre",
+        "it were about the origin of the link, not about the centre of mass",
         shifted(solid.inertia, solid.mass, solid.centre),
     )
     if len(shapes) > 1:

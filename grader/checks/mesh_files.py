@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from grader.errors import NotDecided
 from grader.names import closest
-from grader.package.cmake import read_cmake
 from grader.package.package import Package
 from grader.submission.submission import Submission
 from grader.text import quoted
@@ -111,6 +110,8 @@ def _not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
     setup = package.setup
     if package.is_cmake:
+        from grader.package.cmake import read_cmake  # late: most packages have a setup.py
+
         cmake = read_cmake(package.tree)
         installed, entry = cmake.installed, "install(DIRECTORY ...) in CMakeLists.txt"
         doubt = "" if cmake.is_certain else "cannot determine statically what CMakeLists.txt installs"

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from grader.checks.motion_comparison import MotionComparison
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import Constraint, NonNegative
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
@@ -63,11 +63,11 @@ def _selected(robot: Configuration, link: str) -> str:
 
 
 def _of_reference(reference: Configuration, link: str) -> str:
-    """Return the name of a link of the reference; raises InputError, because no student can do anything about it."""
+    """Return the name of a link of the reference. Raises RubricError, because no student can do anything about it."""
     try:
         return _selected(reference, link)
     except (MissingElement, NotDecided) as error:
-        raise InputError(f"the reference cannot be compared with: {error}") from None
+        raise RubricError((f"the reference solution cannot be compared with: {error}",)) from None
 
 
 def _bases(robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str) -> tuple[str, str]:

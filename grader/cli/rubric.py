@@ -129,9 +129,9 @@ def run_test(
     mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Mutants to grade at most.")] = 500,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
-    """Test a rubric on mutants and equivalents of its reference, and on samples.
+    """Test a rubric on mutants of its reference and on samples.
 
-    The reference and its equivalents must lose nothing, every mutant something. Mutants that get full marks are listed with a
+    The reference and rewritings of it must lose nothing, every mutant something. Mutants that get full marks are listed with a
     suggestion.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the

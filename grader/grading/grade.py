@@ -7,7 +7,7 @@ from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check
 from grader.checks.tree import urdf_loads
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
 from grader.grading.explanation import explained
 from grader.grading.report import GradedSubmission, Report, Result
@@ -159,7 +159,7 @@ class _Grading:
         return next((found for found in before if found.outcome.status == "failed"), None)
 
     def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
-        """Return the result of a check; raise MissingElement."""
+        """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""
         try:
             examined = self._subjects.of(check, criterion.at)
             arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
@@ -171,6 +171,8 @@ class _Grading:
             return Result(criterion, _errored(check, fault) if fault else outcome)
         except MissingElement:
             raise
+        except RubricError as error:
+            raise RubricError(tuple(f"the criterion {criterion.id}: {line}" for line in error.complaints)) from None
         except (UnknownShape, NotDecided) as reason:
             cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
             return Result(criterion, pending(f"{reason}; needs manual grading", cause))

@@ -53,13 +53,9 @@ def _lost(trial: Trial, submission: Submission) -> Iterator[tuple[str, str]]:
 
 def _asked(trial: Trial, submission: Submission) -> Collection[str]:
     """Return the criteria that the robot decides; on a URDF on its own, those that need nothing else."""
-    expected = trial.expected
-    subjects = ("urdf", "robot") if submission.is_single else ("urdf", "robot", "submission")
-    return [
-        name
-        for name in trial.tested
-        if expected[name].criterion.check.subject in subjects and expected[name].criterion.check.name not in UNASKED
-    ]
+    checks = {name: trial.expected[name].criterion.check for name in trial.tested}
+    others = ("package", "submission") if submission.is_single else ("package",)
+    return [name for name, check in checks.items() if check.subject not in others and check.name not in UNASKED]
 
 
 def _has_forbidden_problem(trial: Trial, submission: Submission) -> bool:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from random import Random
 
+from grader.checks.registry import check_names
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
 from grader.mutation.mutants import Mutant, mutants
@@ -12,6 +13,7 @@ from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import MutantResults, Survivor
 from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
+from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 Step = Callable[[], None]  # shows that one more mutant is graded
@@ -25,6 +27,7 @@ class MutationTest:
         self.all = list(_mutants_of(trial))
         self.chosen = sampled(self.all, most, Random(seed))
         self.caught = self.same = 0
+        self.checks = set(check_names())
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 
@@ -66,16 +69,18 @@ class MutationTest:
         elif self.trial.is_same(mutant, submission):
             self.same += 1
         else:
-            return (self._survivor(mutant),)
+            return (self._survivor(mutant, submission),)
         return ()
 
-    def _survivor(self, mutant: Mutant) -> Survivor:
+    def _survivor(self, mutant: Mutant, submission: Submission) -> Survivor:
         rubric, urdf = self.trial.rubric, self.trial.reference.urdf
         reason = next(
             (row.reason for row in rubric.ignored if any(fnmatchcase(mutant.id, it) for it in row.mutants)), ""
         )
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot), reason)
+        changed = submission.verdict or ""
+        verdict = changed if changed != self.trial.reference.verdict else ""
+        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot, verdict, self.checks), reason)
 
     def _diff(self, mutant: Mutant) -> str:
         if mutant.renamed:
@@ -93,7 +98,7 @@ class MutationTest:
                 return
             submission = self.trial.submission(mutant) if mutant.id not in chosen else None
             if submission is not None:
-                for result in self.trial.results(mutant, submission, list(self.idle)):
+                for result in self.trial.results(mutant, submission, self.trial.expected):
                     if result.outcome.status == "failed":
                         self.idle.pop(result.criterion.id, None)
 

@@ -1,9 +1,8 @@
 """Which check to try for a mutant that survived: a table of what it changes."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.checks.registry import check_names
 from grader.grading.rubric import Criterion, Rubric
 from grader.mutation.mutants import Mutant
 from grader.mutation.references import texts
@@ -19,6 +18,11 @@ class Rule(NamedTuple):
     inside: str = ""
 
 
+# What ROS 2 does with a mutant, and the check that looks at that.
+_VERDICTS = {
+    "rejected": ("ROS 2 rejects it, and no criterion says so", "urdf_loads"),
+    "degraded": ("ROS 2 drops content of it, and no criterion says so", "without_problems"),
+}
 _MEASURED = ("link", "links", "joints", "leader", "name", "file", "files")
 # The first rule that matches counts.
 _RULES = (
@@ -60,9 +64,15 @@ _RULES = (
 )
 
 
-def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None) -> str:
-    """Return what may catch a mutant that survived, as a clause; `robot` is the reference's."""
-    known = check_names()
+def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None, verdict: str, known: Collection[str]) -> str:
+    """Return what may catch a mutant that survived, as a clause.
+
+    `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `known` are the checks that exist.
+    """
+    used = {criterion.check.name for criterion in rubric.criteria}
+    effect, check = _VERDICTS.get(verdict, ("", ""))
+    if check in known and check not in used:
+        return f"{effect}; try {check}"
     checks = [name for name in _checks_for(mutant.tags) if name in known]
     names = _names(mutant, robot)
     near = [found for found in rubric.criteria if found.check.name in checks and names & _measured(found)]
@@ -87,10 +97,12 @@ def _measured(criterion: Criterion) -> set[str]:
 
 
 def _names(mutant: Mutant, robot: Robot | None) -> set[str]:
-    """Return the names in the place of a mutant, with the link that a joint moves, and those that a material colours."""
+    """Return the names in the place of a mutant, with the links that a joint moves, and those that a material colours."""
     names = set(mutant.id.partition(": ")[2].partition(" -> ")[0].replace("/", " ").split())
     if robot is None:
         return names
     moved = {joint.child for joint in robot.joints if joint.name in names}
+    while below := {joint.child for joint in robot.joints if joint.type == "fixed" and joint.parent in moved} - moved:
+        moved |= below
     shown = {link.name for link in robot.links for visual in link.visuals if visual.material_name in names}
     return names | moved | shown

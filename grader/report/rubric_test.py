@@ -129,7 +129,7 @@ def _margins(margins: Sequence[Margin]) -> Iterator[str]:
     width = max(len(margin.criterion) for margin in margins)
     yield from (
         "",
-        "How far values are off: of the reference, of the worst mutant that passes, of the best one that fails",
+        "How far values are off: of the reference, and of mutants the most that passes and the least that fails",
     )
     yield f"  {'':{width}}{'tolerance':>12}{'reference':>12}{'passes':>12}{'fails':>12}"
     for margin in margins:

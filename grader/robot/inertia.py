@@ -1,4 +1,4 @@
-"""Mass, mass centre and inertia of uniform solids, alone or together, and the principal moments of an inertia tensor.
+"""Mass, centre of mass and inertia of uniform solids, alone or together, and the principal moments of an inertia tensor.
 
 The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks of
 dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from math import copysign, hypot, isfinite, nan
 from typing import NamedTuple
 
-from grader.robot.model import Box, Sphere
-from grader.robot.shapes import Shape, volume
+from grader.robot.model import Box, Collision, Geometry, Mesh, Origin, Sphere, Visual
+from grader.robot.shapes import Shape, is_empty, volume
 from grader.robot.transforms import Rotation, Transform, Vector, dot, minus
 
 Tensor = tuple[float, float, float, float, float, float]  # ixx, ixy, ixz, iyy, iyz, izz as in a URDF, kg m^2
@@ -18,7 +18,7 @@ _MAX_SWEEPS = 12  # of Jacobi rotations, which converge quadratically: 3 x 3 mat
 
 
 class MassProperties(NamedTuple):
-    """The mass of a body in kg, its mass centre in metres, and its inertia about that centre, along the axes of one frame."""
+    """The mass of a body in kg, its centre of mass in metres, and its inertia about that centre, along the axes of one frame."""
 
     mass: float
     centre: Vector
@@ -54,6 +54,16 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
     )
 
 
+def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, Origin]]:
+    """Return the shapes that have a volume, or may have one because they are meshes, each once with its origin."""
+    placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
+    return [(shape, origin) for shape, origin in placed if not is_empty(shape) and _has_volume(shape)]
+
+
+def _has_volume(shape: Geometry) -> bool:
+    return isinstance(shape, Mesh) or volume(shape) > 0.0
+
+
 def together(bodies: Iterable[MassProperties]) -> MassProperties:
     """Return the mass properties of bodies that are fixed to each other; the sum of their masses must not be 0."""
     every = list(bodies)
@@ -77,7 +87,7 @@ def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:
 
 
 def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
-    """Return the inertia of a body about a point at `offset` from its mass centre, in metres (parallel axis theorem)."""
+    """Return the inertia of a body about a point at `offset` from its centre of mass, in metres (parallel axis theorem)."""
     x, y, z = offset
     away = (y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y)
     return _tensor(about + mass * square for about, square in zip(inertia, away, strict=True))

@@ -64,7 +64,7 @@ def _ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tu
 
 
 def _off(one: float, other: float) -> float:
-    return abs(abs(one) - abs(other))
+    return abs(one - other)  # a negative size is a mistake, which simulators refuse
 
 
 def _between(one: Vector, other: Vector) -> Vector:

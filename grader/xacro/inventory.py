@@ -40,14 +40,14 @@ def take_inventory(documents: Iterable[Node]) -> Inventory:
     """Return what files define and use. A parameter of a macro is no use of a property of its name."""
     found, roots = Inventory(), [*documents]
     spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
-    waiting = [(root, frozenset[str]()) for root in roots]
+    waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
         own = _note_tag(node, found)
         texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
         names = {name for text in texts for name in _names_in(text, spaces)}
         found.used.update(names - hidden - {own})
-        waiting += [(child, hidden | _hidden_in(node, found)) for child in node.elements]
+        waiting += [(child, hidden | _hidden_in(node, found)) for child in reversed(node.elements)]
     return found
 
 

@@ -124,8 +124,8 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     is_optional = optional is not None and _boolean(optional, optional)
     try:
         for path in expander.files.named(texts.text(needed(node, "filename"), scopes.symbols)):
-            expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
             _insert_file(expander, path, out, inner)
+            expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
         if is_optional:
             return

@@ -137,12 +137,12 @@ def test_collisions_come_before_visuals() -> None:
 
 
 def test_several_shapes_are_one_solid() -> None:
-    """A box that is shown as two halves has the inertia and the mass centre of the whole."""
+    """A box that is shown as two halves has the inertia and the centre of mass of the whole."""
     halves = [visual(box(0.3, 0.4, 0.2), xyz=(x, 0.0, 0.0)) for x in (0.15, 0.45)]
     right = solid_inertia(PLATE, 2.0)
     message = passes(inertia_plausible, arm(right, *halves, xyz="0.3 0 0"), **TEN)
     assert message == "the inertia of 'arm' is that of a uniform solid of its visuals (0 % off)"
-    assert "the mass centre" in fails(inertia_plausible, arm(right, *halves), **TEN)
+    assert "the centre of mass" in fails(inertia_plausible, arm(right, *halves), **TEN)
 
 
 def test_overlapping_shapes_need_manual_grading() -> None:
@@ -217,7 +217,7 @@ MISTAKES = [
         ROD,
         shifted(solid_inertia(ROD, 2.0), 2.0, UP),
         ON_END,
-        "it would fit if it were about the origin of the link, not about the mass centre",
+        "it would fit if it were about the origin of the link, not about the centre of mass",
     ),
     (
         ROD,
@@ -251,11 +251,11 @@ def test_the_mass_centre_is_told() -> None:
     """The usual mistake: the inertia is right, but <inertial> has no origin."""
     body = arm(solid_inertia(ROD, 2.0), visual(TEXTS[ROD], xyz=UP))
     assert fails(inertia_plausible, body, at="<inertial>", **TEN) == (
-        "the mass centre of 'arm' is at 0 0 0 m; it should be at 0 0 0.3 m in 'arm' (300 mm off)"
+        "the centre of mass of 'arm' is at 0 0 0 m; it should be at 0 0 0.3 m in 'arm' (300 mm off)"
     )
     both = arm(scaled(solid_inertia(ROD, 2.0), 2.0), visual(TEXTS[ROD], xyz=UP), xyz="0 0 0.1")
     message = fails(inertia_plausible, both, at="<inertia ", **TEN)
-    assert "100 % too large, as for a mass of 4 kg; the mass centre of 'arm' is at 0 0 0.1 m" in message
+    assert "100 % too large, as for a mass of 4 kg; the centre of mass of 'arm' is at 0 0 0.1 m" in message
 
 
 # --- Shapes and numbers that cannot be compared -----------------------------------------------------------------------

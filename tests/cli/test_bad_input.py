@@ -173,7 +173,7 @@ def test_usage() -> None:
     refuse("inspect", reference, "--relative-to", "chassis", words="there is no link 'chassis'")
     refuse("explain", "URDF999", words="there is no problem code, criterion or check")
     refuse("schema", "gradebook", words="gradebook")
-    refuse("rubric", "test", "lab6", words="test")
+    refuse("rubric", "tset", "lab6", words="tset")
 
 
 def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> None:

@@ -165,3 +165,88 @@ def test_a_mesh_that_is_not_installed(tmp_path: Path) -> None:
     """The usual omission: the folder of the meshes is missing in CMakeLists.txt."""
     message = graded(tmp_path, cmake=CMAKE.replace(" meshes ", " "))["mesh"]["message"]
     assert "is not installed: add meshes/base.stl to install(DIRECTORY ...) in CMakeLists.txt" in message
+
+
+# --- Hints ------------------------------------------------------------------------------------------------------------
+
+RIGHT = """\
+<robot name="my_arm">
+  <link name="arm">
+    <inertial>
+      <origin xyz="0 0 0.3"/>
+      <mass value="2"/>
+      <inertia ixx="0.06125" ixy="0" ixz="0" iyy="0.06125" iyz="0" izz="0.0025"/>
+    </inertial>
+    <visual>
+      <origin xyz="0 0 0.3"/>
+      <geometry><cylinder radius="0.05" length="0.6"/></geometry>
+      <material name="red"><color rgba="1 0 0 1"/></material>
+    </visual>
+    <collision>
+      <origin xyz="0 0 0.3"/>
+      <geometry><cylinder radius="0.05" length="0.6"/></geometry>
+    </collision>
+  </link>
+</robot>
+"""
+INERTIAL = RIGHT[RIGHT.index("    <inertial>") : RIGHT.index("    <visual>")]
+COLLISION = RIGHT[RIGHT.index("    <collision>") : RIGHT.index("  </link>")]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "cause"),
+    [
+        ('<mass value="2"/>', '<mass value="2000"/>', "the mass of the link 'arm'"),
+        ('ixx="0.06125"', 'ixx="0.6125"', "the inertia of the link 'arm'"),
+        (
+            '<origin xyz="0 0 0.3"/>\n      <mass',
+            "<mass",
+            "the centre of mass of the link 'arm'",
+        ),
+        (
+            '<origin xyz="0 0 0.3"/>\n      <mass value="2"/>\n      <inertia ixx="0.06125"',
+            '<mass value="2"/>\n      <inertia ixx="0.24"',
+            "inertia and centre of mass of the link 'arm'",
+        ),
+        (INERTIAL, "", "the <inertial> of the link 'arm' is missing"),
+        (COLLISION, "", "the <collision> of the link 'arm' is missing"),
+        (
+            COLLISION,
+            COLLISION.replace("0 0 0.3", "0 0 0"),
+            "the origin of the collision of the link 'arm'",
+        ),
+        (
+            COLLISION,
+            COLLISION.replace("0.05", "0.5"),
+            "the geometry of the collision of the link 'arm'",
+        ),
+        (
+            COLLISION,
+            COLLISION.replace("0.05", "0.5").replace("0 0 0.3", "0 0 0"),
+            "the collision of the link 'arm'",
+        ),
+        (
+            COLLISION,
+            COLLISION + "    <collision><geometry><sphere radius='1'/></geometry></collision>\n",
+            "a collision of the link 'arm' that is not shown",
+        ),
+    ],
+)
+def test_hints(tmp_path: Path, old: str, new: str, cause: str) -> None:
+    """Without a reference, the edit that makes the link right is found and proven; applied, it gives full marks."""
+    assert RIGHT.count(old) == 1
+    rubric, robot, fixed = tmp_path / "bodies.toml", tmp_path / "my_arm.urdf", tmp_path / "fixed.urdf"
+    text = (
+        RUBRIC.replace("@tip", "arm")
+        .replace("points = 4", "points = 3")
+        .replace("[[part]]", 'hints = "edit"\n[[part]]')
+    )
+    rubric.write_text(text[: text.rindex("[[criterion]]")], encoding="utf-8")
+    robot.write_text(RIGHT.replace(old, new), encoding="utf-8")
+    options = ("--rubric", rubric, "--hints", "edit", "--format", "json")
+    run(("grade", robot, *options, "--fix", fixed))
+    assert json.loads(run(("grade", fixed, *options)).stdout)["score"] == 3
+    done = run(("grade", robot, "--rubric", rubric, "--hints", "cause", "--format", "json"))
+    hints = [hint for result in json.loads(done.stdout)["results"] for hint in result["hints"]]
+    assert all(hint["verified"] and f": {cause}. Fixing this" in hint["message"] for hint in hints)
+    assert hints

@@ -33,7 +33,7 @@ def random_shapes(random: Random) -> list[tuple[Shape, Transform]]:
 
 
 def by_pinocchio(shapes: Sequence[tuple[Shape, Transform]], mass: float) -> tuple[Any, Any]:
-    """Return the mass centre and the inertia matrix that pinocchio computes."""
+    """Return the centre of mass and the inertia matrix that pinocchio computes."""
     total = sum(volume(shape) for shape, _ in shapes)
     body = pin.Inertia.Zero()
     for shape, pose in shapes:
@@ -50,7 +50,7 @@ def by_pinocchio(shapes: Sequence[tuple[Shape, Transform]], mass: float) -> tupl
 
 
 def by_trimesh(shape: Shape, pose: Transform, mass: float) -> tuple[Any, Any]:
-    """Return the mass centre and the inertia matrix that trimesh computes for one shape."""
+    """Return the centre of mass and the inertia matrix that trimesh computes for one shape."""
     where = np.array(pose)
     match shape:
         case Box(size=size):

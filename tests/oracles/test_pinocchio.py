@@ -149,3 +149,82 @@ def test_random_mimics(text: str, multiplier: float, offset: float, position: fl
     read = read_urdf(text.encode())
     assert read.robot is not None
     assert_same_poses(pin.buildModelFromXML(text), Configuration(read.robot, positions), expected)
+
+
+# --- 1,000 configurations ---------------------------------------------------------------------------------------------
+
+_KINDS = ("fixed", "continuous", "revolute", "prismatic", "planar", "floating")
+
+
+def _numbers(random: Random, size: float) -> str:
+    return _text(tuple(random.uniform(-size, size) for _ in range(3)))
+
+
+def _tree(random: Random) -> str:
+    """Return a URDF of 2 to 20 links with joints of all types, some of which mimic a joint of one position."""
+    count = random.randint(2, 20)
+    elements, leading = ['<link name="l0"/>'], list[str]()
+    for child in range(1, count):
+        kind = random.choice(_KINDS)
+        is_single = kind in ("continuous", "revolute", "prismatic")
+        rule = ""
+        if is_single and leading and random.random() < 0.4:
+            rule = f'<mimic joint="{random.choice(leading)}" multiplier="{random.uniform(-2, 2)!r}" offset="{random.uniform(-1, 1)!r}"/>'
+        elif is_single:
+            leading.append(f"j{child}")
+        axis = _numbers(random, 1.0) if kind != "planar" else "0 0 1"  # pinocchio knows planes across z only
+        elements.append(
+            f'<link name="l{child}"/><joint name="j{child}" type="{kind}"><parent link="l{random.randrange(child)}"/>'
+            f'<child link="l{child}"/><origin xyz="{_numbers(random, 1.0)}" rpy="{_numbers(random, 4.0)}"/>'
+            f'<axis xyz="{axis}"/><limit lower="-9" upper="9" effort="1" velocity="1"/>{rule}</joint>'
+        )
+    return f'<robot name="r">{"".join(elements)}</robot>'
+
+
+def _set(state: Any, joint: Any, kind: str, position: Any) -> None:
+    """Write the position of a joint as pinocchio keeps it: cosine and sine of an angle, a quaternion of a rotation."""
+    start, values = joint.idx_q, position
+    if kind == "floating":
+        values = (*position[:3], *pin.Quaternion(pin.rpy.rpyToMatrix(*position[3:])).coeffs())
+    elif kind == "planar":
+        values = (*position[:2], cos(position[2]), sin(position[2]))
+    elif joint.nq == _CIRCLE:
+        values = (cos(position), sin(position))
+    state[start : start + joint.nq] = values
+
+
+def test_a_thousand_configurations() -> None:
+    """Random trees with joints of all types and mimics, 10 random positions each: every pose is pinocchio's, to 1e-9."""
+    random, count = Random(1000), 0
+    kinds, mimics = set[str](), 0
+    for _ in range(100):
+        text = _tree(random)
+        robot = read_urdf(text.encode()).robot
+        assert robot is not None
+        model = pin.buildModelFromXML(text)
+        types = {joint.name: joint.type for joint in robot.joints}
+        kinds |= set(types.values())
+        mimics += sum(joint.mimic is not None for joint in robot.joints)
+        sizes = {"fixed": 0, "planar": 3, "floating": 6}
+        for _ in range(10):
+            given: dict[str, Any] = {}
+            for joint in robot.joints:
+                values = [random.uniform(-3.0, 3.0) for _ in range(sizes.get(joint.type, 1))]
+                if values and joint.mimic is None:
+                    given[joint.name] = values[0] if len(values) == 1 else tuple(values)
+            positions = followed(robot, given)
+            state = pin.neutral(model)
+            for name, moving in joints_of(model).items():
+                _set(state, moving, types[name], positions[name])
+            data = model.createData()
+            pin.framesForwardKinematics(model, data, state)
+            configuration = Configuration(robot, given)
+            for link in robot.links:
+                expected = data.oMf[model.getFrameId(link.name, pin.FrameType.BODY)].homogeneous
+                assert np.allclose(np.array(configuration.pose(link.name)), expected, rtol=0, atol=1e-9), (
+                    text,
+                    link.name,
+                )
+            count += 1
+    assert (count, kinds) == (1000, set(_KINDS))
+    assert mimics > 100

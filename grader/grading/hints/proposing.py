@@ -7,6 +7,7 @@ from grader.edits import Proposal
 from grader.grading.hints.targets import Targets, moving_child, selected, targets_of
 from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
+from grader.robot.edits.bodies import body_proposals
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.families import Values
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _NUMBERS = ("xyz", "size", "radius", "length", "colour")  # arguments of checks
 # Those about the joint that moves a link.
 _JOINT_NUMBERS = ("lower", "upper", "effort", "velocity", "multiplier", "offset", "damping", "friction")
+_BODY_CHECKS = ("mass_is", "inertia_plausible", "collision_matches_visual")
 NO_TARGETS = Targets((), ())
 
 
@@ -52,6 +54,8 @@ class Proposing:
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
+            for link, mass in _bodies(criteria).items():
+                found += body_proposals(draft, link, mass)
             reference = self.reference or draft
             shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
             anchors = tuple(dict.fromkeys((*shown, *moved)))
@@ -62,6 +66,16 @@ class Proposing:
             ]
             found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria, draft.robot))
         return found
+
+
+def _bodies(criteria: Iterable[Criterion]) -> dict[str, float | None]:
+    """Return the links whose mass, inertia or collision is examined, with the expected mass if a criterion gives it."""
+    found: dict[str, float | None] = {}
+    for criterion in criteria:
+        if criterion.check.name in _BODY_CHECKS:
+            link, mass = criterion.arguments["link"], criterion.arguments.get("mass")
+            found[link] = mass if mass is not None else found.get(link)
+    return found
 
 
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:

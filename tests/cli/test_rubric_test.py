@@ -1,0 +1,272 @@
+"""grader rubric test: the reference and its equivalents lose nothing, mutants something, samples what they say."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from grader.checks.outcome import Outcome, judged
+from grader.checks.registry import find_check
+from grader.grading.rubric import shipped_rubrics
+from grader.robot.kinematics import Configuration
+from tests.command_line import ROOT, Done, run
+from tests.mutation.robots import ARM, BOX, FRAME, TOP, write_rubric
+
+IGNORE = '[[test.ignore]]\nmutants = ["* link tool/*", "nothing: *"]\nreason = "Only a tool."\n'
+PENDING = '[[criterion]]\nid = "by-hand"\npart = "model"\ntitle = "It is shown"\npoints = 1\ncheck = "evidence_shown"\nwith = { names = ["a"] }\n'
+LINKS = '<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
+SMALL = f'<robot name="r">{LINKS}<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/></joint></robot>'
+EXACT = """\
+[[criterion]]
+id = "frame"
+part = "model"
+title = "The frame is there"
+points = 1
+check = "frame_at"
+with = { link = "b", relative_to = "a", xyz = [1, 2, 3], rpy = [0.1, 0.2, 0.3], tolerance = 0.002, angle = 1 }
+"""
+FIXED = """\
+[[criterion]]
+id = "fixed"
+part = "model"
+title = "It is fixed"
+points = 1
+check = "held_by"
+with = { link = "b", parent = "a", joint_type = "fixed" }
+"""
+
+
+def command(*arguments: object) -> Done:
+    """Run the command."""
+    return run(("rubric", "test", *arguments))
+
+
+def data(*arguments: object) -> dict[str, Any]:
+    """Return the result as JSON, valid under its schema."""
+    found: dict[str, Any] = json.loads(command(*arguments, "--format", "json").stdout)
+    jsonschema.validate(found, json.loads(run(("schema", "rubric-test")).stdout))
+    return found
+
+
+@pytest.mark.parametrize("name", shipped_rubrics())
+def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
+    """Or says in the rubric why not; no criterion is idle, no pattern unused, and no correct robot loses points."""
+    found = data(name, "--mutants", 100_000)
+    assert (found["score"], found["survivors"], found["idle"], found["unused_patterns"]) == (100, [], [], [])
+    assert found["equivalents"]["lost"] == found["reference"]["lost"] == []
+    assert sum(found["equivalents"]["tried"].values()) >= 30
+    assert found["mutants"]["caught"] > 5 * len(found["ignored"])
+
+
+def test_lab6_has_exactly_the_samples_that_it_expects() -> None:
+    """All samples of the project, of which none belongs to another rubric or differs."""
+    done = command("lab6", "submissions", "--mutants", 0)
+    count = sum(1 for _ in (ROOT / "submissions").glob("*/expected.toml"))
+    assert done.returncode == 0
+    assert f"Samples      {count} graded, none differ from expected.toml\n" in done.stdout.decode()
+
+
+def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path) -> None:
+    """Grouped by what may catch them; the exit code is 0 because no correct robot loses points."""
+    done = command(write_rubric(tmp_path), "--mutants", 5000)
+    text = done.stdout.decode()
+    assert done.returncode == 0
+    assert "These mutants of the reference get full marks:" in text
+    assert "mutants: no criterion looks at it; try frame_at" in text
+    assert "      @@ -23,5 +23,5 @@\n" in text
+    assert '      -    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n      +    <origin rpy="0 0 3.14159"/>\n' in text
+    found = data(write_rubric(tmp_path), "--mutants", 5000)
+    listed = {row["id"]: row for row in found["survivors"]}
+    row = listed["number x10: joint base_plate/origin xyz.z"]
+    assert row["suggestion"] == "no criterion looks at it; try frame_at"
+    assert (
+        '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
+    )
+    assert (row["path"], row["line"]) == ("birch.urdf", 25)
+    assert "number x10: joint tool_joint/origin xyz.z" not in listed  # tool-frame catches it
+    assert "number negated: joint tool_joint/origin xyz.x" not in listed  # -0 is the same robot
+    counts = found["mutants"]
+    assert counts["tried"] == counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
+    assert found["score"] == pytest.approx(100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6)
+
+
+def test_a_suggestion_names_the_criterion_that_looks_and_passes(tmp_path: Path) -> None:
+    """Its tolerance or its arguments let the mutant pass."""
+    found = data(write_rubric(tmp_path), "--mutants", 5000)
+    listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
+    assert listed["number +0.05: joint slide/origin xyz.x"] == "no criterion looks at it; try frame_at"
+    assert listed["number negated: link plate/visual/geometry/box size.x"].startswith("plate-box passes all the same")
+
+
+def test_the_rubric_ignores_mutants_with_a_reason(tmp_path: Path) -> None:
+    """They do not count for the score; a pattern that matches no mutant is reported."""
+    without = data(write_rubric(tmp_path), "--mutants", 5000)
+    found = data(write_rubric(tmp_path, TOP + BOX + FRAME + IGNORE), "--mutants", 5000)
+    assert {row["reason"] for row in found["ignored"]} == {"Only a tool."}
+    assert all(" link tool/" in row["id"] for row in found["ignored"])
+    assert len(found["survivors"]) + len(found["ignored"]) == len(without["survivors"])
+    assert found["score"] > without["score"]
+    assert found["unused_patterns"] == ["nothing: *"]
+    text = command(write_rubric(tmp_path, TOP + BOX + FRAME + IGNORE)).stdout.decode()
+    assert "The pattern 'nothing: *' of [[test.ignore]] matches no mutant." in text
+
+
+@pytest.mark.parametrize(
+    ("ignore", "complaint"),
+    [
+        ('[[test.ignore]]\nmutants = ["a"]\n', "this test.ignore has no reason"),
+        ('[[test.ignore]]\nreason = "a"\n', "this test.ignore has no mutants"),
+        ('[[test.ignore]]\nmutants = []\nreason = "a"\n', "mutants must be at least one pattern"),
+        ('[[test.ignore]]\nmutants = ["a"]\nreason = " "\n', "reason must be a non-empty string"),
+        ("[test]\nignored = 1\n", "a test table has no key 'ignored'; did you mean 'ignore'?"),
+    ],
+)
+def test_an_incomplete_ignore_is_a_mistake_of_the_rubric(tmp_path: Path, ignore: str, complaint: str) -> None:
+    """Both keys are required; the exit code is 2."""
+    done = command(write_rubric(tmp_path, TOP + ignore))
+    assert done.returncode == 2
+    assert complaint in done.stderr.decode()
+
+
+def test_an_idle_criterion_is_named(tmp_path: Path) -> None:
+    """No mutant fails it, not even one that was not sampled; a criterion that only a person decides is not counted."""
+    anywhere = EXACT.replace('"frame"', '"anywhere"').replace("0.002", "1000").replace("angle = 1", "angle = 181")
+    rubric = write_rubric(tmp_path, TOP + EXACT + anywhere + PENDING, SMALL)
+    assert data(rubric, "--mutants", 0)["idle"] == ["anywhere"]
+    assert "No mutant fails anywhere: it is idle." in command(rubric).stdout.decode()
+
+
+def test_margins_say_what_a_tolerance_tells_apart(tmp_path: Path) -> None:
+    """How far off the reference is, the worst mutant that passes and the best one that fails; near the limit it is said."""
+    text = (TOP + EXACT).replace("xyz = [1, 2, 3]", "xyz = [1, 2, 3.0015]")
+    (margin,) = data(write_rubric(tmp_path, text, SMALL))["margins"]
+    assert margin == {
+        "criterion": "frame", "unit": "m", "tolerance": 0.002, "reference": 0.0015, "caught": margin["caught"],
+        "passed": 0.0015, "is_near": True,
+    }  # fmt: skip
+    assert 0.04 < margin["caught"] < 0.06
+    shown = command(tmp_path / "arm.toml").stdout.decode()
+    assert "The reference is near the limit of frame: 1.5 mm off, 2 mm allowed." in shown
+
+
+def test_fail_under_decides_by_the_score(tmp_path: Path) -> None:
+    """In percent, with or without the sign."""
+    rubric = write_rubric(tmp_path)
+    assert command(rubric, "--fail-under", "10%", "--mutants", 100).returncode == 0
+    assert command(rubric, "--fail-under", "99", "--mutants", 100).returncode == 1
+    exact = write_rubric(tmp_path, TOP + EXACT + FIXED, SMALL)
+    assert command(exact, "--fail-under", "100", "--mutants", 5000).returncode == 0
+    for wrong in ("101", "-1", "a", "101%"):
+        assert command(rubric, "--fail-under", wrong).returncode == 2
+
+
+def test_a_reference_that_loses_points_fails(tmp_path: Path) -> None:
+    """The criteria and their messages are listed, and the exit code is 1."""
+    done = command(write_rubric(tmp_path, TOP + BOX.replace("0.12", "0.2")), "--mutants", 20)
+    assert done.returncode == 1
+    assert "The reference loses points:\n  plate-box: 'plate' shows a box 0.1 0.12 0.02 m" in done.stdout.decode()
+    assert data(tmp_path / "arm.toml", "--mutants", 20)["reference"]["lost"] == ["plate-box"]
+
+
+def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A check that looks at the numbers of a file, not at the robot, is found out."""
+
+    def is_written(robot: Configuration, *, link: str, **_: Any) -> Outcome:
+        joint = robot.parent_joints[link]
+        assert joint.origin is not None
+        return judged(joint.origin.rpy == (0.1, 0.2, 0.3), f"the rpy is {joint.origin.rpy[0]:.2f}")
+
+    frame_at = find_check("frame_at")
+    assert frame_at is not None
+    textual = replace(frame_at, function=is_written)
+    monkeypatch.setattr(
+        "grader.grading.validation.find_check", lambda name: textual if name == "frame_at" else find_check(name)
+    )
+    done = command(write_rubric(tmp_path, TOP + EXACT, SMALL), "--mutants", 20)
+    assert done.returncode == 1
+    text = done.stdout.decode()
+    assert "These equivalents of the reference lose points:\n\n  fixed joints split 1\n    frame: the rpy is" in text
+    assert '-<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
+
+
+def _sample(folder: Path, name: str, expected: str, robot: str = ARM) -> None:
+    (folder / name).mkdir(parents=True)
+    (folder / name / "birch.urdf").write_text(robot, encoding="utf-8")
+    (folder / name / "expected.toml").write_text(expected, encoding="utf-8")
+
+
+def test_samples_must_get_what_they_expect(tmp_path: Path) -> None:
+    """Those of another rubric are skipped and counted; each difference is explained, and the exit code is 1."""
+    rubric, samples = write_rubric(tmp_path), tmp_path / "samples"
+    broken = ARM.replace('size="0.1 0.12 0.02"', 'size="1 1 1"')
+    _sample(samples, "fine", 'path = "birch.urdf"\nverdict = "clean"\nlost = []\n')
+    _sample(samples, "large", 'rubric = "arm"\npath = "birch.urdf"\nlost = ["plate-box"]\n', broken)
+    _sample(samples, "other", 'rubric = "lab6"\npath = "birch.urdf"\nlost = ["base-box"]\n')
+    done = command(rubric, samples, "--mutants", 0)
+    assert done.returncode == 0
+    line = "Samples 2 graded, none differ from expected.toml, 1 of other rubrics skipped"
+    assert line in " ".join(done.stdout.decode().split())
+    _sample(samples, "wrong", 'path = "birch.urdf"\nverdict = "rejected"\nlost = ["tool-frame"]\n', broken)
+    found = data(rubric, samples, "--mutants", 0)["samples"]
+    assert (found["tried"], found["skipped"]) == (3, 1)
+    (different,) = found["different"]
+    assert different["name"] == "wrong"
+    assert list(different["criteria"]) == ["verdict", "plate-box", "tool-frame"]
+    assert different["criteria"]["verdict"] == "is clean, expected rejected"
+    assert different["criteria"]["plate-box"].startswith("loses its points, expected: passes: 'plate' shows a box")
+    assert different["criteria"]["tool-frame"].startswith("passes, expected: loses its points")
+    assert command(rubric, samples, "--mutants", 0).returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("expected", "complaint"),
+    [
+        ('lots = ["plate-box"]\n', "expected.toml:1: an expected.toml has no key 'lots'; did you mean 'lost'?"),
+        ('verdict = "fine"\n', "verdict must be one of clean, degraded, rejected, missing"),
+        ('lost = "plate-box"\n', "lost must be a list of ids of criteria"),
+        ('lost = ["plat-box"]\n', "the rubric arm has no criterion 'plat-box'; did you mean 'plate-box'?"),
+        ("lost = [\n", "not readable as TOML"),
+    ],
+)
+def test_a_broken_sample_is_refused(tmp_path: Path, expected: str, complaint: str) -> None:
+    """With its file and line, and exit code 2."""
+    rubric = write_rubric(tmp_path)
+    _sample(tmp_path / "samples", "a", expected)
+    done = command(rubric, tmp_path / "samples")
+    assert done.returncode == 2
+    assert complaint in done.stderr.decode()
+
+
+def test_without_samples_or_reference_nothing_is_command(tmp_path: Path) -> None:
+    """One line says why, and the exit code is 2."""
+    rubric = write_rubric(tmp_path)
+    cases = {
+        (rubric, tmp_path / "none"): "is not a folder with samples",
+        (rubric, tmp_path): "has no samples: no folder in it has an expected.toml",
+        (write_rubric(tmp_path / "..", TOP.replace('reference = "birch.urdf"\n', "")),): 'add reference = "FOLDER"',
+    }
+    for arguments, words in cases.items():
+        done = command(*arguments)
+        assert done.returncode == 2
+        assert not done.stdout
+        assert words in done.stderr.decode()
+
+
+def test_the_seed_decides_and_the_same_seed_gives_the_same_bytes(tmp_path: Path) -> None:
+    """Another seed takes another sample."""
+    rubric = write_rubric(tmp_path)
+    first, again, other = (command(rubric, "--mutants", 50, "--seed", seed).stdout for seed in (1, 1, 2))
+    assert first == again != other
+    found = data(rubric, "--mutants", 50, "--seed", 1)
+    assert found["seed"] == 1
+    assert found["mutants"]["tried"] == 50 < found["mutants"]["total"]
+
+
+def test_a_sentence_fits_the_screen(tmp_path: Path) -> None:
+    """Lines are wrapped, and those of a diff are cut around the change."""
+    text = command(write_rubric(tmp_path, robot=ARM.replace("\n", " "))).stdout.decode()
+    assert max(map(len, text.splitlines())) <= 80
+    assert "..." in text

@@ -1,0 +1,158 @@
+"""Equivalents of a reference are the same robot, and a criterion that forbids a family is never asked about it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from grader.grading.rubric import Criterion, Rubric
+from grader.mutation.equivalents import FAMILIES, FORBIDDEN, Equivalent, Equivalents, forbidden
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Robot
+from grader.submission.opening import read_submission
+from grader.submission.urdf import Read
+from tests.mutation.robots import ARM, BOX, FRAME, TOP, rubric_in
+
+POSITIONS = ((0.0, 0.0), (0.4, 0.03), (-1.1, 0.09))  # of the shoulder and the slide, which are told by their limits
+
+
+def made(rubric: Rubric, kept: set[str] | None = None) -> list[Equivalent]:
+    """Return the equivalents of the arm."""
+    urdf = read_submission(ARM.encode(), identity="a", path="birch.urdf").urdf
+    assert isinstance(urdf, Read)
+    assert urdf.reading.root is not None
+    assert urdf.reading.robot is not None
+    return list(Equivalents(rubric, urdf.reading.root, urdf.reading.robot, kept or set(), 0).all())
+
+
+def read(equivalent: Equivalent) -> Robot:
+    """Return the robot of an equivalent, which ROS 2 loads without any problem."""
+    path = "birch.urdf.xacro" if equivalent.is_xacro else "birch.urdf"
+    urdf = read_submission(equivalent.text.encode(), identity="a", path=path).urdf
+    assert isinstance(urdf, Read)
+    assert urdf.loaded.verdict == "clean", urdf.problems
+    assert urdf.is_expanded == equivalent.is_xacro
+    assert urdf.reading.robot is not None
+    return urdf.reading.robot
+
+
+def seen(robot: Robot) -> list[tuple[str, tuple[float, ...]]]:
+    """Return where every shape and mass is at some positions, in the frame of the root, whatever things are called."""
+    return sorted(_seen(robot))
+
+
+def _seen(robot: Robot) -> Iterator[tuple[str, tuple[float, ...]]]:
+    shoulder, slide = (
+        next(joint.name for joint in robot.joints if joint.limit and joint.limit.upper == it) for it in (1.4, 0.1)
+    )
+    for positions in POSITIONS:
+        posed = Configuration(robot, dict(zip((shoulder, slide), positions, strict=True)))
+        for link in robot.links:
+            pose = posed.pose(link.name)
+            shapes = [(shape.geometry, shape.origin) for shape in link.visuals]
+            for geometry, origin in shapes + [(shape.geometry, shape.origin) for shape in link.collisions]:
+                yield f"{positions} {geometry}", _numbers(placed_by(pose, origin).matrix)
+            if link.inertial is not None:
+                mass = link.inertial
+                yield f"{positions} {mass.mass} {mass.inertia}", _numbers(placed_by(pose, mass.origin).matrix)
+
+
+def _numbers(matrix: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
+    return tuple(number for row in matrix for number in row)
+
+
+def test_every_equivalent_is_the_same_robot(tmp_path: Path) -> None:
+    """In all families, shapes and masses are where they were, also when the joints move."""
+    expected = dict(seen(read_arm()))
+    found = made(rubric_in(tmp_path, TOP))
+    assert {equivalent.family for equivalent in found} == set(FAMILIES)
+    for equivalent in found:
+        robot = read(equivalent)
+        assert dict(seen(robot)).keys() == expected.keys(), equivalent.name
+        for name, numbers in seen(robot):
+            assert numbers == pytest.approx(expected[name], abs=1e-9), f"{equivalent.name}: {name}"
+        assert sorted(map(str, limits(robot))) == sorted(map(str, limits(read_arm())))
+
+
+def read_arm() -> Robot:
+    """Return the arm."""
+    urdf = read_submission(ARM.encode(), identity="a", path="birch.urdf").urdf
+    assert isinstance(urdf, Read)
+    assert urdf.reading.robot is not None
+    return urdf.reading.robot
+
+
+def limits(robot: Robot) -> list[object]:
+    """Return the limits of the joints that move."""
+    return [(joint.type, joint.limit) for joint in robot.joints if joint.type != "fixed"]
+
+
+def test_each_family_changes_what_it_says(tmp_path: Path) -> None:
+    """The first one of each family differs from the reference in the thing that gives it its name."""
+    first = {equivalent.family: equivalent for equivalent in reversed(made(rubric_in(tmp_path, TOP)))}
+    arm, robots = read_arm(), {family: read(equivalent) for family, equivalent in first.items()}
+    assert [link.name for link in robots["order of elements"].links] != [link.name for link in arm.links]
+    assert len(robots["fixed joints split"].links) > len(arm.links)
+    assert [joint.origin for joint in robots["frames moved"].joints] != [joint.origin for joint in arm.joints]
+    assert len(robots["frames moved"].links) == len(arm.links)
+    assert [joint.axis for joint in robots["axes scaled"].joints] != [joint.axis for joint in arm.joints]
+    assert {joint.name for joint in robots["renamed"].joints} != {joint.name for joint in arm.joints}
+    assert robots["spelling of numbers"] == arm == robots["xacro properties"] == robots["xacro macro"]
+    assert "<!--" in first["layout of the text"].text
+    assert "${number_0}" in first["xacro properties"].text
+    assert "<xacro:part name=" in first["xacro macro"].text
+
+
+def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
+    """Those in the rubric's arguments, in files around the URDF and in the elements of simulators; their frames stay, too."""
+    found = made(rubric_in(tmp_path, TOP + BOX + FRAME), kept={"plate", "tool", "finger", "slide"})
+    arm = read_arm()
+    for equivalent in found:
+        robot = read(equivalent)
+        assert all(map(robot.has_link, ("plate", "tool", "finger", "base")))
+        assert robot.has_joint("slide")
+        assert robot.has_joint("shoulder")  # <transmission> names it
+        for link in ("plate", "tool", "finger"):
+            moved, before = Configuration(robot).pose(link), Configuration(arm).pose(link)
+            assert moved.translation == pytest.approx(before.translation, abs=1e-9)
+
+
+def _criterion(check: str, **arguments: object) -> Criterion:
+    class Named:
+        name = check
+
+    return Criterion("a", "", "", 1, Named(), arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("check", "arguments", "families"),
+    [
+        ("counts", {"moving": 3}, ()),
+        ("counts", {"links": 3, "moving": None}, ("fixed joints split",)),
+        ("counts", {"fixed": 3}, ("fixed joints split",)),
+        ("kinematics_match_reference", {"match": "order"}, ("order of elements",)),
+        ("kinematics_match_reference", {"links": ["tool"]}, ("renamed",)),
+        ("element_present", {"tag": "gazebo"}, ()),
+        ("element_present", {"tag": "joint"}, ("fixed joints split", "frames moved", "full turns", "axes scaled", "renamed")),
+    ],
+)  # fmt: skip
+def test_a_check_forbids_families(check: str, arguments: dict[str, object], families: tuple[str, ...]) -> None:
+    """By its arguments: a count of links forbids more links, and one of moving joints does not."""
+    assert FORBIDDEN[check](arguments) == families
+
+
+def test_a_family_that_a_criterion_forbids_is_not_used(tmp_path: Path) -> None:
+    """Neither alone nor among several."""
+    rubric = rubric_in(tmp_path, TOP)
+    object.__setattr__(rubric, "criteria", (*rubric.criteria, _criterion("counts", links=7)))
+    assert forbidden(rubric) == {"fixed joints split": "a"}
+    found = made(rubric)
+    assert {equivalent.family for equivalent in found} == {*FAMILIES} - {"fixed joints split"}
+    assert all(len(read(equivalent).links) == len(read_arm().links) for equivalent in found)
+
+
+def test_the_seed_decides(tmp_path: Path) -> None:
+    """The same seed gives the same bytes."""
+    rubric = rubric_in(tmp_path, TOP)
+    assert made(rubric) == made(rubric)

@@ -1,0 +1,100 @@
+"""Mutants of a text: the families, their ids, their places; and the sample of them that is graded."""
+
+from collections import Counter
+from random import Random
+
+import pytest
+
+from grader.mutation.diffs import hunk
+from grader.mutation.elements import elements
+from grader.mutation.mutants import Mutant, mutants
+from grader.mutation.mutation_test import sampled
+from tests.mutation.robots import ARM
+
+FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("number x10: joint slide/origin xyz.z", "0 0 0.4", "0 0 4"),
+        ("number negated: joint shoulder/limit lower", 'lower="-1.5"', 'lower="1.5"'),
+        ("number in degrees: joint shoulder/limit upper", 'upper="1.4"', 'upper="80.2141"'),
+        ("limits exchanged: joint shoulder/limit", 'lower="-1.5" upper="1.4"', 'lower="1.4" upper="-1.5"'),
+        ("attribute deleted: joint shoulder/dynamics damping", '<dynamics damping="0.1"/>', "<dynamics/>"),
+        ("name exchanged: joint finger_joint/mimic joint -> slide", 'mimic joint="shoulder"', 'mimic joint="slide"'),
+        ("number halved: joint finger_joint/mimic multiplier", 'multiplier="-0.5"', 'multiplier="-0.25"'),
+        ("element deleted: joint finger_joint/mimic", '<mimic joint="shoulder" multiplier="-0.5" offset="0.1"/>', ""),
+        ("number doubled: link upper/inertial/mass value", 'mass value="1.2"', 'mass value="2.4"'),
+        ("number exchanged: link upper/inertial/origin xyz.y", '"0 0 0.2" rpy="0.1', '"0 0.2 0" rpy="0.1'),
+        ("number +0.05: link base/collision/geometry/cylinder radius", 'radius="0.11"', 'radius="0.16"'),
+        ("text misspelt: link slider/visual/geometry/mesh filename", "birch/meshes", "birchmeshes"),
+        ("number x10: link slider/visual/geometry/mesh scale.y", "0.001 0.001 0.001", "0.001 0.01 0.001"),
+        ("number zero: gazebo base/mu1", "<mu1>0.2</mu1>", "<mu1>0</mu1>"),
+        ("name exchanged: gazebo base reference -> tool", 'reference="base"', 'reference="tool"'),
+        ("text misspelt: gazebo/plugin control filename", "libcontrol.so", "libconrol.so"),
+        ("name exchanged: transmission drive/joint shoulder name -> slide", '<joint name="shoulder"/>', '<joint name="slide"/>'),
+        ("number negated: ros2_control arm/joint slide/param min", ">-1<", ">1<"),
+        ("type: joint slide type -> revolute", '"slide" type="prismatic"', '"slide" type="revolute"'),
+    ],
+)  # fmt: skip
+def test_a_mutant_makes_one_change(name: str, old: str, new: str) -> None:
+    """The family and the place by names say what the mutant changes."""
+    assert FOUND[name].applied(ARM) == ARM.replace(old, new, 1)
+
+
+def test_elements_are_deleted_duplicated_and_moved_up() -> None:
+    """An element with its children, and only where the robot is ROS 2's: simulators read two of a kind in their own way."""
+    text = ARM[ARM.index("  <gazebo>\n") :].partition("  <transmission")[0]
+    assert FOUND["element deleted: gazebo"].applied(ARM) == ARM.replace(text.strip(), "")
+    assert "element duplicated: gazebo" not in FOUND
+    assert FOUND["element duplicated: link plate"].applied(ARM).count('<link name="plate">') == 2
+    moved = FOUND["element moved up: joint slide/limit"].applied(ARM)
+    assert moved.index('upper="0.1"') < moved.index('<joint name="slide"')
+
+
+def test_ids_are_unique_and_do_not_depend_on_lines() -> None:
+    """Other lines, comments and elements above do not change an id, so a pattern goes on to match."""
+    assert len(FOUND) == len(list(mutants(ARM)))
+    longer = ARM.replace('<link name="base">', '<!-- a -->\n\n<link name="new"/>\n<link name="base">', 1)
+    assert {name for name in FOUND if "exchanged" not in name} <= {mutant.id for mutant in mutants(longer)}
+
+
+def test_equal_siblings_are_counted() -> None:
+    """The second visual of a link has a place of its own."""
+    labels = [
+        found.label for found in elements("<robot><link name='a'><visual/><visual/></link><link/><link/></robot>")
+    ]
+    assert labels == ["robot", "link a", "link a/visual", "link a/visual 2", "link", "link 2"]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "<robot", "</robot>", "<a></b></a>", "<a><b></a>", "no markup", "<robot name='a'>"]
+)
+def test_broken_markup_has_mutants_or_none(text: str) -> None:
+    """A text with open or stray tags is no reason to stop."""
+    assert all(mutant.applied(text) != text for mutant in mutants(text))
+
+
+def _of(**counts: int) -> list[Mutant]:
+    return [Mutant(f"{family} {i}", family, "", i) for family, count in counts.items() for i in range(count)]
+
+
+def test_a_sample_has_the_same_number_of_each_family() -> None:
+    """As far as a family has as many; the order stays, and the seed decides which."""
+    every = _of(a=100, b=3, c=50)
+    chosen = sampled(every, 43, Random(1))
+    assert Counter(mutant.family for mutant in chosen) == {"a": 20, "b": 3, "c": 20}
+    assert chosen == [mutant for mutant in every if mutant in chosen] == sampled(every, 43, Random(1))
+    assert chosen != sampled(every, 43, Random(2))
+    assert sampled(every, 1000, Random(1)) == every
+    assert sampled(every, 0, Random(1)) == []
+
+
+def test_a_diff_has_one_hunk() -> None:
+    """Two lines around the change, and the ranges of lines as diff writes them."""
+    before = "".join(f"{number}\n" for number in range(1, 8))
+    assert hunk("a.urdf", before, before.replace("4\n", "x\ny\n")).split("\n") == [
+        "--- a.urdf", "+++ a.urdf", "@@ -2,5 +2,6 @@", " 2", " 3", "-4", "+x", "+y", " 5", " 6",
+    ]  # fmt: skip
+    assert hunk("a", "", "x\n") == "--- a\n+++ a\n@@ -0,0 +1,1 @@\n+x"

@@ -1,0 +1,81 @@
+"""The tutorial of rubrics works as it is written, and the examples of the reference are rubrics."""
+
+import json
+import re
+import tomllib
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from grader.checks.registry import find_check
+from grader.grading.keys import CRITERION, DEFAULTS, PART, RUBRIC
+from grader.grading.rubric import load_rubric
+from tests.command_line import ROOT
+from tests.tutorial import PAGE, Step, follow
+
+REFERENCE = (ROOT / "docs" / "rubric-reference.md").read_text(encoding="utf-8")
+BLOCKS: list[dict[str, Any]] = [
+    tomllib.loads(block, parse_float=Decimal)
+    for block in re.findall(r"^```toml\n(.*?)^```", REFERENCE, re.DOTALL | re.MULTILINE)
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder in which the tutorial is followed."""
+    return tmp_path_factory.mktemp("tutorial")
+
+
+@pytest.fixture(scope="module")
+def followed(folder: Path) -> tuple[str, list[Step]]:
+    """Return the page with current outputs, and what was run."""
+    return follow(PAGE.read_text(encoding="utf-8"), folder)
+
+
+def test_every_command_prints_what_the_page_shows(followed: tuple[str, list[Step]]) -> None:
+    """The outputs on the page are current, and every command that is on it was run."""
+    page, steps = followed
+    assert page == PAGE.read_text(encoding="utf-8"), "run python -m tests.tutorial"
+    assert "".join(step.commands for step in steps).count("grader ") == len(re.findall("^grader [a-z]", page, re.M))
+    for step in steps:
+        expected = 0 if not (step.shown or "").startswith("grader: ") else 2
+        lost = "✗" in step.printed or "differ from their expected.toml" in step.printed
+        assert step.code == (1 if lost else expected), step
+
+
+def test_the_rubric_of_the_tutorial_is_valid(folder: Path, followed: tuple[str, list[Step]]) -> None:
+    """Without the two mistakes at the end it loads, and an editor finds nothing to complain of."""
+    text = (folder / "my_lab.toml").read_text(encoding="utf-8")
+    text = text.replace("points = 20,", "points = 20").replace("id = my-lab", 'id = "my-lab"')
+    (folder / "fixed.toml").write_text(text, encoding="utf-8")
+    assert load_rubric(str(folder / "fixed.toml")).points == 20
+    assert text.startswith("#:schema ./rubric.schema.json\n")
+    schema = json.loads((folder / "rubric.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(schema).validate(tomllib.loads(text))
+
+
+@pytest.mark.parametrize("block", [block for block in BLOCKS if "criterion" in block or "defaults" in block])
+def test_examples_of_the_reference_are_criteria(block: dict[str, Any]) -> None:
+    """Each has keys that exist, a check that exists, and arguments that it takes, with all that it needs."""
+    assert set(block) <= set(RUBRIC.keys)
+    defaults = block.get("defaults", {})
+    assert set(defaults) <= set(DEFAULTS.keys)
+    rows = [*block.get("criterion", []), *(row["carried"] for row in block.get("criterion", []) if "carried" in row)]
+    for row in rows:
+        assert set(row) <= {*CRITERION.keys, "from"}
+        check = find_check(row["check"])
+        assert check is not None
+        given = {**defaults.get("with", {}).get(check.name, {}), **row["with"]}
+        for name, value in given.items():
+            check.parameters[name].type.parse(value)
+        assert {name for name, parameter in check.parameters.items() if parameter.required} <= set(given)
+
+
+def test_every_key_is_on_the_reference() -> None:
+    """The page is generated from the tables; its sections name the keys that need more than a line."""
+    for table in (RUBRIC, PART, CRITERION, DEFAULTS):
+        for key in table.keys:
+            assert f"| `{key}` |" in REFERENCE

@@ -1,0 +1,89 @@
+"""Follow the tutorial in docs/write-a-rubric.md. `python -m tests.tutorial` writes the output of its commands into it.
+
+An output on the page stays as it is if it matches, where "..." stands for any text.
+"""
+
+import re
+import shlex
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from tests.command_line import HANG_TIMEOUT, ROOT, run_with_input
+
+PAGE = ROOT / "docs" / "write-a-rubric.md"
+_NAME = re.compile(r"`([\w./-]+)`:\s*$")
+
+
+class Step(NamedTuple):
+    """The commands of a block and what they print, as the page has it and in fact, with the last exit code."""
+
+    commands: str
+    shown: str | None
+    printed: str
+    code: int
+
+
+def follow(page: str, folder: Path) -> tuple[str, list[Step]]:
+    """Do what a page says in a folder; return the page with current outputs, and what was run."""
+    steps: list[Step] = []
+    pieces = re.split(r"(^```\w*\n.*?^```\n)", page, flags=re.DOTALL | re.MULTILINE)
+    for index in range(1, len(pieces), 2):
+        kind, _, text = pieces[index].removeprefix("```").removesuffix("```\n").partition("\n")
+        name = _NAME.search(pieces[index - 1])
+        if kind == "sh":
+            printed, code = _run(text, folder)
+            is_shown = pieces[index + 1] == "\n" and pieces[index + 2].startswith("```\n")
+            shown = pieces[index + 2][4:-4] if is_shown else None
+            if shown is not None and not _matches(shown, printed):
+                pieces[index + 2] = f"```\n{printed.rstrip()}\n```\n"
+            steps.append(Step(text, shown, printed, code))
+        elif kind == "diff" and name:
+            _change(folder / name[1], text)
+        elif kind and name:
+            (folder / name[1]).write_text(text, encoding="utf-8")
+    return "".join(pieces), steps
+
+
+def _run(commands: str, folder: Path) -> tuple[str, int]:
+    """Return what commands print in a folder, and the exit code of the last one."""
+    printed, code = "", 0
+    for command in commands.splitlines():
+        words = shlex.split(command, comments=True)
+        if words[0] != "grader":
+            subprocess.run(command, shell=True, check=True, cwd=folder, timeout=HANG_TIMEOUT)
+            continue
+        words, target = (words[:-2], words[-1]) if words[-2:-1] == [">"] else (words, "")
+        done = run_with_input(words[1:], b"", folder=folder)
+        code = done.returncode
+        if target:
+            (folder / target).write_bytes(done.stdout)
+        printed += done.stderr.decode() + ("" if target else done.stdout.decode())
+    return printed, code
+
+
+def _change(file: Path, diff: str) -> None:
+    """Apply the hunks of a diff, which are separated by `@@`; what a hunk changes is in the file."""
+    text = file.read_text(encoding="utf-8")
+    for hunk in _hunks(diff):
+        old, new = ("".join(f"{line[1:]}\n" for line in hunk if line[:1] != sign) for sign in "+-")
+        assert old in text, f"{file.name} does not contain:\n{old}"
+        text = text.replace(old, new, 1)
+    file.write_text(text, encoding="utf-8")
+
+
+def _hunks(diff: str) -> Iterator[list[str]]:
+    for hunk in diff.split("@@\n"):
+        yield hunk.splitlines()
+
+
+def _matches(shown: str, printed: str) -> bool:
+    pattern = ".*?".join(map(re.escape, shown.strip().split("...")))
+    return re.fullmatch(pattern, printed.strip(), re.DOTALL) is not None
+
+
+if __name__ == "__main__":
+    with TemporaryDirectory() as folder:
+        PAGE.write_text(follow(PAGE.read_text(encoding="utf-8"), Path(folder))[0], encoding="utf-8")
