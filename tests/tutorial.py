@@ -69,8 +69,9 @@ def _change(file: Path, diff: str) -> None:
     text = file.read_text(encoding="utf-8")
     for hunk in _hunks(diff):
         old, new = ("".join(f"{line[1:]}\n" for line in hunk if line[:1] != sign) for sign in "+-")
-        assert old in text, f"{file.name} does not contain:\n{old}"
-        text = text.replace(old, new, 1)
+        found = re.search(_pattern(old, "[^\n]*"), text, re.MULTILINE)
+        assert found is not None, f"{file.name} does not contain:\n{old}"
+        text = text[: found.start()] + new + text[found.end() :]
     file.write_text(text, encoding="utf-8")
 
 
@@ -80,8 +81,12 @@ def _hunks(diff: str) -> Iterator[list[str]]:
 
 
 def _matches(shown: str, printed: str) -> bool:
-    pattern = ".*?".join(map(re.escape, shown.strip().split("...")))
-    return re.fullmatch(pattern, printed.strip(), re.DOTALL) is not None
+    return re.fullmatch(_pattern(shown.strip(), ".*?"), printed.strip(), re.DOTALL) is not None
+
+
+def _pattern(text: str, anything: str) -> str:
+    """Return an expression for a text in which "..." stands for anything."""
+    return "^" + anything.join(map(re.escape, text.split("...")))
 
 
 if __name__ == "__main__":

@@ -7,25 +7,30 @@ from typing import Any
 
 from grader.authoring.fact import Fact, exact, length, lengths, shown
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
+from grader.robot.shapes import is_empty
 
 _MASS_TOLERANCE = 0.001  # kg: the default of mass_is
 _SHARE = 0.01  # of a mass for which the default tolerance is too much
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
-_INERTIA_SHARE = 0.02  # of the largest moment, where the inertia is that of a mesh
+_INERTIA_SHARE = 0.005  # of the largest moment, where the inertia is that of a mesh
 _CENTRE_TOLERANCE = 0.002  # m
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+_DIAGONAL = (0, 3, 5)
 
 
 def body_facts(link: Link) -> Iterator[Fact]:
     """Yield the mass of a link, and that its inertia and its collision shapes fit its shapes."""
     if link.inertial is not None and isfinite(link.inertial.mass):
         yield _mass(link.name, exact(link.inertial.mass))
-        yield _inertia(link, link.inertial)
-    if link.collisions:
+        if link.inertial.mass > 0:
+            yield _inertia(link, link.inertial)
+    others = [_collision(link.name, collision, index) for index, collision in enumerate(link.collisions)]
+    if others and any(not is_empty(visual.geometry) for visual in link.visuals):
         title = f"The collision shapes of {link.name} are those that it shows"
-        others = tuple(_collision(link.name, collision, index) for index, collision in enumerate(link.collisions))
         fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name}, is_doubtful=True)
-        yield replace(fact, otherwise=others)
+        yield replace(fact, otherwise=tuple(others))
+    else:
+        yield from others
 
 
 def _mass(link: str, mass: float) -> Fact:
@@ -36,17 +41,19 @@ def _mass(link: str, mass: float) -> Fact:
 
 
 def _inertia(link: Link, inertial: Inertial) -> Fact:
-    """Return that an inertia fits the shapes, or else, with a larger tolerance, or for a mesh, what its numbers are."""
+    """Return that an inertia fits the shapes; where these are not known, what its numbers are."""
     title = f"The inertia of {link.name} is that of a uniform solid of its shape, with its mass"
     fact = Fact(link.name, "inertia", title, "inertia_plausible", {"link": link.name})
     shapes = [shape.geometry for shape in (link.collisions or link.visuals)]
-    if any(isinstance(shape, Mesh) for shape in shapes):
-        return replace(fact, otherwise=tuple(_numbers_of(link.name, inertial)))
+    if not shapes or any(isinstance(shape, Mesh) for shape in shapes):
+        return replace(fact, otherwise=tuple(_numbers_of(link.name, inertial)), is_doubtful=bool(shapes))
     loose = replace(fact, arguments={**fact.arguments, "tolerance": _LOOSE_INERTIA}, is_doubtful=True)
     return replace(fact, otherwise=(loose,))
 
 
 def _numbers_of(link: str, inertial: Inertial) -> Iterator[Fact]:
+    if min(inertial.inertia[index] for index in _DIAGONAL) <= 0:
+        return
     moments = dict(zip(_MOMENTS, map(exact, inertial.inertia), strict=True))
     title = f"The inertia of {link} is {', '.join(f'{key} {shown([value])}' for key, value in moments.items())} kg m^2"
     tolerance = exact(max(map(abs, moments.values())) * _INERTIA_SHARE)

@@ -11,7 +11,7 @@ from grader.authoring.elements import element_facts
 from grader.authoring.fact import Fact, Omission, is_finite
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.joints import joint_facts
-from grader.authoring.oddities import oddities
+from grader.authoring.oddities import Doubts, oddities
 from grader.authoring.package import package_facts
 from grader.authoring.rubric_text import Head, criterion_ids, rubric_text
 from grader.authoring.shapes import shape_facts
@@ -19,7 +19,6 @@ from grader.authoring.solution import Solution
 from grader.authoring.toml_text import literal
 from grader.authoring.whole import loading_facts, motion_facts, tree_facts
 from grader.checks.outcome import Outcome
-from grader.checks.registry import find_check
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 
@@ -40,18 +39,18 @@ def draft(solution: Solution, head: Head, path: Path) -> Draft:
     found = list(_measured(solution))
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [it for it in found if isinstance(it, Omission)]
-    odd, ignored = list(oddities(solution)), list(ignored_mutants(solution))
+    ignored, doubts = list(ignored_mutants(solution)), Doubts()
     while True:
         rows = criterion_ids(facts)
         data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
         lost = _lost(rubric)
         if not lost:
-            return Draft(data, rubric, tuple(omissions), tuple(odd))
+            return Draft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
         for name, outcome in lost.items():
             fact, is_odd = rows[name], rows[name].is_doubtful and outcome.status == "failed"
             if is_odd:
-                odd.append(f"{outcome.message}: is the solution right?")
+                doubts.add(fact, outcome)
             if not fact.otherwise:
                 why = outcome.mistake if outcome.status == "pending" else outcome.message
                 omissions.append(Omission(name, _SEE_BELOW if is_odd else why))
@@ -92,4 +91,4 @@ def _measured(solution: Solution) -> Iterator[Fact | Omission]:
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
     """Return the facts that a rubric can hold: with finite numbers, and each check with its arguments once."""
     different = {(fact.check, literal(fact.arguments)): fact for fact in facts if is_finite(fact.arguments)}
-    return [fact for fact in different.values() if find_check(fact.check) is not None]
+    return list(different.values())

@@ -2,16 +2,21 @@
 
 import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from grader.authoring.fact import Fact, shown
+from grader.text import enumerated
+from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
 
-_FOREIGN = ("gazebo", "ros2_control", "transmission")
+_FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _IN_JOINTS = ("safety_controller", "calibration")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
 _NAMED_BY = ("reference", "name", "filename", "type")
+
+_MAX_LISTED = 4  # values in a title
 
 Values = dict[str, Any]
 
@@ -19,7 +24,7 @@ Values = dict[str, Any]
 def element_facts(root: Element) -> Iterator[Fact]:
     """Yield the values in the elements for simulators and controllers: a fact for each element in one of them."""
     for element in _children(root):
-        tag = str(element.tag)
+        tag = name_of(element)
         if tag in _FOREIGN:
             yield from _facts_in(element)
         elif tag == "joint":
@@ -33,27 +38,33 @@ def _facts_in(element: Element) -> Iterator[Fact]:
     plain: Values = {}
     deep: list[Element] = []
     for child in _children(element):
-        if len(child) or child.attrib:
+        if _children(child) or child.attrib:
             deep.append(child)
         else:
-            _add(plain, str(child.tag), _value(child.text))
+            _add(plain, name_of(child), _value(_text(child)))
     if plain or not deep:
         yield _fact(element, "", plain, _label(element))
     for child in deep:
-        yield _fact(element, str(child.tag), values_of(child), _label(element, child))
+        yield _fact(element, name_of(child), values_of(child), _label(element, child))
 
 
 def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
-    arguments: dict[str, Any] = {"tag": str(element.tag)}
+    arguments: dict[str, Any] = {"tag": name_of(element)}
     attributes = {str(key): str(value) for key, value in element.attrib.items()}
     arguments |= {"attributes": attributes} if attributes else {}
     arguments |= {"path": path} if path else {}
     arguments |= {"values": values} if values else {}
-    where = f"<{element.tag}>{f' of {_name(element)}' if _name(element) else ''}"
-    title = f"{where} has {f'<{path}>' if path else 'the element'}" if path or not values else where
-    listed = ", ".join(f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items())
-    title += f"{' with' if path else ' has'} {listed}" if listed else ""
-    return Fact(label, "", title, "element_present", arguments, about=_about(element))
+    about = "The joints" if element.tag == "joint" else f"<{name_of(element)}>"
+    return Fact(label, "", _title(element, path, values), "element_present", arguments, about=about)
+
+
+def _title(element: Element, path: str, values: Values) -> str:
+    """Return what an element has: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
+    owner = f"<{name_of(element)}>{f' of {_name(element)}' if _name(element) else ''}"
+    listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
+    if not path:
+        return f"{owner} has {listed}" if listed else f"There is a {owner}"
+    return f"{owner} has <{path}>{f' with {listed}' if listed else ''}"
 
 
 def values_of(element: Element, path: str = "") -> Values:
@@ -62,9 +73,9 @@ def values_of(element: Element, path: str = "") -> Values:
     for key, text in element.attrib.items():
         _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
-        inner = f"{path}{child.tag}"
-        if not len(child) and ((child.text or "").strip() or not child.attrib):
-            _add(found, inner, _value(child.text))
+        inner = f"{path}{name_of(child)}"
+        if not _children(child) and (_text(child) or not child.attrib):
+            _add(found, inner, _value(_text(child)))
         for key, value in values_of(child, f"{inner}/").items():
             _add(found, key, value)
     return found
@@ -79,13 +90,12 @@ def _add(found: Values, key: str, value: Any) -> None:
         found[key] = before + (value if isinstance(value, list) else [value])
 
 
-def _value(text: str | None) -> str | bool | int | float:
+def _value(text: str) -> str | bool | int | float:
     """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
-    word = (text or "").strip()
+    word = text.strip()
     if word in _TRUTH:
         return _TRUTH[word]
-    if _NUMBER.fullmatch(word):
-        number = float(word)
+    if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
         return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
     return " ".join(word.split())
 
@@ -94,17 +104,17 @@ def _children(element: Element) -> list[Element]:
     return [child for child in element if isinstance(child.tag, str)]
 
 
+def _text(element: Element) -> str:
+    return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
+
+
 def _name(element: Element) -> str:
     return next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), "")
 
 
 def _label(*elements: Element) -> str:
     """Return the words of an id: the tags and names of elements."""
-    return " ".join(f"{element.tag} {_name(element)}" for element in elements)
-
-
-def _about(element: Element) -> str:
-    return "The joints" if element.tag == "joint" else f"<{element.tag}>"
+    return " ".join(f"{name_of(element)} {_name(element)}" for element in elements)
 
 
 def _shown(value: Any) -> str:

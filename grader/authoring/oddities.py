@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, combinations
 
-from grader.authoring.fact import shown
+from grader.authoring.fact import Fact, shown
 from grader.authoring.solution import Solution
+from grader.checks.outcome import Outcome
 from grader.robot.model import Cylinder, Joint, Link, Mesh
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import dot
@@ -13,6 +14,7 @@ from grader.text import counted, enumerated
 _OPPOSITE = -0.999  # the cosine of the angle between two axes
 _IN_SIMULATION = ("gazebo", "ros2_control")
 _MAX_NAMED = 4
+_MAX_ALIKE = 3  # questions about one check
 
 
 def oddities(solution: Solution) -> Iterator[str]:
@@ -72,10 +74,6 @@ def _of_joint(joint: Joint) -> Iterator[str]:
     limit = joint.limit
     if limit is None or joint.type not in ("revolute", "prismatic"):
         return
-    if limit.lower > limit.upper:
-        yield f"the lower limit, {shown([limit.lower])}, is above the upper limit, {shown([limit.upper])}"
-    elif limit.lower == limit.upper:
-        yield "the limits are equal, so the joint cannot move"
     for name, value in (("effort", limit.effort), ("velocity", limit.velocity)):
         if value == 0:
             yield f"the {name} is 0, so no controller can move the joint"
@@ -98,3 +96,22 @@ def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:
     shapes = [visual.geometry for visual in solution.robot.link(joint.child).visuals]
     cylinder = next((shape for shape in shapes if isinstance(shape, Cylinder)), None)
     return {"radius": cylinder.radius, "length": cylinder.length} if cylinder is not None else None
+
+
+class Doubts:
+    """Facts of which parts of the reference contradict each other: of each check the first few, and the names of the others."""
+
+    def __init__(self) -> None:
+        self._by_check: dict[str, list[tuple[Fact, Outcome]]] = {}
+
+    def add(self, fact: Fact, outcome: Outcome) -> None:
+        """Add a fact that the reference does not pass."""
+        self._by_check.setdefault(fact.check, []).append((fact, outcome))
+
+    def lines(self) -> Iterator[str]:
+        """Yield a question for each fact, and one for all others of a check."""
+        for found in self._by_check.values():
+            yield from (f"{outcome.message}: is the solution right?" for _, outcome in found[:_MAX_ALIKE])
+            others = [fact.subject for fact, _ in found[_MAX_ALIKE:]]
+            if others:
+                yield f"the same applies to the {found[0][0].aspect} of {enumerated(others, _MAX_NAMED)}"

@@ -20,6 +20,11 @@ def shape_facts(link: Link) -> Iterator[Fact | Omission]:
     meshes = by_kind.pop(Mesh, [])
     for number, visual in enumerate(meshes):
         yield from _mesh(link.name, visual, number)
+    for visual in meshes[:1]:
+        if visual.material is not None:
+            yield from _colour(link.name, visual, "mesh", {})
+    if any(visual.material is not None for visual in meshes[1:]):
+        yield Omission(f"{link.name}: the colour of all its meshes but the first", "a check examines the first mesh")
     for kind, same in by_kind.items():
         yield from _sizes(link.name, same)
         largest = max(same, key=lambda visual: volume(visual.geometry))

@@ -5,7 +5,7 @@ from math import hypot, inf
 
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative
-from grader.checks.visuals import MAX_SHAPES, check_resolved, mesh_name, visuals
+from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
@@ -100,7 +100,7 @@ def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], to
         unknown = next((mesh for mesh in meshes if mesh.filename not in files), None)
         if unknown is not None:
             cause = "mesh files are not opened"
-            what = f"whether the collision mesh {mesh_name(unknown)} of {link!r} has the shape that is shown"
+            what = f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the shape that is shown"
             return pending(f"{what} cannot be determined: {cause}; needs manual grading", cause)
     pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
     off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
@@ -141,5 +141,5 @@ def _sized(geometry: Geometry) -> str:
             return f"a cylinder of radius {point((radius,))} m and length {point((length,))} m"
         case Sphere(radius=radius):
             return f"a sphere of radius {point((radius,))} m"
-        case Mesh(scale=scale):
-            return f"the mesh {mesh_name(geometry)}{'' if scale == Mesh('').scale else f' scaled by {point(scale)}'}"
+        case Mesh(filename=filename, scale=scale):
+            return f"the mesh {file_name(filename)}{'' if scale == Mesh('').scale else f' scaled by {point(scale)}'}"

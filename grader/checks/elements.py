@@ -1,8 +1,6 @@
 """Checks of the XML elements of a URDF, whatever reads them: Gazebo, ros2_control, transmissions."""
 
-import re
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
@@ -15,62 +13,18 @@ from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines, quoted
 from grader.xml.element_values import (
     Found,
-    are_there,
     attribute,
     elements_at,
-    is_same,
     name_of,
     numbers_of,
     steps_of,
     text_of,
     texts_at,
 )
-from grader.xml.parsing import Element, Unresolved
+from grader.xml.parsing import Element
+from grader.xml.wanted_element import WantedElement, readable
 
 _MAX_NAMED = 5  # elements and values in a message
-_INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
-
-
-class _Wanted(NamedTuple):
-    """What a rubric looks for."""
-
-    tag: str
-    attributes: Mapping[str, Scalar]
-    path: str
-    values: Mapping[str, Content]
-    tolerance: float
-
-    @property
-    def element(self) -> str:
-        """The element below <robot>: <gazebo reference="camera_link">."""
-        given = (f' {key}="{text_of(value)}"' for key, value in self.attributes.items())
-        return f"<{self.tag}{''.join(given)}>"
-
-    @property
-    def inner(self) -> str:
-        """The element at the path in it: <sensor> in <gazebo>."""
-        steps = steps_of(self.path)
-        return f"{''.join(f'<{step}>' for step in steps)} in {self.element}" if steps else self.element
-
-    def fits(self, element: Element) -> bool:
-        """Return whether an element has the attributes."""
-        given = ((attribute(element, key), value) for key, value in self.attributes.items())
-        return all(text is not None and is_same(text, value, self.tolerance) for text, value in given)
-
-    def may_fit(self, element: Element, unresolved: Unresolved | None) -> bool:
-        """Return whether an element, of which not all may be known, can have the attributes."""
-        left = {key: value for key, value in self.attributes.items() if unresolved and key not in unresolved.attributes}
-        if unresolved is not None and unresolved.content is not None:
-            left = {key: value for key, value in left.items() if attribute(element, key) is not None}
-        return self._replace(attributes=left).fits(element) if unresolved else self.fits(element)
-
-    def wrong(self, element: Element) -> list[str]:
-        """Return the keys of the values that an element does not have."""
-        return [key for key, value in self.values.items() if not self._has(element, key, value)]
-
-    def _has(self, element: Element, key: str, value: Content) -> bool:
-        texts = [_readable(found.text) for found in texts_at(element, key)]
-        return are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
 
 
 def element_present(
@@ -99,7 +53,7 @@ def element_present(
         tolerance: How far a number may be off, in the number's own unit.
     """
     del robot  # the elements are read from the text, but only where there is a robot
-    wanted = _Wanted(tag, attributes or {}, path, values or {}, tolerance)
+    wanted = WantedElement(tag, attributes or {}, path, values or {}, tolerance)
     reading = submission.needed_urdf()
     if reading.root is None:
         if reading.undetermined:
@@ -111,7 +65,7 @@ def element_present(
     return outcome
 
 
-def _searched(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
+def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     tags = [child for child in root if name_of(child) == wanted.tag]
     if not tags:
         return _no_tag(reading, root, wanted)
@@ -131,7 +85,7 @@ def _searched(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
     return failed(f"{wanted.inner}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at)
 
 
-def _no_tag(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
+def _no_tag(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     inside = next((element for element in root.iter() if element is not root and name_of(element) == wanted.tag), None)
     message = f"there is no <{wanted.tag}> directly in <robot>"
     if inside is not None:
@@ -141,7 +95,7 @@ def _no_tag(reading: Reading, root: Element, wanted: _Wanted) -> Outcome:
     return failed(message, detail=did_you_mean(wanted.tag, {name_of(element) for element in root}))
 
 
-def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: _Wanted) -> Outcome:
+def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElement) -> Outcome:
     given = [{key: attribute(element, key) for key in wanted.attributes} for element in tags]
     texts = (" ".join(f'{key}="{value}"' for key, value in one.items() if value is not None) for one in given)
     shown = dict.fromkeys(f"<{wanted.tag} {text}>" if text else f"<{wanted.tag}>" for text in texts)
@@ -152,7 +106,7 @@ def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: _Wanted) -
     return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
 
 
-def _no_path(reading: Reading, element: Element, wanted: _Wanted) -> Outcome:
+def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outcome:
     steps = steps_of(wanted.path)
     while steps and not elements_at(element, steps[:-1]):
         steps.pop()
@@ -167,7 +121,7 @@ def _fault(key: str, found: Sequence[Found], expected: Content) -> str:
     should = f"it should be {enumerated([_shown(value) for value in wanted])}"
     if not found:
         return f"{key!r} is missing; {should}"
-    texts = [_readable(text.text) for text in found]
+    texts = [readable(text.text) for text in found]
     return f"{key!r} is {enumerated([*map(_shown, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
 
 
@@ -183,17 +137,13 @@ def _shown(value: Scalar) -> str:
     return text if not isinstance(value, str) or numbers_of(text) else quoted(text)
 
 
-def _readable(text: str) -> str:
-    return _INSTALLED.sub(r"$(find \1)", text)
-
-
 def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:
     assert reading.root is not None
     tag = next(index for index, other in enumerate(reading.root.iter()) if other is element)
     return LazyLocation(reading.source, tag, name)
 
 
-def _check_known(reading: Reading, root: Element, wanted: _Wanted) -> None:
+def _check_known(reading: Reading, root: Element, wanted: WantedElement) -> None:
     """Raise NotDecided if xacro leaves open whether the element is there, or what it contains."""
     tags = (child for child in root if name_of(child) == wanted.tag)
     fitting = (child for child in tags if wanted.may_fit(child, reading.unresolved.get(child)))

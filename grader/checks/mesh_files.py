@@ -20,9 +20,10 @@ _WEB = ("http", "https", "ftp")
 class MeshFile(NamedTuple):
     """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does not find such a name.
 
-    `doubt` says why it cannot be determined whether it does.
+    `doubt` says why it cannot be determined whether it does. `written` is the name as the student wrote it.
     """
 
+    written: str
     path: str
     package: str = ""
     fault: str = ""
@@ -49,20 +50,21 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     fault = _BACKSLASH if "\\" in filename else ""
     shared = _found_by_xacro(rest) if is_expanded and scheme in ("", "file") else None
     if shared is not None:
-        return MeshFile(shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)")
+        written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
+        return MeshFile(written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)")
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
-        return MeshFile(path, package, fault)
+        return MeshFile(filename, path, package, fault)
     if not scheme:
         is_absolute = _ABSOLUTE.match(filename) is not None
-        return MeshFile(rest, "", f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault)
+        return MeshFile(filename, rest, "", f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault)
     if scheme == "file":
-        return MeshFile(rest, "", f"is at a file:// path, which {_ONE_MACHINE}")
+        return MeshFile(filename, rest, "", f"is at a file:// path, which {_ONE_MACHINE}")
     if scheme.lower() in ("package", "file") or not slashes:
-        return MeshFile(rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
+        return MeshFile(filename, rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
     if scheme in _WEB:
-        return MeshFile(rest, "", "", "is on the web, which the grader does not read")
-    return MeshFile(rest, "", "", f"is at a {scheme}:// path, which not every program finds")
+        return MeshFile(filename, rest, "", "", "is on the web, which the grader does not read")
+    return MeshFile(filename, rest, "", "", f"is at a {scheme}:// path, which not every program finds")
 
 
 def why_not_found(mesh: MeshFile, submission: Submission) -> str:

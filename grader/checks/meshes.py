@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.checks.mesh_files import MeshFile, mesh_file, why_not_found
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, measured_point, passed, pending, place
 from grader.checks.toml_types import NonNegative
-from grader.checks.visuals import mesh_name, shape_name, visual_pose, visuals
+from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.likeness import turn_between
@@ -94,13 +94,13 @@ def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
     alike = [it for it in meshes if it.file.ends_in(wanted, any_case=True)]
     it = (alike or meshes)[0]
     reason = "; upper and lower case differ" if alike else ""
-    message = f"{it.link!r} shows the mesh {mesh_name(it.mesh)}"
+    message = f"{it.link!r} shows the mesh {file_name(it.file.written)}"
     return failed(f"{message}; its path should end in {quoted(file)}{reason}", place(it.mesh.location, "filename"))
 
 
 def _examined(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
     """Return the outcome for one mesh of the right name."""
-    name, fault, doubt, cause = mesh_name(it.mesh), it.file.fault, it.file.doubt, it.file.doubt
+    name, fault, doubt, cause = file_name(it.file.written), it.file.fault, it.file.doubt, it.file.doubt
     try:
         fault = fault or why_not_found(it.file, submission)
     except NotDecided as reason:

@@ -1,5 +1,6 @@
 """How the motion of a robot's links differs from that of another robot's: where most, and because of which joint."""
 
+from collections.abc import Collection
 from math import degrees
 
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, point
@@ -36,10 +37,14 @@ class MotionComparison:
         cause, at = "", self._pair.robots[0].link(worst.link).location
         if not self._is_within(zero):
             cause = f"; it is already {self._text(zero)} off with all joints at 0" if zero is not worst else ""
-        elif len(wrong) == 1 and self._differs_only_with(index := next(iter(wrong))):
-            joint = self._pair.joints[index][0]
-            at, reversed_ = joint.axis_location or joint.location, self._is_reversed(index)
-            cause = f"; it differs as soon as {quoted(joint.name)} moves{': its axis is reversed' if reversed_ else ''}"
+        elif wrong and self._differ_only_with([*wrong]):
+            differing = [self._pair.joints[index][0] for index in wrong]
+            at = differing[0].axis_location or differing[0].location
+            names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
+            axes = "its axis is" if len(differing) == 1 else "their axes are"
+            cause = (
+                f"; it differs as soon as {names} moves{f': {axes} reversed' if self._are_reversed([*wrong]) else ''}"
+            )
         message = f"{worst.link!r} does not move as in the reference: it is {self._text(worst)} off"
         detail = f" with {self._positions(worst)}{cause}"
         outcome = failed(message, at, detail=detail)
@@ -54,15 +59,15 @@ class MotionComparison:
     def _is_within(self, offset: Offset) -> bool:
         return offset.distance <= self._tolerance + SLACK and offset.angle <= self._angle + SLACK
 
-    def _differs_only_with(self, moved: int) -> bool:
-        """Return whether the robots agree wherever one joint is at 0."""
-        held = ((*positions[:moved], 0.0, *positions[moved + 1 :]) for positions in self._random)
+    def _differ_only_with(self, moved: Collection[int]) -> bool:
+        """Return whether the robots agree wherever some joints are at 0."""
+        held = (tuple(0.0 if index in moved else it for index, it in enumerate(found)) for found in self._random)
         return all(self._is_within(self._pair.offset(positions)) for positions in held)
 
-    def _is_reversed(self, index: int) -> bool:
-        """Return whether the robots agree everywhere once one joint moves the other way."""
+    def _are_reversed(self, moved: Collection[int]) -> bool:
+        """Return whether the robots agree everywhere once some joints move the other way."""
         everywhere = (*(positions for _, positions in self._singles), *self._random)
-        return all(self._is_within(self._pair.offset(positions, turned=index)) for positions in everywhere)
+        return all(self._is_within(self._pair.offset(positions, moved)) for positions in everywhere)
 
     def _text(self, offset: Offset) -> str:
         return f"{in_millimetres(offset.distance)} and {in_degrees(offset.angle)}"

@@ -13,7 +13,7 @@ from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
 
 _MAX_FILE_NAME = 100  # characters that a message shows
-MAX_SHAPES = 100  # of one link that are compared with each other
+MAX_SHAPES = 50  # of one link that are compared with each other
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
@@ -76,9 +76,8 @@ def shape_name(geometry: Geometry) -> str:
     return f"a {type(geometry).__name__.lower()}"
 
 
-def mesh_name(mesh: Mesh) -> str:
+def file_name(name: str) -> str:
     """Return the file name of a mesh between quotes; only the end of one that is very long."""
-    name = mesh.filename
     return repr(name if len(name) <= _MAX_FILE_NAME else f"...{name[3 - _MAX_FILE_NAME :]}")
 
 

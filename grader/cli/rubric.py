@@ -89,10 +89,10 @@ def new_rubric(
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> str:
-    """Write a rubric with a criterion for each fact of a reference solution.
+    """Write a rubric from a reference solution.
 
-    It is tried on the reference, which gets full marks. What no check can tell is omitted; what looks odd in the
-    solution is listed.
+    It has a criterion for each fact that can be measured, and is tried on the reference, which gets full marks. What no
+    check can tell is omitted; what looks odd in the solution is listed.
 
     Examples:
 

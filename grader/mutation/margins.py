@@ -8,6 +8,7 @@ from grader.grading.report import Result
 from grader.robot.transforms import cross, dot, unit
 
 _NEAR = 0.5  # of the tolerance: a reference that is farther off is near the limit
+_CHANGE = 0.01  # of the tolerance: less is no change
 _NOTHING = 1e-9
 
 
@@ -28,6 +29,11 @@ class Margin(NamedTuple):
     def is_near(self) -> bool:
         """Return whether the reference uses more than half of the tolerance."""
         return self.reference > max(_NEAR * self.tolerance, _NOTHING)
+
+    def is_changed(self, result: Result) -> bool:
+        """Return whether a mutant has another measured value than the reference."""
+        off = deviation(result.outcome)
+        return off is not None and abs(off - self.reference) > _CHANGE * self.tolerance
 
     def with_mutant(self, result: Result) -> "Margin":
         """Return the margin with the result of a mutant; one that failed or passed for another reason changes nothing."""

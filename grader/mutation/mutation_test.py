@@ -16,6 +16,7 @@ from grader.mutation.trial import Trial
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
+_MAX_OTHERS = 500  # mutants that are tried only to find out whether a criterion is idle
 Step = Callable[[], None]  # shows that one more mutant is graded
 
 
@@ -25,6 +26,7 @@ class MutationTest:
     def __init__(self, trial: Trial, most: int, seed: int) -> None:
         self.trial = trial
         self.all = list(_mutants_of(trial))
+        self.seed = seed
         self.chosen = sampled(self.all, most, Random(seed))
         self.caught = self.same = 0
         self.checks = set(check_names())
@@ -57,11 +59,13 @@ class MutationTest:
             self.caught += 1
             return ()
         is_lost = False
+        tolerated: list[str] = []
         for result in self.trial.results(mutant, submission, self.trial.expected):
             name = result.criterion.id
             if result.outcome.status == "failed":
                 self.idle.pop(name, None)
             if name in self.margins:
+                tolerated += [name] if self.margins[name].is_changed(result) else []
                 self.margins[name] = self.margins[name].with_mutant(result)
             is_lost |= self.trial.is_lost(result)
         if is_lost:
@@ -69,10 +73,10 @@ class MutationTest:
         elif self.trial.is_same(mutant, submission):
             self.same += 1
         else:
-            return (self._survivor(mutant, submission),)
+            return (self._survivor(mutant, submission, tolerated),)
         return ()
 
-    def _survivor(self, mutant: Mutant, submission: Submission) -> Survivor:
+    def _survivor(self, mutant: Mutant, submission: Submission, tolerated: list[str]) -> Survivor:
         rubric, urdf = self.trial.rubric, self.trial.reference.urdf
         reason = next(
             (row.reason for row in rubric.ignored if any(fnmatchcase(mutant.id, it) for it in row.mutants)), ""
@@ -80,7 +84,9 @@ class MutationTest:
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         changed = submission.verdict or ""
         verdict = changed if changed != self.trial.reference.verdict else ""
-        return Survivor(mutant, self._diff(mutant), suggestion(mutant, rubric, robot, verdict, self.checks), reason)
+        return Survivor(
+            mutant, self._diff(mutant), suggestion(mutant, rubric, robot, verdict, tolerated, self.checks), reason
+        )
 
     def _diff(self, mutant: Mutant) -> str:
         if mutant.renamed:
@@ -92,11 +98,10 @@ class MutationTest:
 
     def _try_others(self) -> None:
         """Find out whether mutants that were not sampled fail the criteria that no other one fails."""
-        chosen = {mutant.id for mutant in self.chosen}
-        for mutant in self.all:
-            if not self.idle:
-                return
-            submission = self.trial.submission(mutant) if mutant.id not in chosen else None
+        chosen = set(self.chosen)
+        others = [mutant for mutant in self.all if mutant not in chosen]
+        for mutant in sampled(others, _MAX_OTHERS, Random(self.seed)):
+            submission = self.trial.submission(mutant) if self.idle else None
             if submission is not None:
                 for result in self.trial.results(mutant, submission, self.trial.expected):
                     if result.outcome.status == "failed":

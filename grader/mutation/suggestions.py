@@ -64,10 +64,18 @@ _RULES = (
 )
 
 
-def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None, verdict: str, known: Collection[str]) -> str:
+def suggestion(
+    mutant: Mutant,
+    rubric: Rubric,
+    robot: Robot | None,
+    verdict: str,
+    tolerated: Collection[str],
+    known: Collection[str],
+) -> str:
     """Return what may catch a mutant that survived, as a clause.
 
-    `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `known` are the checks that exist.
+    `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `tolerated` are the criteria that measure another value
+    than on the reference, `known` the checks that exist.
     """
     used = {criterion.check.name for criterion in rubric.criteria}
     effect, check = _VERDICTS.get(verdict, ("", ""))
@@ -77,6 +85,9 @@ def suggestion(mutant: Mutant, rubric: Rubric, robot: Robot | None, verdict: str
     names = _names(mutant, robot)
     near = [found for found in rubric.criteria if found.check.name in checks and names & _measured(found)]
     others = [name for name in checks if name not in {found.check.name for found in near}][:2]
+    tolerant = [found.id for found in near if found.id in tolerated]
+    if tolerant:
+        return f"{enumerated(tolerant, 3)} {'measures' if len(tolerant) == 1 else 'measure'} it, within the tolerance"
     attempt = f"try {enumerated(others, word='or')}" if others else "look at its arguments" if near else ""
     if near:
         ids = enumerated([found.id for found in near], 3)

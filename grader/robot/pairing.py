@@ -1,13 +1,17 @@
 """Two robots whose joints are paired: how far links of one are from those of the other with the joints at the same positions."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import asin, degrees, dist, inf, sqrt
 from typing import NamedTuple
 
+from grader.errors import NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Robot
 from grader.robot.transforms import Transform
+from grader.text import quoted
+
+_MAX_CHAIN = 500  # joints that lead to a link
 
 _LEAST = 1e-9  # of a tolerance: below it, only rounding differs
 
@@ -35,10 +39,10 @@ class RobotPair:
     tolerance: float
     angle: float
 
-    def offset(self, positions: tuple[float, ...], turned: int | None = None) -> Offset:
-        """Return the largest offset with the joints at these positions; the one with the index `turned` moves the other way."""
+    def offset(self, positions: tuple[float, ...], reversed_joints: Collection[int] = ()) -> Offset:
+        """Return the largest offset with the joints at these positions; of the robot some, by their indices, are at the opposite."""
         own = {
-            joint.name: -position if index == turned else position
+            joint.name: -position if index in reversed_joints else position
             for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
             if joint.mimic is None  # a mimic joint follows
         }
@@ -75,7 +79,10 @@ def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, J
     """
     found: dict[str, Joint] = {}
     for link in links:
-        for joint in robot.between(base, link):
+        chain = robot.between(base, link)
+        if len(chain) > _MAX_CHAIN:
+            raise NotDecided(f"more than {_MAX_CHAIN} joints lead to {quoted(link)}", "a chain has too many joints")
+        for joint in chain:
             leader = _leader(robot.robot, joint)
             if leader is not None and leader.type != "fixed":
                 found.setdefault(leader.name, leader)

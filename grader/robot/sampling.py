@@ -32,6 +32,6 @@ def _range(joint: Joint) -> tuple[float, float]:
     if joint.type == "continuous":
         return -pi, pi
     limit = joint.limit
-    if joint.type not in SINGLE or limit is None or not isfinite(limit.lower + limit.upper):
+    if joint.type not in SINGLE or limit is None or not isfinite(limit.upper - limit.lower):
         return 0.0, 0.0
     return limit.lower, limit.upper

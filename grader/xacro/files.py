@@ -54,7 +54,7 @@ class Files:
 
     def has_package(self, name: str) -> bool:
         """Return whether a package is, or may be, part of the submission."""
-        return self._workspace.is_part or self._workspace.package(name) is not None
+        return self._workspace.is_part or not self._workspace.paths or self._workspace.package(name) is not None
 
     def named(self, text: str) -> list[str]:
         """Return the paths of the files that an include names: several for a pattern."""

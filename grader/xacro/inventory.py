@@ -12,7 +12,7 @@ from grader.xacro.tags import HANDLERS
 from grader.xacro.texts import PIECE
 
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
-_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*)*(?!\s*=[^=])")
+_NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
 
 Definitions = dict[str, list[Place]]
 

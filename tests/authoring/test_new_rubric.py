@@ -1,5 +1,6 @@
 """`grader rubric new`: the facts that it finds on a reference, what it omits, what it calls odd, and what it refuses."""
 
+import json
 import re
 import shutil
 import tomllib
@@ -87,6 +88,53 @@ FACTS = {
         {"link": "right_finger", "leader": "left_finger", "multiplier": 1, "offset": 0},
     ),
     "camera-link-joint": ("held_by", {"link": "camera_link", "parent": "upper_arm", "joint_type": "fixed"}),
+    "base-link-collision": ("collision_matches_visual", {"link": "base_link"}),
+    "left-finger-mesh": (
+        "shows_mesh",
+        {
+            "link": "left_finger",
+            "file": "cedar_arm/meshes/finger.stl",
+            "scale": [0.001, 0.001, 0.001],
+            "xyz": [0, 0, 0],
+            "rpy": [0, 0, 0],
+        },
+    ),
+    "motion": (
+        "kinematics_match_reference",
+        {"links": ["left_finger", "right_finger", "camera_link"], "match": "order"},
+    ),
+    "gazebo-base-link": (
+        "element_present",
+        {
+            "tag": "gazebo",
+            "attributes": {"reference": "base_link"},
+            "values": {"mu1": 0.9, "mu2": 0.9, "material": "Gazebo/Grey"},
+        },
+    ),
+    "ros2-control-arm-system-joint-joint-2": (
+        "element_present",
+        {
+            "tag": "ros2_control",
+            "attributes": {"name": "arm_system", "type": "system"},
+            "path": "joint",
+            "values": {
+                "@name": "joint_2",
+                "command_interface/@name": "position",
+                "command_interface/param": [-0.7854, 1.5708],
+                "command_interface/param/@name": ["min", "max"],
+                "state_interface/@name": "position",
+            },
+        },
+    ),
+    "transmission-joint-1-transmission-actuator-joint-1-motor": (
+        "element_present",
+        {
+            "tag": "transmission",
+            "attributes": {"name": "joint_1_transmission"},
+            "path": "actuator",
+            "values": {"@name": "joint_1_motor", "mechanicalReduction": 50},
+        },
+    ),
     "root": ("root_of_tree", {"link": "base_link", "holds": "base_link"}),
     "joint-counts": ("counts", {"moving": 4, "revolute": 1, "continuous": 1, "prismatic": 3}),
     "joint-names": (
@@ -110,6 +158,10 @@ def test_titles_say_the_expected_fact(criteria: dict[str, dict[str, Any]]) -> No
     assert titles["upper-arm-frame"] == "The frame upper_arm is at 0 0 0.13 m in turret, turned by rpy 0 -45 0 degrees"
     limits = "The joint of upper_arm turns from -45 to 90 degrees, effort 30 N m, velocity 1.5 rad/s"
     assert titles["upper-arm-limits"] == limits
+    camera = (
+        "<gazebo> of camera_link has <sensor> with name camera, type camera, update_rate 30, always_on true and 6 more"
+    )
+    assert titles["gazebo-camera-link-sensor-camera"] == camera
     assert titles["turret-mass"] == "The mass of turret is 1.2 kg"
 
 
@@ -129,13 +181,13 @@ def test_the_rubric_is_complete(written: tuple[Path, str]) -> None:
 
 
 def test_the_text_is_laid_out_for_people(written: tuple[Path, str]) -> None:
-    """Headings, short numbers, comments in one column, no line that is much longer than others."""
+    """Headings, short numbers, comments in one column, only titles longer than 120 columns."""
     text = written[0].read_text()
     assert "# --- upper_arm ---" in text
     assert not re.search(r"\d{8}", text)
     head = text.splitlines()[2:4]
     assert len({line.index("  # ") for line in head}) == 1
-    assert all(len(line) <= 150 for line in text.splitlines())
+    assert all(len(line) <= 120 for line in text.splitlines() if not line.startswith("title"))
 
 
 def test_it_says_what_it_wrote_and_what_to_do_next(written: tuple[Path, str]) -> None:
@@ -153,6 +205,13 @@ def test_the_same_reference_gives_the_same_bytes(written: tuple[Path, str], tmp_
     shutil.copy(ARM, tmp_path)
     new(tmp_path / "cedar_arm.toml", tmp_path / "arm.urdf")
     assert (tmp_path / "cedar_arm.toml").read_bytes() == written[0].read_bytes()
+
+
+def test_every_mutant_of_the_reference_loses_something(written: tuple[Path, str]) -> None:
+    """`grader rubric test` finds no survivor, no idle criterion, and no equivalent that loses points."""
+    done = run(("rubric", "test", written[0], "--mutants", 200, "--fail-under", "100%", "--format", "json"))
+    result = json.loads(done.stdout)
+    assert (done.returncode, result["survivors"], result["idle"], result["equivalents"]["lost"]) == (0, [], [], [])
 
 
 # --- Where the rubric and its reference are ---------------------------------------------------------------------------
@@ -276,13 +335,17 @@ ODD = {
     "no colour": (robot(body("hand")), "odd: hand: no colour, or one that is not defined, so RViz shows red"),
     "limits": (
         robot(joint("revolute", inside='<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1" velocity="1"/>')),
-        "odd: tool_joint: the lower limit, 1, is above the upper limit, -1",
+        r"odd: URDF\d+: lower 1 is not below upper -1: the joint cannot move \(line 1\)",
     ),
     "effort": (
         robot(joint("prismatic", inside='<axis xyz="0 0 1"/><limit lower="0" upper="1" effort="0" velocity="1"/>')),
         "odd: tool_joint: the effort is 0, so no controller can move the joint",
     ),
     "mass": (robot(body("hand", mass=0)), "odd: hand: the mass is 0 kg"),
+    "collision": (
+        robot().replace("</link>", '<collision><geometry><sphere radius="0.5"/></geometry></collision></link>'),
+        r"odd: .*collision shape of 'base' .*: is the solution right\?",
+    ),
     "no inertia": (
         robot('<gazebo reference="base"><mu1>0.5</mu1></gazebo>'),
         "odd: base: no <inertial>, though the link has shapes",

@@ -218,5 +218,5 @@ def test_absurd_numbers(size: float, far: str) -> None:
 
 def test_very_many_shapes() -> None:
     """A link with more shapes than are compared needs manual grading."""
-    shapes = [shape for _ in range(101) for shape in (visual(BALL), collision(BALL))]
+    shapes = [shape for _ in range(51) for shape in (visual(BALL), collision(BALL))]
     assert graded(collision_matches_visual, arm(*shapes), **CLOSE).status == "pending"

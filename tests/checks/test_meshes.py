@@ -6,6 +6,8 @@ import pytest
 
 from grader.checks.meshes import shows_mesh
 from grader.checks.outcome import Outcome, Status
+from grader.robot.kinematics import Configuration
+from grader.submission.opening import read_submission
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, joint, link, mesh, scene, turned, visual
 from tests.checks.submissions import MANIFEST, REFERENCE, SETUP, URDF, Submitted
@@ -215,6 +217,17 @@ def test_without_a_package_nothing_is_looked_for() -> None:
     assert finding(Submitted({"robot.urdf": arm().text}))[0] == "passed"
 
 
+def test_find_of_xacro_in_a_single_file() -> None:
+    """Without a package, `$(find my_robot)` names a package that may exist, as package:// does."""
+    text = arm("file://$(find my_robot)/meshes/hull.stl").text
+    lone = Submitted({"arm.urdf.xacro": text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')})
+    alone = read_submission(lone.data("arm.urdf.xacro"), identity="ash", path="arm.urdf.xacro")
+    for submission in (alone, lone.submission):
+        robot = submission.needed_urdf().robot
+        assert robot is not None
+        assert shows_mesh(Configuration(robot), submission, link="arm", file="meshes/hull.stl").status == "passed"
+
+
 def expanded(filename: str) -> Outcome:
     """Return the outcome for a package whose xacro names a mesh."""
     text = arm(filename).text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
@@ -232,6 +245,9 @@ def test_find_of_xacro() -> None:
     assert (bare.status, bare.mistake) == ("failed", "the mesh of 'arm' needs file:// before $(find ...)")
     absent = expanded("file://$(find my_robot)/mesh/hull.stl")
     assert absent.status == "failed"
+    assert absent.message == (
+        "'arm' shows the mesh 'file://$(find my_robot)/mesh/hull.stl'; its path should end in 'meshes/hull.stl'"
+    )
     assert expanded("file://$(find somebody)/meshes/hull.stl").status == "pending"
 
 

@@ -65,6 +65,7 @@ def test_a_property_is_used_in_any_expression(inside: str) -> None:
         "<!-- ${a} -->",
         MACRO.format("a", "${a}") + '<xacro:m a="5"/>',
         '<xacro:property name="d" value="${dict(a=1)}"/>\n<link name="${d.a}"/>',
+        '<xacro:property name="d" value="${dict(ab=1)}"/>',
         '<xacro:property name="a" value="${a}"/>',
     ],
 )

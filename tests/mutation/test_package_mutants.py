@@ -1,0 +1,136 @@
+"""Mutants of the files of a package: each makes one mistake, where the tool that reads the file meets it."""
+
+from collections.abc import Callable
+
+import pytest
+
+from grader.grading.grade import decide
+from grader.mutation.mutants import Mutant
+from grader.mutation.package_mutants import package_mutants
+from grader.mutation.python_mutants import launch_changes, setup_changes
+from grader.submission.editing import content, overlaid
+from grader.submission.submission import Submission
+from tests.samples import LAB6, reference
+
+REFERENCE = reference()
+
+
+def text(path: str) -> str:
+    """Return the text of a file of Lab 6's reference."""
+    return (content(REFERENCE, path) or b"").decode()
+
+
+def found_in(submission: Submission, text: Callable[[str], str] = text) -> dict[str, Mutant]:
+    """Return the mutants of a package by their ids."""
+    assert submission.package is not None
+    return {mutant.id: mutant for mutant in package_mutants(submission.package, ["base_link", "base_footprint"], text)}
+
+
+FOUND = found_in(REFERENCE)
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("build type: package.xml build_type -> ament_cmake", ">ament_python<", ">ament_cmake<"),
+        ("text misspelt: package.xml name", "<name>my_robot<", "<name>my_rbot<"),
+        ("import deleted: setup.py import os", "import os\n", "pass\n"),
+        ("data_files entry deleted: setup.py (os.path.join('share', package_name), glob('urdf/*'))", "(os.path.join('share', package_name), glob('urdf/*')),", ""),
+        ("string misspelt: setup.py urdf/*", "'urdf/*'", "'urd/*'"),
+        ("string misspelt: setup.py my_robot", "'my_robot'", "'my_rbot'"),
+        ("action removed: launch/my_robot_rviz.launch.py rviz2", "        Node(\n            package='rviz2',\n            executable='rviz2',\n            arguments=['-d', os.path.join(share, 'my_robot.rviz')],\n        ),", "        "),
+        ("string misspelt: launch/my_robot_rviz.launch.py my_robot.urdf", "'my_robot.urdf'", "'my_robt.urdf'"),
+        ("fixed frame: rviz/my_robot.rviz -> base_link", "Fixed Frame: base_footprint", "Fixed Frame: base_link"),
+        ("fixed frame: rviz/my_robot.rviz -> base_fotprint", "Fixed Frame: base_footprint", "Fixed Frame: base_fotprint"),
+        ("display disabled: rviz/my_robot.rviz RobotModel", "Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"),
+        ("text misspelt: rviz/my_robot.rviz RobotModel Description Topic/Value /robot_description", "Value: /robot_description", "Value: /robot_decription"),
+    ],
+)  # fmt: skip
+def test_a_mutant_makes_one_change(name: str, old: str, new: str) -> None:
+    """The file, the place in it and the mistake."""
+    mutant = FOUND[name]
+    before = text(mutant.path)
+    assert before.count(old) >= 1
+    assert mutant.applied(before) == before.replace(old, new, 1)
+
+
+def test_files_are_deleted_and_renamed() -> None:
+    """Those that ROS 2 reads, not those for people."""
+    deleted = {mutant.path for mutant in FOUND.values() if mutant.is_deleted}
+    assert deleted == set(REFERENCE.everything.files)
+    renamed = FOUND["file renamed: urdf/my_robot.urdf"]
+    assert (renamed.path, renamed.renamed) == ("urdf/my_robot.urdf", "urdf/my_robt.urdf")
+    for_people = dict.fromkeys(("README.md", "LICENSE", "docs/a.urdf", "test/test_a.py", ".gitignore", "a.png"), b"")
+    assert REFERENCE.reopen is not None
+    assert found_in(REFERENCE.reopen(overlaid(REFERENCE.everything, for_people))) == FOUND
+
+
+def test_a_display_is_deleted_with_all_its_lines() -> None:
+    """Also the last one, and one with settings inside."""
+    before = text("rviz/my_robot.rviz")
+    for title in ("Grid", "RobotModel", "TF"):
+        after = FOUND[f"display deleted: rviz/my_robot.rviz {title}"].applied(before)
+        assert after.count("- Alpha:") + after.count("- Class: rviz_default_plugins/TF") == 2
+        assert f"Name: {title}\n" not in after
+        assert "  Enabled: true\n  Global Options:" in after
+
+
+@pytest.mark.parametrize(
+    ("name", "lost"),
+    [
+        ("build type: package.xml build_type -> ament_cmake", "package-type"),
+        ("import deleted: setup.py import os", "setup-imports"),
+        ("action removed: launch/my_robot_rviz.launch.py rviz2", "launch-nodes"),
+        ("display deleted: rviz/my_robot.rviz RobotModel", "rviz-shows-robot"),
+        ("file deleted: launch/my_robot_rviz.launch.py", "launch-found"),
+    ],
+)
+def test_a_criterion_fails_for_its_mutant(name: str, lost: str) -> None:
+    """The grader reads the changed file as it is meant."""
+    mutant = FOUND[name]
+    data = None if mutant.is_deleted else mutant.applied(text(mutant.path)).encode()
+    assert REFERENCE.reopen is not None
+    changed = REFERENCE.reopen(overlaid(REFERENCE.everything, {mutant.path: data}))
+    (result,) = decide(LAB6, changed, [lost])
+    assert result.outcome.status == "failed"
+
+
+def test_texts_for_people_are_not_changed() -> None:
+    """Docstrings, descriptions, licences."""
+    setup = "'''Doc'''\nfrom setuptools import setup\nsetup(name='a', description='b', license='c', data_files=[('d', ['e'])])\n"
+    labels = [change.label for change in setup_changes("setup.py", "s", setup)]
+    assert labels == ["s ('d', ['e'])", "s from setuptools import setup", "s a", "s d", "s e"]
+    launch = "def generate_launch_description():\n    '''Doc'''\n    ld = LaunchDescription()\n    ld.add_action(Node(executable='x'))\n"
+    changes = list(launch_changes("a.launch.py", "l", launch))
+    assert [change.label for change in changes] == ["l x", "l x"]
+    assert launch[: changes[0].start] + changes[0].new + launch[changes[0].end :] == launch.replace(
+        "ld.add_action(Node(executable='x'))", "None"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "ids"),
+    [
+        ("launch/a.launch.xml", '<launch><node pkg="rviz2" exec="rviz2"/></launch>', ["element deleted: launch/a.launch.xml node", "text misspelt: launch/a.launch.xml node exec"]),
+        ("launch/b.launch.yaml", "launch:\n- node:\n    pkg: rviz2\n    exec: rviz2\n- arg:\n    name: gui\n", ["action removed: launch/b.launch.yaml 1", "action removed: launch/b.launch.yaml 2", "text misspelt: launch/b.launch.yaml rviz2", "text misspelt: launch/b.launch.yaml gui"]),
+        ("launch/c.launch.yaml", "launch: [", []),
+        ("rviz/d.rviz", "a: [", []),
+        ("launch/e.launch.py", "def (", []),
+    ],
+)  # fmt: skip
+def test_other_files(name: str, content: str, ids: list[str]) -> None:
+    """Launch files in XML and YAML have mutants, too; a file that cannot be read has none but its own deletion."""
+    assert REFERENCE.reopen is not None
+    changed = REFERENCE.reopen(overlaid(REFERENCE.everything, {name: content.encode()}))
+    own = {
+        key: mutant
+        for key, mutant in found_in(changed, lambda path: content if path == name else text(path)).items()
+        if mutant.path == name
+    }
+    assert {f"file deleted: {name}", f"file renamed: {name}", *ids} <= set(own)
+    assert ids or len(own) == 2
+    assert all(
+        mutant.applied(content) != content
+        for mutant in own.values()
+        if mutant.family not in ("file deleted", "file renamed")
+    )
