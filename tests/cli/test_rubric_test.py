@@ -270,3 +270,31 @@ def test_a_sentence_fits_the_screen(tmp_path: Path) -> None:
     text = command(write_rubric(tmp_path, robot=ARM.replace("\n", " "))).stdout.decode()
     assert max(map(len, text.splitlines())) <= 80
     assert "..." in text
+
+
+@pytest.mark.parametrize(
+    ("check", "changed"),
+    [
+        ('check = "urdf_loads"', {"robot.urdf"}),
+        ('check = "package_found"\nwith = { name = "ash" }', {"robot.urdf", "package.xml"}),
+        ('check = "setup_imports"', {"robot.urdf", "package.xml", "setup.py"}),
+    ],
+)
+def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str, changed: set[str]) -> None:
+    """A rubric of the robot is not tested with mistakes in setup.py, and one that wants the package's name only with that."""
+    package = tmp_path / "ash"
+    package.mkdir()
+    (package / "robot.urdf").write_text(SMALL)
+    (package / "package.xml").write_text('<package format="3"><name>ash</name></package>')
+    (package / "setup.py").write_text("from setuptools import setup\nsetup(name='ash')\n")
+    top = TOP.replace("birch.urdf", "ash").replace(
+        'title = "An arm"', 'title = "An arm"\npackage = "ash"\nurdf = "robot.urdf"'
+    )
+    text = f'{top}[[criterion]]\nid = "other"\npart = "model"\ntitle = "Another"\npoints = 1\n{check}\n'
+    found = data(
+        write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n'), "--mutants", 5000
+    )
+    assert found["reference"]["lost"] == []
+    assert {row["path"] for row in found["ignored"]} <= changed
+    without = data(write_rubric(tmp_path, top), "--mutants", 0)["mutants"]["total"]
+    assert (found["mutants"]["total"] > without) == (len(changed) > 1)
