@@ -13,7 +13,7 @@ from grader.checks.registry import find_check
 from grader.grading.rubric import shipped_rubrics
 from grader.robot.kinematics import Configuration
 from tests.command_line import ROOT, Done, run
-from tests.mutation.robots import ARM, BOX, FRAME, TOP, write_rubric
+from tests.mutation.robots import ARM, BOX, TOP, write_rubric
 
 IGNORE = '[[test.ignore]]\nmutants = ["type: joint ? type*", "nothing: *"]\nreason = "Only a tool."\n'
 PENDING = '[[criterion]]\nid = "by-hand"\npart = "model"\ntitle = "It is shown"\npoints = 1\ncheck = "evidence_shown"\nwith = { names = ["a"] }\n'
@@ -105,10 +105,6 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
             "number negated: link plate/visual/geometry/box size.x",
             "plate-box passes all the same; look at its arguments",
         ),
-        (
-            "attribute deleted: link base/visual/geometry/cylinder radius",
-            "no criterion looks at it; try shows_cylinder",
-        ),
     ],
 )
 def test_a_suggestion_names_a_check_or_the_criterion_that_looks(
@@ -116,9 +112,7 @@ def test_a_suggestion_names_a_check_or_the_criterion_that_looks(
 ) -> None:
     """A check that would look at it; or a criterion that does, and passes: its tolerance or its arguments let the mutant pass."""
     listed = {row["id"]: row["suggestion"] for row in arm["survivors"]}
-    assert listed[mutant].startswith(suggestion) or (
-        listed[mutant] == "ROS 2 drops content of it, and no criterion says so; try without_problems"
-    )
+    assert listed[mutant].startswith(suggestion)
 
 
 def test_a_mutant_that_ros_2_rejects_suggests_urdf_loads(tmp_path: Path) -> None:
