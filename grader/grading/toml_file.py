@@ -23,7 +23,7 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     except UnicodeDecodeError as error:
         raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
     except tomllib.TOMLDecodeError:
-        from grader.grading.toml_errors import toml_mistakes  # most rubrics are TOML
+        from grader.grading.toml_errors import toml_mistakes  # late: most files have none
 
         found = toml_mistakes(text)
         raise RubricError(tuple(f"{shown}:{line}:{column}: {what}" for line, column, what, _ in found)) from None
