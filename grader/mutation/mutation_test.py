@@ -6,16 +6,19 @@ from fnmatch import fnmatchcase
 from random import Random
 
 from grader.checks.registry import check_names
+from grader.grading.rubric import Criterion
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
-from grader.mutation.mutants import Mutant, mutants
+from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import MutantResults, Survivor
 from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
+from grader.package.package import MANIFEST
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
+_MESHES = (".stl", ".dae", ".obj")
 _MAX_OTHERS = 500  # mutants that are tried only to find out whether a criterion is idle
 Step = Callable[[], None]  # shows that one more mutant is graded
 
@@ -114,15 +117,28 @@ class MutationTest:
 
 
 def _mutants_of(trial: Trial) -> Iterator[Mutant]:
-    """Yield the mutants of the robot, and of the package if a criterion looks at it."""
+    """Yield the mutants of the robot, and those of the package that a criterion may look at."""
+    criteria = [trial.expected[name].criterion for name in trial.tested]
+    hidden = [found.arguments.get("link", "") for found in criteria if found.check.name == "shows_nothing"]
     for path in trial.robot_files:
         yield from mutants(trial.text(path), path)
-    package = trial.reference.package
-    if package is not None and any(trial.expected[name].criterion.check.subject == "package" for name in trial.tested):
-        urdf = trial.reference.urdf
+        yield from with_visuals(trial.text(path), path, hidden)
+    package, urdf = trial.reference.package, trial.reference.urdf
+    if package is not None:
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         links = [link.name for link in robot.links] if robot is not None else []
-        yield from package_mutants(package, links, trial.text)
+        found = package_mutants(package, links, trial.text)
+        yield from (mutant for mutant in found if _is_looked_at(mutant, criteria))
+
+
+def _is_looked_at(mutant: Mutant, criteria: Iterable[Criterion]) -> bool:
+    """Return whether a criterion may look at what a mutant of a package changes: some look at its name or at meshes only."""
+    subjects = {criterion.check.subject for criterion in criteria}
+    if "package" in subjects:
+        return True
+    if mutant.path.lower().endswith(_MESHES):
+        return any(criterion.check.name == "shows_mesh" for criterion in criteria)
+    return "submission" in subjects and mutant.path.endswith(MANIFEST)
 
 
 def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:

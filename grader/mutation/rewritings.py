@@ -140,10 +140,19 @@ def scale_axes(random: Random, tree: Element, around: Surroundings) -> bool:
     return bool(axes)
 
 
-def rename(random: Random, tree: Element, around: Surroundings) -> bool:
-    """Rename links, joints and materials that nothing but this file refers to."""
+def rename_links(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Rename links and materials that nothing but this file refers to."""
+    return _renamed(random, tree, around, ("link", "material"))
+
+
+def rename_joints(random: Random, tree: Element, around: Surroundings) -> bool:
+    """Rename joints that nothing but this file refers to."""
+    return _renamed(random, tree, around, ("joint",))
+
+
+def _renamed(random: Random, tree: Element, around: Surroundings, tags: tuple[str, ...]) -> bool:
     changed = False
-    for tag in ("link", "joint", "material"):
+    for tag in tags:
         elements = own_elements(tree, tag) if tag == "material" else tree.iterchildren(tag)
         names = dict.fromkeys(element.get("name", "") for element in elements)
         for name in some(random, [name for name in names if name and name not in around.named]):

@@ -1,7 +1,6 @@
 """Two robots whose joints are paired: how far links of one are from those of the other with the joints at the same positions."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from math import asin, degrees, dist, inf, sqrt
 from typing import NamedTuple
 
@@ -25,8 +24,7 @@ class Offset(NamedTuple):
     positions: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class RobotPair:
+class RobotPair(NamedTuple):
     """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
 
     Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an angle.

@@ -97,7 +97,8 @@ def test_each_family_changes_what_it_says(tmp_path: Path) -> None:
     assert [joint.origin for joint in robots["frames moved"].joints] != [joint.origin for joint in arm.joints]
     assert len(robots["frames moved"].links) == len(arm.links)
     assert [joint.axis for joint in robots["axes scaled"].joints] != [joint.axis for joint in arm.joints]
-    assert {joint.name for joint in robots["renamed"].joints} != {joint.name for joint in arm.joints}
+    assert {joint.name for joint in robots["joints renamed"].joints} != {joint.name for joint in arm.joints}
+    assert {link.name for link in robots["links renamed"].links} != {link.name for link in arm.links}
     assert robots["spelling of numbers"] == arm == robots["xacro properties"] == robots["xacro macro"]
     assert "<!--" in first["layout of the text"].text
     assert "${number_0}" in first["xacro properties"].text
@@ -132,9 +133,9 @@ def _criterion(check: str, **arguments: object) -> Criterion:
         ("counts", {"links": 3, "moving": None}, ("fixed joints split",)),
         ("counts", {"fixed": 3}, ("fixed joints split",)),
         ("kinematics_match_reference", {"match": "order"}, ("order of elements",)),
-        ("kinematics_match_reference", {"links": ["tool"]}, ("renamed",)),
+        ("kinematics_match_reference", {"links": ["tool"]}, ("joints renamed",)),
         ("element_present", {"tag": "gazebo"}, ()),
-        ("element_present", {"tag": "joint"}, ("fixed joints split", "frames moved", "full turns", "axes scaled", "renamed")),
+        ("element_present", {"tag": "joint"}, ("fixed joints split", "frames moved", "full turns", "axes scaled", "links renamed", "joints renamed")),
     ],
 )  # fmt: skip
 def test_a_check_forbids_families(check: str, arguments: dict[str, object], families: tuple[str, ...]) -> None:
