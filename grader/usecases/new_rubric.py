@@ -12,6 +12,7 @@ from grader.authoring.solution import Solution
 from grader.checks.tree import urdf_loads
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
+from grader.package.package import MANIFEST
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import package_around
@@ -62,9 +63,9 @@ def _solution(reference: str, warn: Warn) -> Solution:
                 reason = loading.mistake if loading.status == "pending" else loading.message
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
-    if submission.other_candidates:
-        others = enumerated([file.path for file in submission.other_candidates], _MAX_NAMED)
-        warn(f"the rubric is made from {submission.path}; other candidates: {others}")
+    others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
+    if others:
+        warn(f"the rubric is made from {submission.path}; other candidates: {enumerated(others, _MAX_NAMED)}")
     return Solution(submission, reading, Configuration(reading.robot))
 
 
