@@ -83,11 +83,11 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
     text = done.stdout.decode()
     assert done.returncode == 0
     assert "\nThese mutants of the reference get full marks:\n" in text
-    assert " mutants: no criterion looks at it; try frame_at\n" in text
+    assert " mutants: no criterion looks at it; try " in text
     assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
     listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
-    assert row["suggestion"] == "no criterion looks at it; try frame_at"
+    assert row["suggestion"].startswith("no criterion looks at it; try frame_at")
     assert (
         '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
     )
@@ -286,7 +286,7 @@ def test_samples_must_get_what_they_expect(tmp_path: Path) -> None:
         ('verdict = "fine"\n', "verdict must be one of clean, degraded, rejected, missing"),
         ('lost = "plate-box"\n', "lost must be a list of ids of criteria"),
         ('lost = ["plat-box"]\n', "the rubric arm has no criterion 'plat-box'; did you mean 'plate-box'?"),
-        ("lost = [\n", "not readable as TOML"),
+        ("lost = [\n", "expected.toml"),
     ],
 )
 def test_a_broken_sample_is_refused(tmp_path: Path, expected: str, complaint: str) -> None:
