@@ -1,7 +1,7 @@
 """The motion of each joint and the frame of each link: forward kinematics down the tree, and why a pose is undefined."""
 
-from collections.abc import Mapping, Sequence
-from math import atan2, isfinite
+from collections.abc import Iterable, Mapping, Sequence
+from math import atan2, isfinite, nan
 from typing import NamedTuple
 
 from grader.errors import MissingElement
@@ -73,8 +73,8 @@ class Frames:
         return frame
 
     def position(self, joint: Joint) -> Position:
-        """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
-        if joint.mimic is None or joint.name in self._given:
+        """Return the position of a joint: its own, that of the joint that it mimics, or 0; NaN if xacro leaves that open."""
+        if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
         # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop. The
         # positions of the joints between are kept: long chains are followed once.
@@ -82,6 +82,9 @@ class Frames:
         value = 0.0
         while joint.name not in followers:
             own = self._mimicked.get(joint.name, self._given.get(joint.name))
+            if own is None and "mimic" in joint.unresolved:
+                value = nan
+                break
             if own is not None or joint.mimic is None:
                 value = own if isinstance(own, int | float) else 0.0
                 break
@@ -98,8 +101,8 @@ class Frames:
         return value
 
 
-def undefined_pose(joint: Joint) -> MissingElement:
-    """Return the error for a pose that is undefined because of this joint."""
+def undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
+    """Return the error for a pose that is undefined because of this joint; raise NotDecided where xacro leaves it open."""
     for part in ("origin", "axis", ""):
         if part in joint.unresolved:
             joint.unresolved[part].check()
@@ -112,9 +115,21 @@ def undefined_pose(joint: Joint) -> MissingElement:
     elif unit(joint.axis) is None:
         reason = "the joint's axis is 0 0 0"
     else:
+        for leader in _leaders(joint, robot):
+            if "mimic" in leader.unresolved:
+                leader.unresolved["mimic"].check()
         reason, at = "the joint's numbers are too large", joint.location
     message, detail = f"the pose is undefined: {reason}", f" (joint {quoted(joint.name)})"
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)
+
+
+def _leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
+    """Return a joint, the joint that it mimics, the one that this mimics, and so on."""
+    found = {joint.name: joint}
+    while joint.mimic is not None and joint.mimic.joint not in found and robot.has_joint(joint.mimic.joint):
+        joint = robot.joint(joint.mimic.joint)
+        found[joint.name] = joint
+    return found.values()
 
 
 def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:

@@ -99,12 +99,12 @@ class Configuration:
             raise MissingElement("connection", roots, message=message, location=self.link(link).location)
         if frame.group != base.group:
             deeper = max(frame, base, key=lambda either: either.depth)  # the chain crosses into the deeper group
-            raise undefined_pose(self.parent_joints[deeper.group])
+            raise undefined_pose(self.parent_joints[deeper.group], self.robot)
         if relative_to is None or relative_to == frame.group:
             return frame.pose
         pose = base.pose.inverse() @ frame.pose
         if not isfinite(sum(pose.translation)):
-            raise undefined_pose(self.between(relative_to, link)[-1])
+            raise undefined_pose(self.between(relative_to, link)[-1], self.robot)
         return pose
 
     def axis(self, joint: str | Joint) -> Vector:
@@ -112,7 +112,7 @@ class Configuration:
         found = self.joint(joint) if isinstance(joint, str) else joint
         direction = unit(found.axis) if found.axis is not None else None
         if direction is None:
-            raise undefined_pose(found)
+            raise undefined_pose(found, self.robot)
         return direction
 
     def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:

@@ -79,6 +79,27 @@ def test_a_mimic_joint_follows(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    "open_part", ['joint="$(env X)"', 'joint="slide" multiplier="$(env X)"', 'joint="slide" offset="$(env X)"']
+)
+@pytest.mark.parametrize("pose", ["", "at = { slide = 0.1 }\n"])
+def test_a_mimic_joint_that_xacro_leaves_open_is_not_posed(tmp_path: Path, open_part: str, pose: str) -> None:
+    """The pose of the link below it, or below a joint that follows it, needs manual grading; unless the joint's position is given."""
+    last = '<link name="nail"/><joint name="nail_joint" type="prismatic"><parent link="hand"/><child link="nail"/>'
+    last += (
+        '<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/><mimic joint="finger_joint"/></joint>'
+    )
+    robot = ARM.replace('joint="slide" multiplier="0.5"', open_part).replace("</robot>", f"{last}</robot>")
+    (tmp_path / "open.xacro").write_text(robot.replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'))
+    command = ("grade", tmp_path / "open.xacro", "--rubric", tmp_path / "arm.toml")
+    for link in ("finger", "nail"):
+        more = f'with = {{ link = "{link}", relative_to = "hand", xyz = [0, 0, 0] }}\n'
+        code, text = graded(tmp_path, pose + more, ARM, *map(str, command))
+        assert (code, "0/2" in text, "X is known only at run time" in text) == (1, True, True)
+    given = "at = { finger_joint = 0.1 }\n" + 'with = { link = "nail", relative_to = "hand", xyz = [0.1, 0, 0] }\n'
+    assert "2/2" in graded(tmp_path, given, ARM, *map(str, command))[1]
+
+
+@pytest.mark.parametrize(
     ("position", "message"),
     [
         ("hand_joint", "The joint 'hand_joint' is fixed; it should turn or slide."),
