@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from grader.checks.registry import CHECKS, describe
+from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.hints.hinting import hinted
 from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
@@ -90,8 +90,7 @@ def checks() -> str:
         "  or the check moves a joint itself.",
         "- Checks of a package read its files and run none of them.",
     ]
-    for function in CHECKS:
-        check = describe(function)
+    for check in own_checks():
         lines += ["", f"## {check.name}"]
         for paragraph in check.documentation.paragraphs:
             lines += ["", escaped(paragraph)]

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import pytest
 
 from grader.checks.outcome import Outcome, judged
-from grader.checks.registry import CHECKS, ENTRY_POINTS, Check, check_names, describe, find_check
+from grader.checks.registry import ENTRY_POINTS, Check, check_names, find_check, own_checks
 from grader.errors import RubricError
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation
@@ -23,14 +23,14 @@ from tests.checks.outcomes import AnyCheck, ask
 from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE, PENDING_CASES
 from tests.checks.submissions import REFERENCE
 
-NAMES = [function.__name__ for function in CHECKS]
+NAMES = [check.name for check in own_checks()]
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 
 SCALAR = str | float | bool
 CONTENT = SCALAR | list[SCALAR]
 
-every_check = pytest.mark.parametrize("check", [describe(function) for function in CHECKS], ids=NAMES)
+every_check = pytest.mark.parametrize("check", own_checks(), ids=NAMES)
 
 
 @every_check
@@ -214,7 +214,7 @@ def test_a_rubric_can_name_a_plugin_check(installed: list[str], tmp_path: Path) 
 
 def families() -> list[Path]:
     """Return the modules that contain checks."""
-    return sorted({Path(inspect.getfile(function)) for function in CHECKS})
+    return sorted({Path(inspect.getfile(check.function)) for check in own_checks()})
 
 
 def checks_in(path: Path) -> list[str]:

@@ -86,6 +86,9 @@ def _measured(solution: Solution) -> Iterator[Fact | Omission]:
     package, path = solution.submission.package, solution.submission.path
     if package is not None and path is not None:
         yield from package_facts(package, path.removeprefix(f"{package.folder}/") if package.holds(path) else "")
+    for other in solution.submission.packages:
+        if other is not package:
+            yield Omission(f"the package {other.name}", "a rubric is about one package")
 
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:

@@ -1,11 +1,12 @@
 """Mutants of the reference that no check can tell from it, for the rubric to declare with the reason."""
 
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.authoring.solution import Solution
 from grader.package.package import Package
-from grader.robot.model import Mesh
+from grader.submission.urdf import Read
 
 
 class Ignored(NamedTuple):
@@ -15,27 +16,43 @@ class Ignored(NamedTuple):
     reason: str
 
 
+_SIZED = ("box", "cylinder", "sphere")
 _NEGATIVE = "ROS 2 loads a negative size; the checks of shapes compare its amount."
 _TEMPLATE = "These entries of data_files are those of the template; the criteria are about files that ROS 2 opens."
 _MODULES = "No check is about the Python modules of the package, or about where its programs are installed."
 
 
+_CONDITION = "The launch file starts this node only with other arguments than the defaults."
+_FOLDER = "ros2 launch finds a launch file in any folder of the installed package."
+
+
 def ignored_mutants(solution: Solution) -> Iterator[Ignored]:
     """Yield what a rubric of all facts of a solution ignores nevertheless."""
-    of_visuals = [visual.geometry for link in solution.links for visual in link.visuals]
-    of_collisions = [collision.geometry for link in solution.links for collision in link.collisions]
-    shapes = [shape for shape in (*of_visuals, *of_collisions) if not isinstance(shape, Mesh)]
-    if shapes:
-        kinds = sorted({type(shape).__name__.lower() for shape in shapes})
-        yield Ignored([f"number negated: link */geometry/{kind} *" for kind in kinds], _NEGATIVE)
+    urdf = solution.submission.urdf
+    text = urdf.source.text if isinstance(urdf, Read) else ""
+    sizes = [kind for kind in _SIZED if re.search(rf"<{kind}\s[^>]*=\s*[\"']\s*[\d.]", text)]
+    if sizes:
+        yield Ignored([f"number negated: *link */geometry/{kind} *" for kind in sizes], _NEGATIVE)
     package = solution.submission.package
-    if package is not None and not package.is_cmake:
-        yield from _of_package(package)
+    if package is not None:
+        yield from _of_launch_files(package)
+        yield from () if package.is_cmake else _of_setup(package)
 
 
-def _of_package(package: Package) -> Iterator[Ignored]:
+def _of_launch_files(package: Package) -> Iterator[Ignored]:
+    for path in package.launch_files:
+        nodes = [node for node in package.launch(path).nodes if node.when is False]
+        if nodes:
+            yield Ignored(
+                [f"* {path} *{name}*" for name in dict.fromkeys(node.executable for node in nodes)], _CONDITION
+            )
+
+
+def _of_setup(package: Package) -> Iterator[Ignored]:
     modules = [path for path in package.tree.files if path.endswith("/__init__.py") or path == "setup.cfg"]
     if modules:
         yield Ignored([f"file *: {path}" for path in modules], _MODULES)
     if any(path.startswith("share/ament_index/") for path in package.installed):
         yield Ignored(["* setup.py *share/ament_index/*", "* setup.py *package.xml*"], _TEMPLATE)
+    if package.setup is not None and re.search(r"""["']launch["']""", package.setup.source.text):
+        yield Ignored(["string misspelt: setup.py launch*"], _FOLDER)

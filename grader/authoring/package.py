@@ -77,15 +77,15 @@ def _rviz_facts(package: Package, path: str, launch: str) -> Iterator[Fact]:
     if rviz.fixed_frame:
         title = f"The Fixed Frame of {name} is {rviz.fixed_frame}"
         yield _fact(name, "frame", title, "rviz_fixed_frame", **of, frame=rviz.fixed_frame)
-    kinds = dict.fromkeys(display.kind for display in rviz.displays if display.enabled and display.kind)
-    for kind in kinds:
+    shown = dict.fromkeys((display.package, display.kind) for display in rviz.displays if display.enabled)
+    for owner, kind in shown:
         if kind == "RobotModel":
             topic = _topic(rviz)
             title = f"{name} shows the robot{f' of {topic}' if topic else ''}"
             yield _fact(name, "robot", title, "rviz_shows_robot", **of, **({"topic": topic} if topic else {}))
         else:
             title = f"A {kind} display of {name} is on"
-            yield _fact(name, f"display {kind}", title, "rviz_display_on", **of, kind=kind)
+            yield _fact(name, f"display {kind}", title, "rviz_display_on", **of, kind=f"{owner}/{kind}")
 
 
 def _topic(rviz: RvizFile) -> str:

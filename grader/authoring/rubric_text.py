@@ -25,17 +25,22 @@ _DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
     "collision_matches_visual": ({"tolerance": 0.002}, "metres"),
+    "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
 }
 
 
 class Head(NamedTuple):
-    """What a rubric says of the lab. `reference` is a path relative to the rubric, `package` is empty without one."""
+    """What a rubric says of the lab. `reference` is a path relative to the rubric.
+
+    `package` is empty without one, and so is `schema`, the path of a JSON Schema for editors.
+    """
 
     id: str
     title: str
     reference: str
     urdf: str
     package: str
+    schema: str = ""
 
 
 def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored] = ()) -> str:
@@ -87,6 +92,7 @@ def _head(head: Head, points: int) -> Iterator[str]:
     }
     lines = {key: assignment(key, value) for key, value in given.items() if value}
     width = max(len(lines[key]) for key in comments if key in lines)
+    yield from [f"#:schema {head.schema}"] if head.schema else []
     for key, line in lines.items():
         yield f"{line:{width}}  # {comments[key]}" if key in comments else line
     yield assignment("points", points)

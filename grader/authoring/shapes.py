@@ -21,8 +21,7 @@ def shape_facts(link: Link) -> Iterator[Fact | Omission]:
     for number, visual in enumerate(meshes):
         yield from _mesh(link.name, visual, number)
     for visual in meshes[:1]:
-        if visual.material is not None:
-            yield from _colour(link.name, visual, "mesh", {})
+        yield from _colour(link.name, visual, "mesh", {})
     if any(visual.material is not None for visual in meshes[1:]):
         yield Omission(f"{link.name}: the colour of all its meshes but the first", "a check examines the first mesh")
     for kind, same in by_kind.items():
@@ -100,12 +99,10 @@ def _place(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) ->
     return Fact(link, f"{kind}-place" if selected else "place", title, "centre_at", place)
 
 
-def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -> Iterator[Fact | Omission]:
-    material = visual.material
-    if material is None:
-        yield Omission(f"{link}: the colour of its {kind}", "it has none")
+def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -> Iterator[Fact]:
+    if visual.material is None:
         return
-    channels = [round(channel, 4) for channel in material.rgba]
+    channels = [round(channel, 4) for channel in visual.material.rgba]
     what = f"{kind} of {link}" if selected else link
     title = f"{'The ' if selected else ''}{what} is shown in rgba {shown(channels)}"
     aspect = f"{kind}-colour" if selected else "colour"

@@ -80,8 +80,8 @@ def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome
     if not wrong:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
-    texts = texts_at(best, wrong[0]) or [Found("", best)]
-    at = _place(reading, texts[0].element, texts[0].attribute)
+    first = next((text for text in texts_at(best, wrong[0]) if not wanted.has(wrong[0], text)), Found("", best))
+    at = _place(reading, first.element, first.attribute)
     return failed(f"{wanted.inner}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at)
 
 

@@ -63,8 +63,8 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     if scheme.lower() in ("package", "file") or not slashes:
         return MeshFile(filename, rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
     if scheme in _WEB:
-        return MeshFile(filename, rest, "", "", "is on the web, which the grader does not read")
-    return MeshFile(filename, rest, "", "", f"is at a {scheme}:// path, which not every program finds")
+        return MeshFile(filename, rest, "", "", "it is on the web, which the grader does not read")
+    return MeshFile(filename, rest, "", "", f"it is at a {scheme}:// path, which not every program finds")
 
 
 def why_not_found(mesh: MeshFile, submission: Submission) -> str:
@@ -72,7 +72,11 @@ def why_not_found(mesh: MeshFile, submission: Submission) -> str:
 
     Raises NotDecided where that cannot be determined statically.
     """
-    if not mesh.package or not submission.packages:
+    if not submission.packages:
+        return ""
+    if not mesh.package:
+        if not mesh.doubt:
+            raise NotDecided("RViz finds no relative path; other programs may", "a mesh is at a relative path")
         return ""
     package = submission.packages[0].find(mesh.package)
     path = posixpath.normpath(mesh.path)
@@ -99,13 +103,14 @@ def _found_by_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, submission: Submission) -> str:
-    """Return that no package of the submission has a name; raise NotDecided if another source may have one."""
+    """Return that no package of the submission has a name; raise NotDecided if one may be in an archive that is closed."""
+    if submission.tree.unopened:
+        reason = "an archive could not be opened"
+        raise NotDecided(f"the package {quoted(name)} may be in an archive that could not be opened", reason)
     holding = [package.name for package in submission.packages if path in package.tree.files]
     meant = closest(name, [package.name for package in submission.packages]) or next(iter(holding), None)
-    if meant is None:
-        reason = "a mesh is in a package that is not part of the submission"
-        raise NotDecided(f"the package {quoted(name)} is not part of the submission", reason)
-    return f"names the package {quoted(name)}; the submission has {quoted(meant)}"
+    hint = f"; the submission has {quoted(meant)}" if meant is not None else ", which is not part of the submission"
+    return f"names the package {quoted(name)}{hint}"
 
 
 def _not_installed(package: Package, target: str, held: list[str]) -> str:

@@ -3,29 +3,10 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from importlib import import_module
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
-from grader.checks import (
-    appearance,
-    collisions,
-    contact,
-    elements,
-    inertia,
-    joints,
-    launch,
-    manual,
-    meshes,
-    motion,
-    package,
-    placement,
-    problems,
-    reference,
-    rviz,
-    tree,
-    xacro_source,
-)
-from grader.checks.docstring import Documentation, documentation
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -34,57 +15,63 @@ from grader.text import enumerated
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
+    from grader.checks.docstring import Documentation
+
 ENTRY_POINTS = "grader.checks"
 
-CHECKS: tuple[Callable[..., Outcome], ...] = (
-    tree.urdf_loads,
-    problems.without_problems,
-    appearance.shows_box,
-    appearance.shows_cylinder,
-    appearance.shows_sphere,
-    appearance.shows_colour,
-    appearance.shows_grey,
-    appearance.shows_nothing,
-    tree.held_by,
-    tree.joints_named,
-    tree.root_of_tree,
-    tree.counts,
-    placement.frame_at,
-    placement.centre_at,
-    placement.bottom_at_height,
-    placement.bottoms_at_height,
-    contact.stands_on,
-    contact.clear_of,
-    placement.under_the_base,
-    motion.rolls_forward,
-    motion.axis_along,
-    motion.turns_about_itself,
-    joints.joint_limits,
-    joints.joint_axis,
-    joints.mimics,
-    joints.joint_dynamics,
-    inertia.mass_is,
-    inertia.inertia_plausible,
-    collisions.collision_matches_visual,
-    meshes.shows_mesh,
-    reference.kinematics_match_reference,
-    elements.element_present,
-    package.package_found,
-    package.package_type,
-    package.build_installs,
-    package.installs_files,
-    package.setup_imports,
-    launch.launch_found,
-    launch.launch_starts,
-    launch.launch_finds_files,
-    rviz.rviz_found,
-    rviz.rviz_fixed_frame,
-    rviz.rviz_shows_robot,
-    rviz.rviz_display_on,
-    xacro_source.xacro_uses,
-    manual.answered,
-    manual.evidence_shown,
+# Each is a function in a module of this package, which is imported when a rubric names the check: importing all of them takes
+# as long as to grade a URDF.
+CHECKS = (
+    "tree.urdf_loads",
+    "problems.without_problems",
+    "appearance.shows_box",
+    "appearance.shows_cylinder",
+    "appearance.shows_sphere",
+    "appearance.shows_colour",
+    "appearance.shows_grey",
+    "appearance.shows_nothing",
+    "tree.held_by",
+    "tree.joints_named",
+    "tree.root_of_tree",
+    "tree.counts",
+    "placement.frame_at",
+    "placement.centre_at",
+    "heights.bottom_at_height",
+    "heights.bottoms_at_height",
+    "contact.stands_on",
+    "contact.clear_of",
+    "heights.under_the_base",
+    "motion.rolls_forward",
+    "motion.axis_along",
+    "motion.turns_about_itself",
+    "joints.joint_limits",
+    "joints.joint_axis",
+    "joints.mimics",
+    "joints.joint_dynamics",
+    "inertia.mass_is",
+    "inertia.inertia_plausible",
+    "collisions.collision_matches_visual",
+    "meshes.shows_mesh",
+    "reference.kinematics_match_reference",
+    "elements.element_present",
+    "package.package_found",
+    "package.package_type",
+    "package.build_installs",
+    "package.installs_files",
+    "package.setup_imports",
+    "launch.launch_found",
+    "launch.launch_starts",
+    "launch.launch_finds_files",
+    "rviz.rviz_found",
+    "rviz.rviz_fixed_frame",
+    "rviz.rviz_shows_robot",
+    "rviz.rviz_display_on",
+    "xacro_source.xacro_uses",
+    "manual.answered",
+    "manual.evidence_shown",
 )
+
+_PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
 SUBJECTS: tuple[Subject, ...] = get_args(Subject)
@@ -126,8 +113,10 @@ class Check:
         return self.examined[0]
 
     @property
-    def documentation(self) -> Documentation:
+    def documentation(self) -> "Documentation":
         """What its docstring says. The fact is true of a submission that passes."""
+        from grader.checks.docstring import documentation  # late: grading does not read it
+
         return documentation(self.function)
 
 
@@ -160,16 +149,25 @@ def _is_subject(parameter: inspect.Parameter) -> bool:
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in SUBJECTS
 
 
+def own_checks() -> list[Check]:
+    """Return the checks that come with the grader, in the order of the catalogue."""
+    return [_own(place) for place in CHECKS]
+
+
+def _own(place: str) -> Check:
+    module, _, name = place.partition(".")
+    return describe(getattr(import_module(f"{__package__}.{module}"), name))
+
+
 def check_names() -> list[str]:
     """Return the names of all checks: the grader's own in the order of the catalogue, then those of other packages."""
-    own = [function.__name__ for function in CHECKS]
-    return own + sorted(set(_entry_points()) - set(own))
+    return [*_PLACES, *sorted(set(_entry_points()) - set(_PLACES))]
 
 
 def unused_checks() -> list[tuple[str, str]]:
     """Return each check of another package that is not used, because the grader has one of its name, with that package."""
-    own, entries = {function.__name__ for function in CHECKS}, _entry_points()
-    return sorted((name, _package_of(entry)) for name in own & set(entries) for entry in entries[name])
+    entries = _entry_points()
+    return sorted((name, _package_of(entry)) for name in set(_PLACES) & set(entries) for entry in entries[name])
 
 
 def find_check(name: str) -> Check | None:
@@ -177,9 +175,8 @@ def find_check(name: str) -> Check | None:
 
     Raises InputError for a check of another package that cannot be used, or that two packages have.
     """
-    for function in CHECKS:
-        if function.__name__ == name:
-            return describe(function)
+    if name in _PLACES:
+        return _own(_PLACES[name])
     entries = _entry_points().get(name, [])
     if len(entries) > 1:  # which of them is found first depends on the machine
         packages = enumerated(sorted(map(_package_of, entries)))

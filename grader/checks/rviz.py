@@ -86,13 +86,15 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
 
     Args:
         name: The name of the RViz file, such as view.rviz.
-        kind: The class of the display, such as LaserScan.
+        kind: The class of the display, such as LaserScan; with a package, such as rviz_default_plugins/LaserScan, that
+            package is required.
         launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
             `name` decides.
     """
     rviz = _read(package, name, launch)
     found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
-    faults = [_class_of_ros1(display) or _off(display) for display in found]
+    owner = kind.rpartition("/")[0]
+    faults = [_class_of_ros1(display) or _of_another(display, owner) or _off(display) for display in found]
     if "" in faults:
         return passed(f"a {kind} display is on")
     return failed(faults[0], found[0].location) if found else _no_display(rviz, kind)
@@ -109,6 +111,12 @@ def _class_of_ros1(display: "Display") -> str:
     if not display.package:
         return f"the class {display.kind!r} names no package; {right}"
     return f"rviz/{display.kind} is a class of ROS 1; {right}" if display.package == "rviz" else ""
+
+
+def _of_another(display: "Display", package: str) -> str:
+    if package in ("", display.package):
+        return ""
+    return f"the class of the {display.kind} display is {display.package}/{display.kind}; it should be {package}/{display.kind}"
 
 
 def _off(display: "Display") -> str:

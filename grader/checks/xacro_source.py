@@ -13,7 +13,6 @@ from grader.robot.reader import find_xacro
 from grader.source import LazyLocation, Location, Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from grader.submission.workspace import Surroundings
 from grader.text import counted, enumerated, quoted
 
 if TYPE_CHECKING:
@@ -133,6 +132,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 
 def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
+    from grader.submission.workspace import Surroundings
     from grader.xacro.expansion import ExpandedSource, expand
 
     around = Surroundings(submission.everything, submission.package, submission.packages, submission.arguments)

@@ -1,5 +1,6 @@
 """The JSON Schema of a rubric, for editors: its keys, and the arguments of every installed check."""
 
+import json
 from collections.abc import Iterable
 from typing import Any
 
@@ -66,7 +67,10 @@ def _arguments(check: Check) -> _Schema:
 
 
 def _argument(check: Check, name: str) -> TomlType:
-    """Return the type of an argument with its meaning and its default."""
+    """Return the type of an argument with its meaning, and its default if a rubric can give that."""
     parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
-    default = {} if parameter.required else {"default": parameter.default}
-    return described(parameter.type, meaning, **default)
+    try:
+        json.dumps(parameter.default, allow_nan=False)
+    except (TypeError, ValueError):  # of a plug-in
+        return described(parameter.type, meaning)
+    return described(parameter.type, meaning, **({} if parameter.default is None else {"default": parameter.default}))

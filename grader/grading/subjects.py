@@ -60,7 +60,7 @@ class Subjects:
         """
         if self.robot is None or "reference" in check.examined:
             return arguments
-        return {key: _named(value, self.robot) for key, value in arguments.items()}
+        return {key: named_links(value, self.robot) for key, value in arguments.items()}
 
     def _at(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
@@ -80,7 +80,9 @@ class Subjects:
 
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by its place in the tree, and that is no link, or not one."""
-    _named([dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot)
+    named_links(
+        [dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot
+    )
 
 
 def _joint(robot: Configuration, name: str) -> Joint:
@@ -101,13 +103,13 @@ def _joint(robot: Configuration, name: str) -> Joint:
     return joint
 
 
-def _named(value: Any, robot: Configuration) -> Any:
-    """Return a value in which each selector is the name of the link that it means."""
+def named_links(value: Any, robot: Configuration) -> Any:
+    """Return a value in which each selector is the name of the link that it means; raises MissingElement and NotDecided."""
     match value:
         case str():
             return selected_link(robot.robot, robot.parent_joints, value)
         case list() | tuple():
-            return type(value)(_named(item, robot) for item in value)
+            return type(value)(named_links(item, robot) for item in value)
         case Mapping():
-            return {key: _named(item, robot) for key, item in value.items()}
+            return {key: named_links(item, robot) for key, item in value.items()}
     return value

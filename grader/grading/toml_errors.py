@@ -16,6 +16,7 @@ _MAX_TEXT = 200_000  # characters of a text that is read again after a mistake
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _KEY = re.compile(r"""^\s*((?:[\w.-]|"[^"]*"|'[^']*')+)\s*=""")
+_BEGINS = re.compile(rf"{_KEY.pattern}|\s*(?:\[|#|$)")
 _TWICE = ("Cannot overwrite", "Cannot declare", "Cannot mutate", "Cannot redefine")
 _ROWS = [name for name, kind in RUBRIC.keys.items() if kind.schema.get("items", {}).get("type") == "object"]
 
@@ -42,7 +43,7 @@ def toml_mistakes(text: str) -> list[Mistake]:
         except tomllib.TOMLDecodeError as error:
             mistake = _mistake(str(error), lines)
             mistakes.append(mistake)
-            if mistake.start != mistake.line or _continues(lines[mistake.line - 1]):
+            if mistake.start != mistake.line or _continues(*lines[mistake.line - 1 : mistake.line + 1]):
                 break
             lines[mistake.line - 1] = ""
         except (ValueError, RecursionError, ArithmeticError):
@@ -52,10 +53,11 @@ def toml_mistakes(text: str) -> list[Mistake]:
     return mistakes
 
 
-def _continues(line: str) -> bool:
+def _continues(line: str, following: str = "") -> bool:
     """Return whether a line is anything but a key with a value that ends on this line."""
     is_open = line.count("[") != line.count("]") or line.count("{") != line.count("}")
-    return _KEY.match(line) is None or is_open or '"""' in line or "'''" in line
+    is_cut = is_open or '"""' in line or "'''" in line or _BEGINS.match(following) is None
+    return is_cut or _KEY.match(line) is None
 
 
 def _mistake(error: str, lines: Sequence[str]) -> Mistake:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import RubricError
-from grader.grading.toml_errors import toml_mistakes
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.text import printable_path
@@ -24,6 +23,8 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     except UnicodeDecodeError as error:
         raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
     except tomllib.TOMLDecodeError:
+        from grader.grading.toml_errors import toml_mistakes  # late: most files have none
+
         found = toml_mistakes(text)
         raise RubricError(tuple(f"{shown}:{line}:{column}: {what}" for line, column, what, _ in found)) from None
     except RecursionError:

@@ -18,7 +18,8 @@ _STEPS: Mapping[str, Step] = {
     "frames moved": rewritings.move_frames,
     "full turns": rewritings.turn_fully,
     "axes scaled": rewritings.scale_axes,
-    "renamed": rewritings.rename,
+    "links renamed": rewritings.rename_links,
+    "joints renamed": rewritings.rename_joints,
 }
 _AS_XACRO: Mapping[str, Callable[[Random, str], str | None]] = {
     "xacro properties": as_xacro.with_properties,
@@ -52,12 +53,12 @@ def _for_counts(arguments: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _for_kinematics(arguments: Mapping[str, Any]) -> tuple[str, ...]:
     """The joints are paired by name, or by their order in the file."""
-    return ("order of elements",) if arguments.get("match") == "order" else ("renamed",)
+    return ("order of elements",) if arguments.get("match") == "order" else ("joints renamed",)
 
 
 def _for_elements(arguments: Mapping[str, Any]) -> tuple[str, ...]:
     """The text of an element that ROS 2 reads is compared, not what it means."""
-    return (*_POSES, "renamed") if arguments.get("tag") in _OWN_TAGS else ()
+    return (*_POSES, "links renamed", "joints renamed") if arguments.get("tag") in _OWN_TAGS else ()
 
 
 # The families that a check forbids. Names in the arguments of any check are renamed nowhere, and their frames are not moved. Problems

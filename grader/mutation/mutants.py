@@ -1,7 +1,7 @@
 """Mutants of a URDF or xacro text: every single edit that a family of mistakes allows."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
@@ -10,9 +10,10 @@ from grader.mutation.elements import Attribute, Element, elements, names, text_o
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
-_UNTOUCHED = ("version", "encoding", "params")
+_UNTOUCHED = ("version", "encoding")
 _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", "Fixed", "rotating")
 _MAX_EXCHANGED = 12  # other names that a name becomes
+_BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 _COMPONENTS = {
     **dict.fromkeys(("xyz", "size", "scale"), ("x", "y", "z")),
     "rpy": ("roll", "pitch", "yaw"),
@@ -61,6 +62,21 @@ def mutants(text: str, path: str = "") -> Iterator[Mutant]:
     return as_mutants(text, path, _changes(text))
 
 
+def with_visuals(text: str, path: str, links: Collection[str]) -> Iterator[Mutant]:
+    """Yield the mutants in which one of these links, which must show nothing, shows a box."""
+    own = [
+        found for found in elements(text) if found.tag == "link" and found.label in {f"link {name}" for name in links}
+    ]
+    return as_mutants(text, path, (_with_visual(text, link) for link in own))
+
+
+def _with_visual(text: str, link: Element) -> Change:
+    is_empty = text[link.head_end - 2] == "/"
+    start = link.head_end - (2 if is_empty else 0)
+    new = f">{_BOX}</link>" if is_empty else _BOX
+    return Change("visual added", link.label, start, link.head_end, new, tags=(*link.tags, "visual"))
+
+
 def as_mutants(text: str, path: str, changes: Iterable[Change]) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
@@ -102,7 +118,8 @@ def _of_attribute(text: str, element: Element, attribute: Attribute, known: dict
     elif name == "type" and element.tag == "joint":
         yield from (Change("type", label, *span, other, other, tags) for other in _TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
-        yield from of_value(text, element.label, span, name, tags)
+        changes = of_value(text, element.label, span, name, tags)
+        yield from (change for change in changes if name != "params" or change.family != "text misspelt")
     if name == "lower":
         upper = next((other for other in element.attributes if other.name == "upper"), None)
         if upper is not None:

@@ -27,7 +27,8 @@ def package_mutants(package: Package, links: Iterable[str], text: Text) -> Itera
     names = list(links)
     for own in package.tree.files:
         path = package.path(own)
-        if not own.lower().endswith(_FOR_PEOPLE) and not _FOR_PEOPLE_TOO.search(own):
+        is_built = own.rpartition("/")[2] == "CMakeLists.txt"
+        if is_built or not (own.lower().endswith(_FOR_PEOPLE) or _FOR_PEOPLE_TOO.search(own)):
             yield Mutant(f"file deleted: {own}", "file deleted", path, 1, is_deleted=True, tags=("file",))
             folder, slash, name = path.rpartition("/")
             renamed = f"{folder}{slash}{misspelt(name)}"

@@ -6,21 +6,18 @@ written out, full turns, turns of a shape within its symmetry, shapes without si
 axes and limits that ROS 2 does not use for a type of joint.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from itertools import permutations
-from typing import Any, NamedTuple
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
 
+from grader.mutation.comparison import Shown, Turn, is_same, is_same_set, is_same_shape
 from grader.mutation.elements import FOREIGN
 from grader.robot.frames import placed_by
-from grader.robot.model import Box, Collision, Cylinder, Geometry, Joint, Link, Mesh, Robot, Sphere, Visual
+from grader.robot.model import Collision, Joint, Link, Robot, Visual
 from grader.robot.shapes import is_empty
-from grader.robot.transforms import IDENTITY, Transform, Vector, dot, unit
+from grader.robot.transforms import IDENTITY, Transform, unit
 from grader.submission.urdf import Read, Urdf
 from grader.xml.parsing import Element
 
-_NUMBER, _TINY = 1e-6, 1e-12  # relative, absolute
-_LENGTH = 1e-6  # metres
-_TURN = 4e-3  # of a rotation matrix: half a turn that is written 3.14 is the same in both directions
 _TURNING = ("continuous", "revolute", "prismatic", "planar")
 _LIMITED = ("revolute", "prismatic")
 _UNLIMITED = ("fixed", "floating")
@@ -30,20 +27,6 @@ _EXTRAS: Mapping[str, Mapping[str, str]] = {
     "safety_controller": {"soft_lower_limit": "0", "soft_upper_limit": "0", "k_position": "0", "k_velocity": ""},
     "calibration": {"rising": "", "falling": "", "reference_position": ""},
 }
-
-
-class Turn(NamedTuple):
-    """A rotation, row by row, or a direction: compared more coarsely than lengths."""
-
-    values: tuple[float, ...]
-
-
-class Shown(NamedTuple):
-    """A shape in the frame of its link, with its colour."""
-
-    geometry: Geometry
-    pose: Transform
-    colour: tuple[object, ...] = ()
 
 
 def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
@@ -58,10 +41,9 @@ def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
     root, changed_root = one.reading.root, other.reading.root
     foreign = _foreign(root)
     said = {*kept, *_words(foreign)}
-    is_same = foreign == _foreign(changed_root) and _same(
-        _joints(robot, root, said), _joints(changed, changed_root, said)
-    )
-    return is_same and _same_links(robot, changed, said)
+    if foreign != _foreign(changed_root) or not _same_links(robot, changed, said):
+        return False
+    return is_same(_joints(robot, root, said), _joints(changed, changed_root, said))
 
 
 def _same_links(one: Robot, other: Robot, kept: Collection[str]) -> bool:
@@ -81,7 +63,7 @@ def _named(robot: Robot, kept: Collection[str]) -> dict[str, Link]:
 
 def _same_link(one: Link, other: Link) -> bool:
     pairs = ((one.visuals, other.visuals), (one.collisions, other.collisions))
-    return all(_same_set(_shown(a), _shown(b), same_shape) for a, b in pairs) and _same(_mass(one), _mass(other))
+    return all(is_same_set(_shown(a), _shown(b), is_same_shape) for a, b in pairs) and is_same(_mass(one), _mass(other))
 
 
 def _shown(shapes: Sequence[Visual | Collision]) -> list[Shown]:
@@ -92,43 +74,6 @@ def _shown(shapes: Sequence[Visual | Collision]) -> list[Shown]:
             colour = (*material.rgba, material.texture) if material is not None else ()
             found.append(Shown(shape.geometry, placed_by(IDENTITY, shape.origin), colour))
     return found
-
-
-def _same_set(one: Sequence[Any], other: Sequence[Any], same: Callable[[Any, Any], bool]) -> bool:
-    """Return whether everything in each of two lists is in the other one, as often as one likes: what is drawn twice looks the same."""
-    return all(any(same(a, b) for b in other) for a in one) and all(any(same(a, b) for a in one) for b in other)
-
-
-def same_shape(one: Shown, other: Shown) -> bool:
-    """Return whether two shapes look the same: a box lies on any of its sides, a cylinder is turned about its axis."""
-    if not _same(one.colour, other.colour) or not _near(one.pose.translation, other.pose.translation, _LENGTH):
-        return False
-    match one.geometry, other.geometry:
-        case Sphere(radius=a), Sphere(radius=b):
-            return _same(a, b)
-        case Cylinder(), Cylinder():
-            sizes = [(shape.geometry.radius, shape.geometry.length) for shape in (one, other)]  # type: ignore[union-attr]
-            return _same(*sizes) and _is_along(_column(one, 2), _column(other, 2))
-        case Box(size=a), Box(size=b):
-            return any(
-                _same(a, tuple(b[i] for i in order))
-                and all(_is_along(_column(one, i), _column(other, j)) for i, j in enumerate(order))
-                for order in permutations(range(3))
-            )
-        case Mesh(filename=a, scale=m), Mesh(filename=b, scale=n):
-            return a == b and _same(m, n) and _near(one.pose.rotation, other.pose.rotation, _TURN)
-    return False
-
-
-def _column(shown: Shown, index: int) -> Vector:
-    rotation = shown.pose.rotation
-    return rotation[index], rotation[3 + index], rotation[6 + index]
-
-
-def _is_along(one: Vector, other: Vector) -> bool:
-    """Return whether two unit vectors are on one line."""
-    sign = 1.0 if dot(one, other) > 0 else -1.0
-    return _near(one, tuple(sign * value for value in other), _TURN)
 
 
 def _mass(link: Link) -> object:
@@ -204,20 +149,3 @@ def _words(value: object) -> Iterator[str]:
             yield from _words(item)
     elif isinstance(value, str):
         yield value
-
-
-def _same(one: object, other: object) -> bool:
-    """Return whether two values of plain tuples are equal, numbers up to rounding."""
-    match one, other:
-        case Turn(), Turn():
-            return _near(one.values, other.values, _TURN)
-        case tuple(), tuple():
-            return len(one) == len(other) and all(map(_same, one, other))
-        case float() | int(), float() | int():
-            return abs(one - other) <= max(_TINY, _NUMBER * max(abs(one), abs(other)))
-        case _:
-            return one == other
-
-
-def _near(one: Sequence[float], other: Sequence[float], tolerance: float) -> bool:
-    return len(one) == len(other) and all(abs(a - b) <= tolerance for a, b in zip(one, other, strict=True))

@@ -11,8 +11,11 @@ from grader.authoring.rubric_text import Head
 from grader.authoring.solution import Solution
 from grader.checks.tree import urdf_loads
 from grader.errors import GraderError, InputError
+from grader.files.reading import URDF_LIMIT
+from grader.package.package import MANIFEST
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
+from grader.submission.packages import package_around
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
@@ -21,6 +24,7 @@ from grader.usecases.rubrics import summary
 from grader.usecases.writing import save_bytes
 
 _URDF = "robot.urdf"
+_SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _MAX_NAMED = 4
 
 
@@ -29,6 +33,8 @@ def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
     _check_target(file, force=force)
     solution = _solution(reference, warn)
     made = draft(solution, _head(file, reference, solution.submission), file)
+    if len(made.data) > URDF_LIMIT:
+        raise GraderError(f"the robot has too many facts for a rubric: {len(made.rubric.criteria)} criteria")
     save_bytes(file, made.data)
     return "".join(f"{printable(line)}\n" for line in _lines(file, made))
 
@@ -45,7 +51,7 @@ def _solution(reference: str, warn: Warn) -> Solution:
     """Return the reference, which ROS 2 must load; raise GraderError."""
     if reference == STANDARD_INPUT:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
-    submission, shown = open_submission(reference, wanted=_URDF), printable_path(reference)
+    submission, shown = _opened(reference), printable_path(reference)
     match submission.urdf:
         case Absent():
             raise InputError(f"{shown} has no URDF: no file in it has a <robot>")
@@ -54,13 +60,22 @@ def _solution(reference: str, warn: Warn) -> Solution:
         case Read(reading=reading, loaded=loaded):
             loading = urdf_loads(loaded)
             if reading.robot is None or loading.status != "passed":
-                raise InputError(
-                    f"{shown} is no reference solution: {loading.message} (see `grader inspect {shell_quoted(reference)}`)"
-                )
-    if submission.other_candidates:
-        others = enumerated([file.path for file in submission.other_candidates], _MAX_NAMED)
-        warn(f"the rubric is made from {submission.path}; other candidates: {others}")
+                reason = loading.mistake if loading.status == "pending" else loading.message
+                advice = f"see `grader inspect {shell_quoted(reference)}`"
+                raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
+    others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
+    if others:
+        warn(f"the rubric is made from {submission.path}; other candidates: {enumerated(others, _MAX_NAMED)}")
     return Solution(submission, reading, Configuration(reading.robot))
+
+
+def _opened(reference: str) -> Submission:
+    """Return the reference as a submission; of several packages, the one with the URDF is graded."""
+    submission = open_submission(reference, wanted=_URDF)
+    package = package_around(submission.packages, submission.path)
+    if package is None or package is submission.package or submission.path is None:
+        return submission
+    return open_submission(reference, wanted=submission.path.removeprefix(f"{package.folder}/"), package=package.name)
 
 
 def _head(file: Path, reference: str, submission: Submission) -> Head:
@@ -69,7 +84,9 @@ def _head(file: Path, reference: str, submission: Submission) -> Head:
     package, path = submission.package, submission.path or ""
     if package is not None and package.holds(path):
         path = path.removeprefix(f"{package.folder}/")
-    return Head(words.replace(" ", "-"), words[0].upper() + words[1:], place, path, package.name if package else "")
+    schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
+    title = words[0].upper() + words[1:]
+    return Head(words.replace(" ", "-"), title, place, path, package.name if package else "", schema)
 
 
 def _relative(reference: Path, folder: Path) -> str:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from grader.xml.element_values import Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
+from grader.xml.element_values import Found, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
 from grader.xml.parsing import Element, Unresolved
 
 Value = Scalar | list[Scalar]
@@ -48,6 +48,12 @@ class WantedElement(NamedTuple):
     def wrong(self, element: Element) -> list[str]:
         """Return the keys of the values that an element does not have."""
         return [key for key, value in self.values.items() if not self._has(element, key, value)]
+
+    def has(self, key: str, found: Found) -> bool:
+        """Return whether a text is the value at a path, or one of several."""
+        value = self.values[key]
+        wanted = value if isinstance(value, list) else [value]
+        return any(is_same(readable(found.text), one, self.tolerance) for one in wanted)
 
     def _has(self, element: Element, key: str, value: Value) -> bool:
         texts = [readable(found.text) for found in texts_at(element, key)]

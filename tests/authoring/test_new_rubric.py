@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from jsonschema import validate
 
 from tests.command_line import ROOT, Done, run
 
@@ -209,9 +210,18 @@ def test_the_same_reference_gives_the_same_bytes(written: tuple[Path, str], tmp_
 
 def test_every_mutant_of_the_reference_loses_something(written: tuple[Path, str]) -> None:
     """`grader rubric test` finds no survivor, no idle criterion, and no equivalent that loses points."""
-    done = run(("rubric", "test", written[0], "--mutants", 200, "--fail-under", "100%", "--format", "json"))
+    done = run(("rubric", "test", written[0], "--fail-under", "100%", "--format", "json"))
     result = json.loads(done.stdout)
     assert (done.returncode, result["survivors"], result["idle"], result["equivalents"]["lost"]) == (0, [], [], [])
+
+
+def test_a_schema_beside_the_rubric_is_named(tmp_path: Path) -> None:
+    """An editor then completes and validates the new rubric at once."""
+    schema = run(("schema", "rubric")).stdout
+    (tmp_path / "rubric.schema.json").write_bytes(schema)
+    rubric, _ = rubric_of(ARM.read_text(), tmp_path)
+    assert (tmp_path / "lab.toml").read_text().startswith("#:schema ./rubric.schema.json\nid = ")
+    validate(rubric, json.loads(schema))
 
 
 # --- Where the rubric and its reference are ---------------------------------------------------------------------------
@@ -279,6 +289,28 @@ def test_a_reference_is_whatever_can_be_graded(kind: str, tmp_path: Path) -> Non
     assert run(("grade", reference, "--rubric", tmp_path / "lab.toml")).returncode == 0
 
 
+def test_mutants_of_a_package_lose_something_or_are_declared(tmp_path: Path) -> None:
+    """What no check can tell is declared in the rubric, with a reason and with patterns that match."""
+    shutil.copytree(LAB6, tmp_path / "my_robot")
+    new(tmp_path / "lab.toml", tmp_path / "my_robot")
+    done = run(("rubric", "test", tmp_path / "lab.toml", "--fail-under", "100%", "--format", "json"))
+    result = json.loads(done.stdout)
+    assert (done.returncode, result["survivors"], result["unused_patterns"]) == (0, [], [])
+
+
+def test_the_package_with_the_urdf_is_graded(tmp_path: Path) -> None:
+    """Of several packages the one that holds the URDF is the rubric's; the others are said to be omitted."""
+    for name in ("ash_bringup", "ash_description"):
+        shutil.copytree(LAB6, tmp_path / "ws" / name)
+        manifest = tmp_path / "ws" / name / "package.xml"
+        manifest.write_text(manifest.read_text().replace("<name>my_robot", f"<name>{name}"))
+    shutil.rmtree(tmp_path / "ws" / "ash_bringup" / "urdf")
+    printed = new(tmp_path / "lab.toml", tmp_path / "ws")
+    rubric = tomllib.loads((tmp_path / "lab.toml").read_text())
+    assert (rubric["package"], rubric["urdf"]) == ("ash_description", "urdf/my_robot.urdf")
+    assert "omitted: the package ash_bringup: a rubric is about one package" in printed
+
+
 # --- References that are refused --------------------------------------------------------------------------------------
 
 REFUSED = {
@@ -286,6 +318,10 @@ REFUSED = {
     "two roots": ("<robot name='r'><link name='a'/><link name='b'/></robot>", "is no reference solution"),
     "no link": ("<robot name='r'/>", "is no reference solution"),
     "empty": ("", "is no reference solution"),
+    "xacro that depends on the machine": (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="$(env NAME)"/></robot>',
+        "the environment variable NAME is known only at run time (see",
+    ),
     "no robot": ("<sdf/>", "is no reference solution"),
 }
 
@@ -294,8 +330,9 @@ REFUSED = {
 def test_a_reference_that_ros_rejects_is_refused(name: str, tmp_path: Path) -> None:
     """One line says why, nothing is written, and the exit code is 2."""
     text, reason = REFUSED[name]
-    (tmp_path / "robot.urdf").write_text(text)
-    assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", tmp_path / "robot.urdf")), reason)
+    file = tmp_path / ("robot.xacro" if "xacro" in name else "robot.urdf")
+    file.write_text(text)
+    assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", file)), reason)
     assert not (tmp_path / "lab.toml").exists()
 
 

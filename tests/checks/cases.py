@@ -12,6 +12,7 @@ from grader.checks import (
     collisions,
     contact,
     elements,
+    heights,
     inertia,
     joints,
     meshes,
@@ -335,7 +336,7 @@ CASES = (
         mesh_status="pending",
     ),
     Case(
-        placement.bottom_at_height,
+        heights.bottom_at_height,
         {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002},
         passing=scene(BASE),
         pass_message="the bottom of 'base' in the frame 'base' is at z = 0 m",
@@ -346,7 +347,7 @@ CASES = (
         mesh_status="pending",
     ),
     Case(
-        placement.bottoms_at_height,
+        heights.bottoms_at_height,
         {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002},
         passing=standing(),
         pass_message="the bottoms of 'wheel' and 'caster' are at z = 0 0 m in 'foot'",
@@ -381,7 +382,7 @@ CASES = (
         mesh_status="pending",
     ),
     Case(
-        placement.under_the_base,
+        heights.under_the_base,
         {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0},
         passing=standing(),
         pass_message="the frame 'foot' is under 'base', level with the bottoms of the wheels",

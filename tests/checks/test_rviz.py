@@ -356,3 +356,13 @@ def test_an_unreadable_file_has_its_start_as_location() -> None:
     """The failure for a file that is no RViz file points to its first character."""
     submitted = REFERENCE.with_files({RVIZ: "Panels: []\n"})
     assert lacks(rviz_shows_robot, submitted, name=NAME)[3] == start_of(RVIZ)
+
+
+def test_a_display_of_another_package_is_another_class() -> None:
+    """With a package in its name, the class must be of that package; without one, it may be of any."""
+    submitted = rviz("rviz_default_plugins/TF", "my_plugins/TF")
+    message = "the class of the TF display is my_plugins/TF; it should be rviz_default_plugins/TF"
+    place = submitted.location_of(RVIZ, "my_plugins/TF")
+    kind = "rviz_default_plugins/TF"
+    assert finds(rviz_display_on, submitted, name=NAME, kind=kind) == ("failed", message, place)
+    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("passed", "a TF display is on", None)

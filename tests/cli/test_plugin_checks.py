@@ -94,3 +94,14 @@ def test_the_list_of_checks_names_the_faulty_ones() -> None:
     assert b"without_annotation\n  the check without_annotation of the package hostile-checks" in done.stdout
     assert b"shows_box" in done.stdout
     assert b"\nbehaves (hostile-checks)\n" in done.stdout
+
+
+def test_the_schema_has_the_usable_ones() -> None:
+    """An editor completes the names of all, and knows the arguments of those that can be used."""
+    done = run(("schema", "rubric"), **WITH_HOSTILE)
+    assert (done.returncode, done.stderr) == (0, b"")
+    schema = json.loads(done.stdout)
+    named = schema["properties"]["criterion"]["items"]["properties"]["check"]["enum"]
+    assert {"behaves", "without_annotation", "with_endless_default"} <= set(named)
+    assert "without_annotation" not in schema["$defs"]
+    assert schema["$defs"]["with_endless_default"]["properties"] == {"at_most": {"type": "number"}}

@@ -12,10 +12,11 @@ from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import find_check
 from grader.grading.rubric import shipped_rubrics
 from grader.robot.kinematics import Configuration
-from tests.command_line import ROOT, Done, run
-from tests.mutation.robots import ARM, BOX, FRAME, TOP, write_rubric
+from tests.command_line import Done, run
+from tests.mutation.robots import ARM, BOX, TOP, write_rubric
+from tests.samples import SAMPLES
 
-IGNORE = '[[test.ignore]]\nmutants = ["* link tool/*", "nothing: *"]\nreason = "Only a tool."\n'
+IGNORE = '[[test.ignore]]\nmutants = ["type: joint ? type*", "nothing: *"]\nreason = "Only a tool."\n'
 PENDING = '[[criterion]]\nid = "by-hand"\npart = "model"\ntitle = "It is shown"\npoints = 1\ncheck = "evidence_shown"\nwith = { names = ["a"] }\n'
 LINKS = '<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
 SMALL = f'<robot name="r">{LINKS}<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/></joint></robot>'
@@ -61,57 +62,89 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     assert found["mutants"]["caught"] > 5 * len(found["ignored"])
 
 
-def test_lab6_has_exactly_the_samples_that_it_expects() -> None:
-    """All samples of the project, of which none belongs to another rubric or differs."""
-    done = command("lab6", "submissions", "--mutants", 0)
-    count = sum(1 for _ in (ROOT / "submissions").glob("*/expected.toml"))
-    assert done.returncode == 0
-    assert f"Samples      {count} graded, none differ from expected.toml\n" in done.stdout.decode()
+@pytest.mark.parametrize("name", shipped_rubrics())
+def test_a_shipped_rubric_has_exactly_the_samples_that_it_expects(name: str) -> None:
+    """None differs, and those of other rubrics are skipped."""
+    own = sum(sample.expected.rubric == name for sample in SAMPLES.values())
+    assert own
+    found = data(name, "submissions", "--mutants", 0)["samples"]
+    assert found == {"tried": own, "skipped": len(SAMPLES) - own, "different": []}
 
 
-def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """Return the result for the arm with all its mutants."""
+    return data(write_rubric(tmp_path_factory.mktemp("arm")), "--mutants", 5000)
+
+
+def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, arm: dict[str, Any]) -> None:
     """Grouped by what may catch them; the exit code is 0 because no correct robot loses points."""
-    done = command(write_rubric(tmp_path), "--mutants", 5000)
+    done = command(write_rubric(tmp_path), "--mutants", 300)
     text = done.stdout.decode()
     assert done.returncode == 0
-    assert "These mutants of the reference get full marks:" in text
-    assert "mutants: no criterion looks at it; try frame_at" in text
-    assert "      @@ -23,5 +23,5 @@\n" in text
-    assert '      -    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n      +    <origin rpy="0 0 3.14159"/>\n' in text
-    found = data(write_rubric(tmp_path), "--mutants", 5000)
-    listed = {row["id"]: row for row in found["survivors"]}
+    assert "\nThese mutants of the reference get full marks:\n" in text
+    assert " mutants: no criterion looks at it; try frame_at" in text
+    assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
+    listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
-    assert row["suggestion"] == "no criterion looks at it; try frame_at"
+    assert row["suggestion"] == "no criterion looks at it; try frame_at or kinematics_match_reference"
     assert (
         '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
     )
     assert (row["path"], row["line"]) == ("birch.urdf", 25)
     assert "number x10: joint tool_joint/origin xyz.z" not in listed  # tool-frame catches it
     assert "number negated: joint tool_joint/origin xyz.x" not in listed  # -0 is the same robot
-    counts = found["mutants"]
+    counts = arm["mutants"]
     assert counts["tried"] == counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
-    assert found["score"] == pytest.approx(100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6)
+    assert arm["score"] == pytest.approx(100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6)
 
 
-def test_a_suggestion_names_the_criterion_that_looks_and_passes(tmp_path: Path) -> None:
-    """Its tolerance or its arguments let the mutant pass."""
-    found = data(write_rubric(tmp_path), "--mutants", 5000)
+@pytest.mark.parametrize(
+    ("mutant", "suggestion"),
+    [
+        ("number +0.05: joint slide/origin xyz.x", "no criterion looks at it; try frame_at"),
+        (
+            "number negated: link plate/visual/geometry/box size.x",
+            "plate-box passes all the same; look at its arguments",
+        ),
+    ],
+)
+def test_a_suggestion_names_a_check_or_the_criterion_that_looks(
+    arm: dict[str, Any], mutant: str, suggestion: str
+) -> None:
+    """A check that would look at it; or a criterion that does, and passes: its tolerance or its arguments let the mutant pass."""
+    listed = {row["id"]: row["suggestion"] for row in arm["survivors"]}
+    assert listed[mutant].startswith(suggestion)
+
+
+def test_a_mutant_that_ros_2_rejects_suggests_urdf_loads(tmp_path: Path) -> None:
+    """A rubric without that check would give full marks to a file that shows nothing."""
+    found = data(write_rubric(tmp_path, TOP.partition("[[criterion]]")[0] + EXACT, SMALL), "--mutants", 5000)
     listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
-    assert listed["number +0.05: joint slide/origin xyz.x"] == "no criterion looks at it; try frame_at"
-    assert listed["number negated: link plate/visual/geometry/box size.x"].startswith("plate-box passes all the same")
+    assert listed["attribute deleted: joint j name"] == "ROS 2 rejects it, and no criterion says so; try urdf_loads"
+
+
+def test_a_mutant_within_a_tolerance_says_whose(tmp_path: Path) -> None:
+    """The criterion looks at it: the rubric has no hole there."""
+    found = data(write_rubric(tmp_path, TOP + EXACT.replace("0.002", "0.06"), SMALL), "--mutants", 5000)
+    listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
+    assert listed["number +0.05: joint j/origin xyz.x"] == "frame measures it, within the tolerance"
 
 
 def test_the_rubric_ignores_mutants_with_a_reason(tmp_path: Path) -> None:
     """They do not count for the score; a pattern that matches no mutant is reported."""
-    without = data(write_rubric(tmp_path), "--mutants", 5000)
-    found = data(write_rubric(tmp_path, TOP + BOX + FRAME + IGNORE), "--mutants", 5000)
+    rubric = write_rubric(tmp_path, TOP + EXACT + IGNORE, SMALL)
+    without = data(write_rubric(tmp_path / "..", TOP + EXACT, SMALL), "--mutants", 5000)
+    found = data(rubric, "--mutants", 5000)
+    assert len(found["ignored"]) == 3 == len(without["survivors"])
     assert {row["reason"] for row in found["ignored"]} == {"Only a tool."}
-    assert all(" link tool/" in row["id"] for row in found["ignored"])
-    assert len(found["survivors"]) + len(found["ignored"]) == len(without["survivors"])
-    assert found["score"] > without["score"]
+    assert (found["survivors"], found["score"]) == ([], 100)
+    assert without["score"] < 100
     assert found["unused_patterns"] == ["nothing: *"]
-    text = command(write_rubric(tmp_path, TOP + BOX + FRAME + IGNORE)).stdout.decode()
-    assert "The pattern 'nothing: *' of [[test.ignore]] matches no mutant." in text
+    exact = IGNORE.replace("type: joint ? type*", "type: joint j type -> planar")
+    assert len(data(write_rubric(tmp_path, TOP + EXACT + exact, SMALL), "--mutants", 5000)["ignored"]) == 1
+    write_rubric(tmp_path, TOP + EXACT + IGNORE, SMALL)
+    assert "The pattern 'nothing: *' of [[test.ignore]] matches no mutant." in command(rubric).stdout.decode()
 
 
 @pytest.mark.parametrize(
@@ -154,9 +187,9 @@ def test_margins_say_what_a_tolerance_tells_apart(tmp_path: Path) -> None:
 
 def test_fail_under_decides_by_the_score(tmp_path: Path) -> None:
     """In percent, with or without the sign."""
-    rubric = write_rubric(tmp_path)
-    assert command(rubric, "--fail-under", "10%", "--mutants", 100).returncode == 0
-    assert command(rubric, "--fail-under", "99", "--mutants", 100).returncode == 1
+    rubric = write_rubric(tmp_path, TOP + EXACT, SMALL)
+    assert command(rubric, "--fail-under", "10%").returncode == 0
+    assert command(rubric, "--fail-under", "99").returncode == 1
     exact = write_rubric(tmp_path, TOP + EXACT + FIXED, SMALL)
     assert command(exact, "--fail-under", "100", "--mutants", 5000).returncode == 0
     for wrong in ("101", "-1", "a", "101%"):
@@ -175,9 +208,9 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     """A check that looks at the numbers of a file, not at the robot, is found out."""
 
     def is_written(robot: Configuration, *, link: str, **_: Any) -> Outcome:
-        joint = robot.parent_joints[link]
-        assert joint.origin is not None
-        return judged(joint.origin.rpy == (0.1, 0.2, 0.3), f"the rpy is {joint.origin.rpy[0]:.2f}")
+        joint = robot.parent_joints.get(link)
+        rpy = joint.origin.rpy if joint is not None and joint.origin is not None else (0.0, 0.0, 0.0)
+        return judged(rpy == (0.1, 0.2, 0.3), f"the rpy is {rpy[0]:.2f}")
 
     frame_at = find_check("frame_at")
     assert frame_at is not None
@@ -190,6 +223,31 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     text = done.stdout.decode()
     assert "These equivalents of the reference lose points:\n\n  fixed joints split 1\n    frame: the rpy is" in text
     assert '-<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
+
+
+def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is named with the mutant, and the exit code is 3."""
+
+    def divides(robot: Configuration, *, link: str, **_: Any) -> Outcome:
+        origin = robot.parent_joints[link].origin
+        assert origin is not None
+        return judged(1 / origin.xyz[0] > 0, "it is ahead")
+
+    frame_at = find_check("frame_at")
+    assert frame_at is not None
+    plain = replace(frame_at, function=divides)
+    monkeypatch.setattr(
+        "grader.grading.validation.find_check", lambda name: plain if name == "frame_at" else find_check(name)
+    )
+    found = data(write_rubric(tmp_path, TOP + EXACT, SMALL), "--mutants", 5000)
+    assert "number zero: joint j/origin xyz.x" in [row["name"] for row in found["faults"]]
+    assert all(row["criteria"]["frame"].startswith("the grader itself failed") for row in found["faults"])
+    counts = found["mutants"]
+    others = counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
+    assert counts["tried"] == others + len(found["faults"])
+    done = command(tmp_path / "arm.toml")
+    assert done.returncode == 3
+    assert "On these mutants a check is faulty:\n\n  " in done.stdout.decode()
 
 
 def _sample(folder: Path, name: str, expected: str, robot: str = ARM) -> None:
@@ -228,7 +286,7 @@ def test_samples_must_get_what_they_expect(tmp_path: Path) -> None:
         ('verdict = "fine"\n', "verdict must be one of clean, degraded, rejected, missing"),
         ('lost = "plate-box"\n', "lost must be a list of ids of criteria"),
         ('lost = ["plat-box"]\n', "the rubric arm has no criterion 'plat-box'; did you mean 'plate-box'?"),
-        ("lost = [\n", "not readable as TOML"),
+        ("lost = [\n", "the list that begins on line 1 has no closing ]"),
     ],
 )
 def test_a_broken_sample_is_refused(tmp_path: Path, expected: str, complaint: str) -> None:
@@ -270,3 +328,31 @@ def test_a_sentence_fits_the_screen(tmp_path: Path) -> None:
     text = command(write_rubric(tmp_path, robot=ARM.replace("\n", " "))).stdout.decode()
     assert max(map(len, text.splitlines())) <= 80
     assert "..." in text
+
+
+@pytest.mark.parametrize(
+    ("check", "changed"),
+    [
+        ('check = "urdf_loads"', {"robot.urdf"}),
+        ('check = "package_found"\nwith = { name = "ash" }', {"robot.urdf", "package.xml"}),
+        ('check = "setup_imports"', {"robot.urdf", "package.xml", "setup.py"}),
+    ],
+)
+def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str, changed: set[str]) -> None:
+    """A rubric of the robot is not tested with mistakes in setup.py, and one that wants the package's name only with that."""
+    package = tmp_path / "ash"
+    package.mkdir()
+    (package / "robot.urdf").write_text(SMALL)
+    (package / "package.xml").write_text('<package format="3"><name>ash</name></package>')
+    (package / "setup.py").write_text("from setuptools import setup\nsetup(name='ash')\n")
+    top = TOP.replace("birch.urdf", "ash").replace(
+        'title = "An arm"', 'title = "An arm"\npackage = "ash"\nurdf = "robot.urdf"'
+    )
+    text = f'{top}[[criterion]]\nid = "other"\npart = "model"\ntitle = "Another"\npoints = 1\n{check}\n'
+    found = data(
+        write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n'), "--mutants", 5000
+    )
+    assert found["reference"]["lost"] == []
+    assert {row["path"] for row in found["ignored"]} <= changed
+    without = data(write_rubric(tmp_path, top), "--mutants", 0)["mutants"]["total"]
+    assert (found["mutants"]["total"] > without) == (len(changed) > 1)

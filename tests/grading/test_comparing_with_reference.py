@@ -1,5 +1,6 @@
 """Rubrics whose checks compare with the reference solution: graded alone, in a class and in a bundle for Gradescope."""
 
+import re
 import zipfile
 from collections.abc import Callable
 from csv import DictReader
@@ -8,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.checks.robots import ARM, arm
-from tests.command_line import Done, run
+from tests.command_line import ROOT, Done, run
 
 RUBRIC = """\
 id = "arm"
@@ -26,6 +27,10 @@ points = 4
 check = "kinematics_match_reference"
 with = { links = ["@tip"] }
 """
+
+HEAD = RUBRIC.partition("check =")[0]
+EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks-by-example.md").read_text(encoding="utf-8"), re.DOTALL)
+
 
 # What is wrong with the reference, by what is done to the folder of the rubric, and a part of the message.
 BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
@@ -129,6 +134,14 @@ def test_the_bundle_contains_the_reference(lab: Path) -> None:
     assert run(command).returncode == 0
     with zipfile.ZipFile(lab / "out.zip") as archive:
         assert "arm/robot.urdf" not in archive.namelist()
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_the_examples_of_the_documentation(lab: Path, example: str) -> None:
+    """Each example is a valid criterion."""
+    (lab / "arm.toml").write_text(HEAD + example[example.index("check =") :])
+    done = run(("rubric", "show", lab / "arm.toml"))
+    assert done.returncode == 0, done
 
 
 def test_a_reference_outside_of_the_bundle_is_refused(lab: Path) -> None:

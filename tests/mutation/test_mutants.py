@@ -7,8 +7,8 @@ import pytest
 
 from grader.mutation.diffs import hunk
 from grader.mutation.elements import elements
-from grader.mutation.mutants import Mutant, mutants
-from grader.mutation.mutation_test import sampled
+from grader.mutation.mutants import Mutant, mutants, with_visuals
+from grader.mutation.selection import sampled
 from tests.mutation.robots import ARM
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
@@ -51,6 +51,18 @@ def test_elements_are_deleted_duplicated_and_moved_up() -> None:
     assert FOUND["element duplicated: link plate"].applied(ARM).count('<link name="plate">') == 2
     moved = FOUND["element moved up: joint slide/limit"].applied(ARM)
     assert moved.index('upper="0.1"') < moved.index('<joint name="slide"')
+
+
+def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
+    """Whether its tag is empty or not; other links do not."""
+    box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+    text = '<robot><link name="a"/><link name="b"></link><link name="c"/></robot>'
+    found = list(with_visuals(text, "a.urdf", ["a", "b", "nowhere"]))
+    assert [mutant.id for mutant in found] == ["visual added: link a", "visual added: link b"]
+    assert [mutant.applied(text) for mutant in found] == [
+        text.replace('"a"/>', f'"a">{box}</link>'),
+        text.replace('"b">', f'"b">{box}'),
+    ]
 
 
 def test_ids_are_unique_and_do_not_depend_on_lines() -> None:

@@ -63,6 +63,8 @@ def test_files_are_deleted_and_renamed() -> None:
     for_people = dict.fromkeys(("README.md", "LICENSE", "docs/a.urdf", "test/test_a.py", ".gitignore", "a.png"), b"")
     assert REFERENCE.reopen is not None
     assert found_in(REFERENCE.reopen(overlaid(REFERENCE.everything, for_people))) == FOUND
+    built = found_in(REFERENCE.reopen(overlaid(REFERENCE.everything, {"CMakeLists.txt": b""})))
+    assert set(built) - set(FOUND) == {"file deleted: CMakeLists.txt", "file renamed: CMakeLists.txt"}
 
 
 def test_a_display_is_deleted_with_all_its_lines() -> None:

@@ -1,10 +1,15 @@
 """The files that plain commands of a CMakeLists.txt install, and whether there may be others."""
 
+import subprocess
+from pathlib import Path
+from shutil import which
+
 import pytest
 
 from grader.package import cmake as reader
 from grader.package.cmake import CMake
 from tests.checks.submissions import Submitted
+from tests.command_line import HANG_TIMEOUT
 from tests.processor_time import processor_time
 
 FILES = ("CMakeLists.txt", "meshes/hull.stl", "meshes/fine/hull.stl", "urdf/arm.urdf", "launch/arm.launch.py")
@@ -95,3 +100,33 @@ def test_a_long_text_takes_little_time() -> None:
         assert read_cmake("#[[\n" * 30_000).installed == {}
         assert read_cmake("#[[" * 30_000 + '"(' * 9_000).installed == {}
     assert not read_cmake("#" * 200_000).is_certain
+
+
+@pytest.mark.skipif(which("cmake") is None, reason="CMake is not installed")
+def test_cmake_installs_the_same(tmp_path: Path) -> None:
+    """CMake itself is the oracle for the commands that are followed."""
+    text = """\
+cmake_minimum_required(VERSION 3.8)
+project(arm NONE)
+set(A share/${PROJECT_NAME}/a)  # a comment
+#[[ install(DIRECTORY launch DESTINATION share/none) ]]
+install(DIRECTORY meshes urdf DESTINATION ${A})
+install(DIRECTORY meshes/ DESTINATION share/arm/b/)
+install(DIRECTORY "meshes/fine" DESTINATION "share/c")
+INSTALL(DIRECTORY ./meshes/../urdf/ DESTINATION share/${CMAKE_PROJECT_NAME}/d)
+install(FILES urdf/arm.urdf ${CMAKE_CURRENT_SOURCE_DIR}/meshes/hull.stl DESTINATION share/e)
+install(PROGRAMS launch/arm.launch.py DESTINATION lib/${PROJECT_NAME})
+"""
+    source, prefix = tmp_path / "source", tmp_path / "prefix"
+    for path in FILES:
+        (source / path).parent.mkdir(parents=True, exist_ok=True)
+        (source / path).write_text(text if path == "CMakeLists.txt" else "", encoding="utf-8")
+    for command in (
+        ("cmake", "-S", source, "-B", tmp_path / "build", f"-DCMAKE_INSTALL_PREFIX={prefix}"),
+        ("cmake", "--install", tmp_path / "build"),
+    ):
+        subprocess.run(command, check=True, capture_output=True, timeout=HANG_TIMEOUT)
+    found = {path.relative_to(prefix).as_posix() for path in prefix.rglob("*") if path.is_file()}
+    cmake = read_cmake(text)
+    assert cmake.installed.keys() == found
+    assert cmake.is_certain

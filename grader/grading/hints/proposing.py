@@ -1,20 +1,26 @@
 """The edits that are proposed for criteria: of the robot, of xacro that is loaded as it stands, and of the package."""
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from grader.edits import Proposal
-from grader.grading.hints.targets import Targets, moving_child, selected, targets_of
+from grader.errors import MissingElement, NotDecided
+from grader.grading.hints.targets import Targets, moving_child, targets_of
 from grader.grading.hints.trials import State
 from grader.grading.rubric import Criterion
+from grader.grading.subjects import named_links
 from grader.robot.edits.bodies import body_proposals
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.families import Values
+from grader.robot.edits.xml_values import element_proposals
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
+from grader.xml.wanted_element import WantedElement
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -54,9 +60,12 @@ class Proposing:
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
+            criteria = [*_with_links(criteria, Configuration(draft.robot))]
             for link, mass in _bodies(criteria).items():
                 found += body_proposals(draft, link, mass)
             reference = self.reference or draft
+            for element in _elements(criteria):
+                found += element_proposals(draft, reference, element)
             shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
             anchors = tuple(dict.fromkeys((*shown, *moved)))
             if about_urdf:
@@ -78,6 +87,25 @@ def _bodies(criteria: Iterable[Criterion]) -> dict[str, float | None]:
     return found
 
 
+def _elements(criteria: Iterable[Criterion]) -> Iterator[WantedElement]:
+    """Yield the elements that criteria look for."""
+    for criterion in criteria:
+        if criterion.check.name == "element_present":
+            yield WantedElement(
+                **{"attributes": {}, "path": "", "values": {}, "tolerance": 1e-6, **criterion.arguments}
+            )
+
+
+def _with_links(criteria: Iterable[Criterion], posed: Configuration) -> Iterator[Criterion]:
+    """Yield criteria with the names of the links that selectors mean, where each means one."""
+    for criterion in criteria:
+        named = criterion
+        if criterion.has_selectors:
+            with suppress(MissingElement, NotDecided):
+                named = replace(criterion, arguments=named_links(criterion.arguments, posed))
+        yield named
+
+
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
 
@@ -90,7 +118,6 @@ def _given(criteria: Iterable[Criterion], robot: Robot) -> dict[str, dict[str, V
         link = criterion.arguments.get("link")
         if not isinstance(link, str) or criterion.at:  # numbers of a posed robot are not those in the file
             continue
-        link = selected(posed, link)
         for name in (*_NUMBERS, *_JOINT_NUMBERS):
             value = criterion.arguments.get(name)
             if value is not None:

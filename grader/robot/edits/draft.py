@@ -81,6 +81,15 @@ class Draft:
         source, start = self.source.element(tag)
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
+    def write_text(self, element: Element, text: str) -> Edits:
+        """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
+        source, start = self.source.element(self._tags[element])
+        head, is_empty = markup.head_end(source.text, start)
+        end = source.text.rfind("</", head, markup.element_end(source.text, start))
+        if is_empty or end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
+            return ()
+        return (source.edit(head, end, escaped(text)),)
+
     def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
         """Return the edit that gives an attribute another name."""
         source, start = self.source.element(self._tags[element])

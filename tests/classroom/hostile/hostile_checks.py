@@ -92,3 +92,8 @@ def without_names(robot: Configuration, *values: float) -> Outcome:
 def without_subject(robot) -> Outcome:  # type: ignore[no-untyped-def]  # noqa: ANN001
     """A check whose first argument has no annotation."""
     raise NotImplementedError
+
+
+def with_endless_default(robot: Configuration, *, at_most: float = float("inf")) -> Outcome:
+    """A check with a default that no rubric and no JSON can give."""
+    raise NotImplementedError
