@@ -5,12 +5,13 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, shown
+from grader.authoring.fact import Fact, Omission, shown
 from grader.text import enumerated
 from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
+_OF_CONTINUOUS = ("@effort", "@velocity")
 _IN_JOINTS = ("safety_controller", "calibration")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
@@ -21,16 +22,29 @@ _MAX_LISTED = 4  # values in a title
 Values = dict[str, Any]
 
 
-def element_facts(root: Element) -> Iterator[Fact]:
+def element_facts(root: Element) -> Iterator[Fact | Omission]:
     """Yield the values in the elements for simulators and controllers: a fact for each element in one of them."""
+    used = texts_in(root)
     for element in _children(root):
-        tag = name_of(element)
-        if tag in _FOREIGN:
+        if name_of(element) in _FOREIGN:
             yield from _facts_in(element)
-        elif tag == "joint":
+        elif name_of(element) == "joint":
             for child in _children(element):
-                if child.tag in _IN_JOINTS:
-                    yield _fact(element, child.tag, values_of(child), _label(element))
+                yield from _fact_of_joint(element, child, is_used=_name(element) in used)
+
+
+def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Iterator[Fact | Omission]:
+    """Yield what no other check tells of a joint; it is found by the name of the joint, which must not be free."""
+    tag = name_of(child)
+    is_limit = tag == "limit" and joint.get("type") == "continuous"
+    if tag in _IN_JOINTS or is_limit:
+        values = {key: value for key, value in values_of(child).items() if not is_limit or key in _OF_CONTINUOUS}
+        if is_used:
+            yield _fact(joint, tag, values, _label(joint, child))
+        elif values:
+            yield Omission(
+                f"<{tag}> of {_name(joint)}", "a check finds it by the name of the joint only, which is free"
+            )
 
 
 def _facts_in(element: Element) -> Iterator[Fact]:
@@ -50,11 +64,12 @@ def _facts_in(element: Element) -> Iterator[Fact]:
 
 def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
     arguments: dict[str, Any] = {"tag": name_of(element)}
-    attributes = {str(key): str(value) for key, value in element.attrib.items()}
+    is_joint = element.tag == "joint"
+    attributes = {str(key): str(value) for key, value in element.attrib.items() if not is_joint or key == "name"}
     arguments |= {"attributes": attributes} if attributes else {}
     arguments |= {"path": path} if path else {}
     arguments |= {"values": values} if values else {}
-    about = "The joints" if element.tag == "joint" else f"<{name_of(element)}>"
+    about = "The joints" if is_joint else f"<{name_of(element)}>"
     return Fact(label, "", _title(element, path, values), "element_present", arguments, about=about)
 
 

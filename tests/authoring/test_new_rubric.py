@@ -439,6 +439,24 @@ def test_an_inertia_that_is_not_its_shape_is_omitted(tmp_path: Path) -> None:
     assert "omitted: hand-inertia: " in printed
 
 
+def test_what_only_the_name_of_a_joint_finds_is_a_criterion_if_the_name_is_used(tmp_path: Path) -> None:
+    """The effort of a continuous joint and safety controllers are omitted, unless a controller uses the joint's name."""
+    inside = '<limit effort="7" velocity="3"/><safety_controller k_velocity="10"/>'
+    base = robot(joint("continuous", inside=inside))
+    rubric, printed = rubric_of(base, tmp_path)
+    assert (
+        "omitted: <limit> of tool_joint and <safety_controller> of tool_joint: a check finds it by the name" in printed
+    )
+    assert "element_present" not in [row["check"] for row in rubric["criterion"]]
+    (tmp_path / "lab.toml").unlink()
+    control = '<ros2_control name="c" type="system"><joint name="tool_joint"/></ros2_control></robot>'
+    rubric, printed = rubric_of(base.replace("</robot>", control), tmp_path)
+    values = {row["id"]: row["with"]["values"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert values["joint-tool-joint-limit"] == {"@effort": 7, "@velocity": 3}
+    assert values["joint-tool-joint-safety-controller"] == {"@k_velocity": 10}
+    assert "omitted" not in printed
+
+
 def test_one_link_is_a_robot(tmp_path: Path) -> None:
     """A link alone has criteria for what it shows, and none for joints."""
     rubric, _ = rubric_of(robot(), tmp_path)
