@@ -6,9 +6,11 @@ from math import isfinite
 from typing import Any
 
 from grader.authoring.fact import Fact, Omission, shown
+from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
 from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
+from grader.xml.wanted_element import readable
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _OF_CONTINUOUS = ("@effort", "@velocity")
@@ -97,7 +99,9 @@ def values_of(element: Element, path: str = "") -> Values:
 
 
 def _add(found: Values, key: str, value: Any) -> None:
-    """Add a value; of several different ones with one path, a list."""
+    """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
+    if isinstance(value, str) and is_of_one_machine(value):
+        return
     if key not in found:
         found[key] = value
     else:
@@ -107,7 +111,7 @@ def _add(found: Values, key: str, value: Any) -> None:
 
 def _value(text: str) -> str | bool | int | float:
     """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
-    word = text.strip()
+    word = readable(text.strip())
     if word in _TRUTH:
         return _TRUTH[word]
     if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
@@ -144,7 +148,7 @@ def _shown(value: Any) -> str:
 
 
 def texts_in(root: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers, such as names of joints."""
+    """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
     found: set[str] = set()
     for element in _children(root):
         for inner in element.iter() if element.tag in _FOREIGN else ():

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from grader.authoring.fact import Fact, Omission, direction, is_same, length, lengths, shown
+from grader.checks.mesh_files import mesh_file
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty, volume
 from grader.robot.transforms import rotation_from_rpy
@@ -112,7 +113,7 @@ def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -
 def _mesh(link: str, visual: Visual, number: int) -> Iterator[Fact]:
     mesh = visual.geometry
     assert isinstance(mesh, Mesh)
-    file = mesh.filename.partition("://")[2] or mesh.filename
+    file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
     scale, xyz, rpy = lengths(mesh.scale), lengths(visual.origin.xyz), lengths(visual.origin.rpy)
     title = f"{link} shows the mesh {file}"
     title += f", scaled by {shown(scale)}" if scale != [1.0, 1.0, 1.0] else ""

@@ -457,11 +457,24 @@ def test_what_only_the_name_of_a_joint_finds_is_a_criterion_if_the_name_is_used(
     assert "omitted" not in printed
 
 
+def test_a_path_of_one_machine_is_odd_and_not_demanded(tmp_path: Path) -> None:
+    """Students cannot have the instructor's home folder; a file of a package is demanded as xacro finds it."""
+    values = "<parameters>$(find ash)/config/a.yaml</parameters><log>/home/cedar/a.log</log>"
+    gazebo = f'<gazebo><plugin name="control">{values}</plugin></gazebo>'
+    text = robot(gazebo).replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    (tmp_path / "robot.xacro").write_text(text)
+    printed = new(tmp_path / "lab.toml", tmp_path / "robot.xacro")
+    rows = tomllib.loads((tmp_path / "lab.toml").read_text())["criterion"]
+    found = [row["with"]["values"] for row in rows if row["check"] == "element_present"]
+    assert found == [{"@name": "control", "parameters": "$(find ash)/config/a.yaml"}]
+    assert "odd: the path /home/cedar/a.log exists on one machine only" in printed
+
+
 def test_one_link_is_a_robot(tmp_path: Path) -> None:
     """A link alone has criteria for what it shows, and none for joints."""
     rubric, _ = rubric_of(robot(), tmp_path)
     checks = [row["check"] for row in rubric["criterion"]]
-    assert checks == ["urdf_loads", "shows_box", "centre_at", "shows_colour", "root_of_tree", "counts"]
+    assert checks == ["urdf_loads", "shows_box", "centre_at", "shows_colour"]
 
 
 def test_names_are_escaped_and_ids_unique(tmp_path: Path) -> None:
