@@ -135,7 +135,7 @@ def run_test(
     suggestion.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the
-    rubric is broken or has no reference.
+    rubric is broken or has no reference; 3 a check is faulty.
 
     Examples:
 

@@ -1,24 +1,21 @@
 """Grade the mutants of a rubric's reference: each must lose something, and each criterion be failed by some mutant."""
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from random import Random
 
 from grader.checks.registry import check_names
-from grader.grading.rubric import Criterion
+from grader.grading.report import Result
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
-from grader.mutation.mutants import Mutant, mutants, with_visuals
-from grader.mutation.package_mutants import package_mutants
-from grader.mutation.result import MutantResults, Survivor
+from grader.mutation.mutants import Mutant
+from grader.mutation.result import Loss, MutantResults, Survivor
+from grader.mutation.selection import mutants_of, sampled
 from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
-from grader.package.package import MANIFEST
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
-_MESHES = (".stl", ".dae", ".obj")
 _MAX_OTHERS = 500  # mutants that are tried only to find out whether a criterion is idle
 Step = Callable[[], None]  # shows that one more mutant is graded
 
@@ -27,69 +24,69 @@ class MutationTest:
     """The mutants of one reference, at most `most` of them, sampled evenly over the families."""
 
     def __init__(self, trial: Trial, most: int, seed: int) -> None:
-        self.trial = trial
-        self.all = list(_mutants_of(trial))
-        self.seed = seed
+        self.trial, self.seed = trial, seed
+        self.all = list(mutants_of(trial))
         self.chosen = sampled(self.all, most, Random(seed))
         self.caught = self.same = 0
+        self.survivors: list[Survivor] = []
+        self.faults: list[Loss] = []
         self.checks = set(check_names())
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 
     def run(self, step: Step) -> MutantResults:
         """Grade the mutants and return what became of them."""
-        survivors = [found for mutant in self.chosen for found in self._graded(mutant, step)]
+        for mutant in self.chosen:
+            step()
+            self._grade(mutant)
         self._try_others()
-        ignored = [found for found in survivors if found.reason]
-        left = [found for found in survivors if not found.reason]
         return MutantResults(
             len(self.all),
             len(self.chosen),
             self.caught,
             self.same,
-            tuple(left),
-            tuple(ignored),
+            tuple(found for found in self.survivors if not found.reason),
+            tuple(found for found in self.survivors if found.reason),
             self._unused(),
             tuple(self.idle),
             tuple(self.margins.values()),
+            tuple(self.faults),
         )
 
-    def _graded(self, mutant: Mutant, step: Step) -> Iterable[Survivor]:
-        """Grade a mutant, and return it if it loses nothing although it is another robot."""
-        step()
+    def _grade(self, mutant: Mutant) -> None:
+        """Grade a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty on it."""
         submission = self.trial.submission(mutant)
-        if submission is None:
+        results = list(self.trial.results(mutant, submission, self.trial.expected)) if submission is not None else []
+        faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
+        tolerated = self._observed(results)
+        if faults:
+            self.faults.append(Loss(mutant.id, faults, self._diff(mutant)))
+        elif submission is None or any(map(self.trial.is_lost, results)):
             self.caught += 1
-            return ()
-        is_lost = False
+        elif self.trial.is_same(mutant, submission):
+            self.same += 1
+        else:
+            self.survivors.append(self._survivor(mutant, submission, tolerated))
+
+    def _observed(self, results: Iterable[Result]) -> list[str]:
+        """Learn from results which criteria are not idle, and their margins; return those that measure another value."""
         tolerated: list[str] = []
-        for result in self.trial.results(mutant, submission, self.trial.expected):
+        for result in results:
             name = result.criterion.id
             if result.outcome.status == "failed":
                 self.idle.pop(name, None)
             if name in self.margins:
                 tolerated += [name] if self.margins[name].is_changed(result) else []
                 self.margins[name] = self.margins[name].with_mutant(result)
-            is_lost |= self.trial.is_lost(result)
-        if is_lost:
-            self.caught += 1
-        elif self.trial.is_same(mutant, submission):
-            self.same += 1
-        else:
-            return (self._survivor(mutant, submission, tolerated),)
-        return ()
+        return tolerated
 
     def _survivor(self, mutant: Mutant, submission: Submission, tolerated: list[str]) -> Survivor:
         rubric, urdf = self.trial.rubric, self.trial.reference.urdf
-        reason = next(
-            (row.reason for row in rubric.ignored if any(fnmatchcase(mutant.id, it) for it in row.mutants)), ""
-        )
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        changed = submission.verdict or ""
-        verdict = changed if changed != self.trial.reference.verdict else ""
-        return Survivor(
-            mutant, self._diff(mutant), suggestion(mutant, rubric, robot, verdict, tolerated, self.checks), reason
-        )
+        verdict = submission.verdict if submission.verdict != self.trial.reference.verdict else None
+        clause = suggestion(mutant, rubric, robot, verdict or "", tolerated, self.checks)
+        reasons = (row.reason for row in rubric.ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
+        return Survivor(mutant, self._diff(mutant), clause, next(reasons, ""))
 
     def _diff(self, mutant: Mutant) -> str:
         if mutant.renamed:
@@ -112,43 +109,9 @@ class MutationTest:
 
     def _unused(self) -> tuple[str, ...]:
         patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]
-        ids = [mutant.id for mutant in self.all]
-        return tuple(pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in ids))
+        return tuple(pattern for pattern in patterns if not any(_is_match(mutant, pattern) for mutant in self.all))
 
 
-def _mutants_of(trial: Trial) -> Iterator[Mutant]:
-    """Yield the mutants of the robot, and those of the package that a criterion may look at."""
-    criteria = [trial.expected[name].criterion for name in trial.tested]
-    hidden = [found.arguments.get("link", "") for found in criteria if found.check.name == "shows_nothing"]
-    for path in trial.robot_files:
-        yield from mutants(trial.text(path), path)
-        yield from with_visuals(trial.text(path), path, hidden)
-    package, urdf = trial.reference.package, trial.reference.urdf
-    if package is not None:
-        robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        links = [link.name for link in robot.links] if robot is not None else []
-        found = package_mutants(package, links, trial.text)
-        yield from (mutant for mutant in found if _is_looked_at(mutant, criteria))
-
-
-def _is_looked_at(mutant: Mutant, criteria: Iterable[Criterion]) -> bool:
-    """Return whether a criterion may look at what a mutant of a package changes: some look at its name or at meshes only."""
-    subjects = {criterion.check.subject for criterion in criteria}
-    if "package" in subjects:
-        return True
-    if mutant.path.lower().endswith(_MESHES):
-        return any(criterion.check.name == "shows_mesh" for criterion in criteria)
-    return "submission" in subjects and mutant.path.endswith(MANIFEST)
-
-
-def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:
-    """Return at most so many mutants, in their order: of each family the same number, as far as it has as many."""
-    families: dict[str, list[int]] = defaultdict(list)
-    for index, mutant in enumerate(every):
-        families[mutant.family].append(index)
-    chosen: list[int] = []
-    for number, name in enumerate(sorted(families, key=lambda name: (len(families[name]), name))):
-        share = -(-(most - len(chosen)) // (len(families) - number))
-        indexes = families[name]
-        chosen += random.sample(indexes, min(share, len(indexes), most - len(chosen)))
-    return [every[index] for index in sorted(chosen)]
+def _is_match(mutant: Mutant, pattern: str) -> bool:
+    """Return whether a pattern is the id of a mutant, or matches it: an id may have brackets, which are a set of characters."""
+    return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

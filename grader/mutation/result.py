@@ -9,6 +9,14 @@ from grader.mutation.margins import Margin
 from grader.mutation.mutants import Mutant
 
 
+class Loss(NamedTuple):
+    """A submission with criteria that are not what they must be, each with its message."""
+
+    name: str
+    criteria: Mapping[str, str]
+    diff: str = ""
+
+
 class Survivor(NamedTuple):
     """A mutant that loses nothing: its diff of one hunk, and what may catch it. `reason` is that of the rubric that ignores it."""
 
@@ -22,7 +30,7 @@ class MutantResults(NamedTuple):
     """What became of the mutants: `total` exist, `tried` were graded, `same` of these turned out to be the same robot.
 
     `survivors` lose nothing, and the rubric does not ignore them as it does those in `ignored`. `unused` are patterns of the
-    rubric that match no mutant, `idle` criteria that no mutant fails, `untested` those that the reference does not pass.
+    rubric that match no mutant, `idle` criteria that no mutant fails, `faults` mutants on which a check is faulty.
     """
 
     total: int
@@ -34,20 +42,13 @@ class MutantResults(NamedTuple):
     unused: tuple[str, ...]
     idle: tuple[str, ...]
     margins: tuple[Margin, ...]
+    faults: tuple[Loss, ...] = ()
 
     @property
     def score(self) -> Decimal:
         """The mutation score: the share of the mutants that lose something, in percent, without those that the rubric ignores."""
         count = self.caught + len(self.survivors)
         return Decimal(100 * self.caught) / count if count else Decimal(100)
-
-
-class Loss(NamedTuple):
-    """Criteria that lose points although they must not, each with its message."""
-
-    name: str
-    criteria: Mapping[str, str]
-    diff: str = ""
 
 
 class EquivalentResults(NamedTuple):
@@ -80,6 +81,11 @@ class RubricTest(NamedTuple):
         """The criteria that the reference does not pass, without those that need manual grading."""
         results = self.reference.results
         return tuple(found.criterion.id for found in results if found.outcome.status not in ("passed", "pending"))
+
+    @property
+    def is_faulty(self) -> bool:
+        """Return whether a check failed to give an outcome, on the reference or a mutant."""
+        return bool(self.mutants.faults) or self.reference.counts("errored") > 0
 
     @property
     def is_sound(self) -> bool:

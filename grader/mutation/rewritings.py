@@ -43,19 +43,25 @@ Step = Callable[[Random, Element, Surroundings], bool]
 def shuffle(random: Random, tree: Element, around: Surroundings) -> bool:
     """Change the order of elements: links, joints and materials, and those inside of each."""
     del around
+    free = ("joint", "material", "collision") if _has_shared_material(tree) else _SORTED
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
         children = list(owner)
         shuffled = random.sample(children, len(children))
         for child in children:
             owner.remove(child)
-        owner.extend(_stable(children, shuffled))
+        owner.extend(_stable(children, shuffled, free))
     return True
 
 
-def _stable(before: list[Element], after: list[Element]) -> list[Element]:
+def _has_shared_material(tree: Element) -> bool:
+    """Return whether a visual defines a material that another one uses: the first definition counts, from there on."""
+    known = {material.get("name") for material in tree.iterchildren("material")}
+    names = [found.get("name") for found in own_elements(tree, "material") if found.getparent() is not tree]
+    return any(names.count(name) > 1 and name not in known for name in set(names))
+
+
+def _stable(before: list[Element], after: list[Element], free: tuple[str, ...]) -> list[Element]:
     """Return the shuffled elements with those whose order matters in it: the first of several origins counts."""
-    materials = [element.get("name") for element in before if element.tag == "material"]
-    free = _SORTED if len(set(materials)) == len(materials) else tuple(tag for tag in _SORTED if tag != "material")
     queues: dict[str, list[Element]] = {}
     for element in before:
         if element.tag not in free:
@@ -152,6 +158,9 @@ def rename_joints(random: Random, tree: Element, around: Surroundings) -> bool:
 
 def _renamed(random: Random, tree: Element, around: Surroundings, tags: tuple[str, ...]) -> bool:
     changed = False
+    children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
+    if "joint" in tags and len(set(children)) < len(children):  # of two parents, the joint that is last by name counts
+        return False
     for tag in tags:
         elements = own_elements(tree, tag) if tag == "material" else tree.iterchildren(tag)
         names = dict.fromkeys(element.get("name", "") for element in elements)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from random import Random
+from xml.sax.saxutils import escape
 
 from lxml import etree
 
@@ -61,6 +62,9 @@ class Style:
         space = [pick(loose) for _ in inside]
         opening = f"<{element.tag}{''.join(map(''.join, zip(space, inside, strict=True)))}"
         children = [self.text(child) for child in element]
+        content = element.text or ""
+        if content.strip() and not children:  # of an element that ROS 2 ignores
+            return f"{opening}>{escape(content)}</{element.tag}>"
         if not children and not (self.orders and pick((True, False))):
             return f"{opening}{pick(tight)}/>"
         between = [self.blank_space() for _ in range(len(children) + 1)]

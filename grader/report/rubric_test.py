@@ -20,6 +20,7 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines = [f"{rubric.id}: {rubric.title}", "", *_counts(test), *_reference(test)]
     lines += _losses("These equivalents of the reference lose points:", test.equivalents.losses)
     lines += _losses("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
+    lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
     lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_margins(test.mutants.margins)]
     lines += ["", f"Mutation score: {_percent(test.mutants)} %"]
     text = "\n".join(folded for line in lines for folded in _folded(printable(line), width))

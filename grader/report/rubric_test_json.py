@@ -39,6 +39,7 @@ def render_rubric_test_json(test: RubricTest) -> str:
             "mutants": _counts(test.mutants),
             "survivors": list(map(_survivor, test.mutants.survivors)),
             "ignored": list(map(_survivor, test.mutants.ignored)),
+            "faults": list(map(_loss, test.mutants.faults)),
             "unused_patterns": list(test.mutants.unused),
             "idle": list(test.mutants.idle),
             "margins": list(map(_margin, test.mutants.margins)),

@@ -204,6 +204,7 @@ RUBRIC_TEST_SCHEMA = _document(
         "samples": _nullable(_object({**_all(_TOTAL, "tried skipped"), "different": _array(_LOSS)})),
         "mutants": _object(_all(_TOTAL, "total tried caught same_robot ignored survived")),
         **_all(_array(_SURVIVOR), "survivors ignored"),
+        "faults": _array(_LOSS),
         **_all(_array(_TEXT), "unused_patterns idle"),
         "margins": _array(_MARGIN),
     },

@@ -1,8 +1,9 @@
 """Two robots whose joints are paired: how far links of one are from those of the other with the joints at the same positions."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from math import asin, degrees, dist, inf, sqrt
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 from grader.errors import NotDecided
 from grader.robot.kinematics import Configuration
@@ -13,6 +14,8 @@ from grader.text import quoted
 _MAX_CHAIN = 500  # joints that lead to a link
 
 _LEAST = 1e-9  # of a tolerance: below it, only rounding differs
+# The poses of links of references, by what they are relative to, their names, and the joints with their positions.
+_EXPECTED: WeakKeyDictionary[Configuration, dict[Hashable, tuple[Transform, ...]]] = WeakKeyDictionary()
 
 
 class Offset(NamedTuple):
@@ -44,16 +47,23 @@ class RobotPair(NamedTuple):
             for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
             if joint.mimic is None  # a mimic joint follows
         }
-        other = {joint.name: position for (_, joint), position in zip(self.joints, positions, strict=True)}
-        posed = [_posed(robot, given) for robot, given in zip(self.robots, (own, other), strict=True)]
+        posed = _posed(self.robots[0], own)
         found = []
-        for names in self.links:
-            poses = [
-                robot.pose(link, relative_to=base) for robot, link, base in zip(posed, names, self.bases, strict=True)
-            ]
-            distance = dist(poses[0].translation, poses[1].translation)
-            found.append(Offset(names[0], distance, _angle(*poses), positions))
+        for (name, _), wanted in zip(self.links, self._expected(positions), strict=True):
+            pose = posed.pose(name, relative_to=self.bases[0])
+            distance = dist(pose.translation, wanted.translation)
+            found.append(Offset(name, distance, _angle(pose, wanted), positions))
         return max(found, key=lambda offset: (self.times(offset), offset.distance))
+
+    def _expected(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
+        """Return the poses of the other robot's links, which are computed once for all robots that are compared with it."""
+        known = _EXPECTED.setdefault(self.robots[1], {})
+        names, links = (tuple(joint.name for _, joint in self.joints), tuple(link for _, link in self.links))
+        key = (self.bases[1], links, names, positions)
+        if key not in known:
+            posed = _posed(self.robots[1], dict(zip(names, positions, strict=True)))
+            known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
+        return known[key]
 
     def times(self, offset: Offset) -> float:
         """Return how many times an offset is larger than the tolerances, rounded, so that equal ones are equal; infinite for NaN."""

@@ -49,6 +49,8 @@ def test(request: TestRequest, screen: Screen, warn: Warn, show_progress: ShowPr
     is_passed = result.is_sound and (least is None or result.mutants.score >= least)
     is_json = request.format is OutputFormat.JSON
     text = render_rubric_test_json(result) if is_json else render_rubric_test(result, screen.width)
+    if result.is_faulty:
+        return text, ExitCode.FAULT
     return text, ExitCode.PASSED if is_passed else ExitCode.FAILED
 
 

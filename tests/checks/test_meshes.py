@@ -161,7 +161,7 @@ def test_a_mesh_that_is_installed() -> None:
             "names the package 'something_else'; the submission has 'my_robot'",
         ),
         (
-            package("package://arm_description/hulls/hull.stl"),
+            package("package://arm_description/other/meshes/hull.stl"),
             "names the package 'arm_description', which is not part of the submission",
         ),
         (package("package://my_robot/../meshes/hull.stl"), "is outside of its package"),

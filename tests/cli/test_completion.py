@@ -44,7 +44,7 @@ def in_bash(line: str) -> list[str]:
         ("grader gr", ["grade"]),
         ("grader --v", ["--version"]),
         ("grader --show-completion ", ["bash", "zsh", "fish"]),
-        ("grader rubric ", ["list", "show", "checks", "check", "test"]),
+        ("grader rubric ", ["list", "show", "checks", "new", "check", "test"]),
         ("grader grade x --fa", ["--fail-under"]),
         ("grader grade x --rubric ", RUBRICS),
         ("grader grade x --rubric=l", rubrics("l")),

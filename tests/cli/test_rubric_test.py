@@ -12,8 +12,9 @@ from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import find_check
 from grader.grading.rubric import shipped_rubrics
 from grader.robot.kinematics import Configuration
-from tests.command_line import ROOT, Done, run
+from tests.command_line import Done, run
 from tests.mutation.robots import ARM, BOX, TOP, write_rubric
+from tests.samples import SAMPLES
 
 IGNORE = '[[test.ignore]]\nmutants = ["type: joint ? type*", "nothing: *"]\nreason = "Only a tool."\n'
 PENDING = '[[criterion]]\nid = "by-hand"\npart = "model"\ntitle = "It is shown"\npoints = 1\ncheck = "evidence_shown"\nwith = { names = ["a"] }\n'
@@ -61,12 +62,13 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     assert found["mutants"]["caught"] > 5 * len(found["ignored"])
 
 
-def test_lab6_has_exactly_the_samples_that_it_expects() -> None:
-    """All samples of the project, of which none belongs to another rubric or differs."""
-    done = command("lab6", "submissions", "--mutants", 0)
-    count = sum(1 for _ in (ROOT / "submissions").glob("*/expected.toml"))
-    assert done.returncode == 0
-    assert f"Samples      {count} graded, none differ from expected.toml\n" in done.stdout.decode()
+@pytest.mark.parametrize("name", shipped_rubrics())
+def test_a_shipped_rubric_has_exactly_the_samples_that_it_expects(name: str) -> None:
+    """None differs, and those of other rubrics are skipped."""
+    own = sum(sample.expected.rubric == name for sample in SAMPLES.values())
+    assert own
+    found = data(name, "submissions", "--mutants", 0)["samples"]
+    assert found == {"tried": own, "skipped": len(SAMPLES) - own, "different": []}
 
 
 @pytest.fixture(scope="module")
@@ -139,6 +141,9 @@ def test_the_rubric_ignores_mutants_with_a_reason(tmp_path: Path) -> None:
     assert (found["survivors"], found["score"]) == ([], 100)
     assert without["score"] < 100
     assert found["unused_patterns"] == ["nothing: *"]
+    exact = IGNORE.replace("type: joint ? type*", "type: joint j type -> planar")
+    assert len(data(write_rubric(tmp_path, TOP + EXACT + exact, SMALL), "--mutants", 5000)["ignored"]) == 1
+    write_rubric(tmp_path, TOP + EXACT + IGNORE, SMALL)
     assert "The pattern 'nothing: *' of [[test.ignore]] matches no mutant." in command(rubric).stdout.decode()
 
 
@@ -203,9 +208,9 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     """A check that looks at the numbers of a file, not at the robot, is found out."""
 
     def is_written(robot: Configuration, *, link: str, **_: Any) -> Outcome:
-        joint = robot.parent_joints[link]
-        assert joint.origin is not None
-        return judged(joint.origin.rpy == (0.1, 0.2, 0.3), f"the rpy is {joint.origin.rpy[0]:.2f}")
+        joint = robot.parent_joints.get(link)
+        rpy = joint.origin.rpy if joint is not None and joint.origin is not None else (0.0, 0.0, 0.0)
+        return judged(rpy == (0.1, 0.2, 0.3), f"the rpy is {rpy[0]:.2f}")
 
     frame_at = find_check("frame_at")
     assert frame_at is not None
@@ -218,6 +223,31 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     text = done.stdout.decode()
     assert "These equivalents of the reference lose points:\n\n  fixed joints split 1\n    frame: the rpy is" in text
     assert '-<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
+
+
+def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is named with the mutant, and the exit code is 3."""
+
+    def divides(robot: Configuration, *, link: str, **_: Any) -> Outcome:
+        origin = robot.parent_joints[link].origin
+        assert origin is not None
+        return judged(1 / origin.xyz[0] > 0, "it is ahead")
+
+    frame_at = find_check("frame_at")
+    assert frame_at is not None
+    plain = replace(frame_at, function=divides)
+    monkeypatch.setattr(
+        "grader.grading.validation.find_check", lambda name: plain if name == "frame_at" else find_check(name)
+    )
+    found = data(write_rubric(tmp_path, TOP + EXACT, SMALL), "--mutants", 5000)
+    assert "number zero: joint j/origin xyz.x" in [row["name"] for row in found["faults"]]
+    assert all(row["criteria"]["frame"].startswith("the grader itself failed") for row in found["faults"])
+    counts = found["mutants"]
+    others = counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
+    assert counts["tried"] == others + len(found["faults"])
+    done = command(tmp_path / "arm.toml")
+    assert done.returncode == 3
+    assert "On these mutants a check is faulty:\n\n  " in done.stdout.decode()
 
 
 def _sample(folder: Path, name: str, expected: str, robot: str = ARM) -> None:

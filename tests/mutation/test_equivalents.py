@@ -17,9 +17,9 @@ from tests.mutation.robots import ARM, BOX, FRAME, TOP, rubric_in
 POSITIONS = ((0.0, 0.0), (0.4, 0.03), (-1.1, 0.09))  # of the shoulder and the slide, which are told by their limits
 
 
-def made(rubric: Rubric, kept: set[str] | None = None) -> list[Equivalent]:
-    """Return the equivalents of the arm."""
-    urdf = read_submission(ARM.encode(), identity="a", path="birch.urdf").urdf
+def made(rubric: Rubric, kept: set[str] | None = None, text: str = ARM) -> list[Equivalent]:
+    """Return the equivalents of the arm, or of another robot."""
+    urdf = read_submission(text.encode(), identity="a", path="birch.urdf").urdf
     assert isinstance(urdf, Read)
     assert urdf.reading.root is not None
     assert urdf.reading.robot is not None
@@ -151,6 +151,25 @@ def test_a_family_that_a_criterion_forbids_is_not_used(tmp_path: Path) -> None:
     found = made(rubric)
     assert {equivalent.family for equivalent in found} == {*FAMILIES} - {"fixed joints split"}
     assert all(len(read(equivalent).links) == len(read_arm().links) for equivalent in found)
+
+
+SHARED = """<robot name="r">
+  <link name="a"><visual><geometry><sphere radius="1"/></geometry>
+    <material name="red"><color rgba="1 0 0 1"/></material></visual></link>
+  <link name="b"><visual><geometry><sphere radius="2"/></geometry><material name="red"/></visual>
+    <note kind="a">Text &amp; more</note></link>
+  <link name="c"><visual><geometry><sphere radius="3"/></geometry><material name="red"/></visual></link>
+  <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
+  <joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint>
+</robot>"""
+
+
+def test_a_material_that_a_visual_defines_keeps_its_place(tmp_path: Path) -> None:
+    """Visuals before it would have no colour; text in elements that ROS 2 ignores stays as well."""
+    for equivalent in made(rubric_in(tmp_path, TOP), text=SHARED):
+        colours = [visual.material for link in read(equivalent).links for visual in link.visuals]
+        assert [colour.rgba for colour in colours if colour is not None] == [(1.0, 0.0, 0.0, 1.0)] * 3
+        assert ">Text &amp; more<" in equivalent.text
 
 
 def test_the_seed_decides(tmp_path: Path) -> None:
