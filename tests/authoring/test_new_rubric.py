@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import tomllib
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
@@ -224,6 +225,15 @@ def test_a_schema_beside_the_rubric_is_named(tmp_path: Path) -> None:
     validate(rubric, json.loads(schema))
 
 
+def test_the_order_of_elements_does_not_matter(written: tuple[Path, str], tmp_path: Path) -> None:
+    """A robot that is written from its last element to its first has all points."""
+    robot = ET.fromstring(ARM.read_text())
+    for element in (robot, *robot.iter("link")):
+        element[:] = reversed(element)
+    (tmp_path / "reversed.urdf").write_bytes(ET.tostring(robot))
+    assert run(("grade", tmp_path / "reversed.urdf", "--rubric", written[0])).returncode == 0
+
+
 # --- Where the rubric and its reference are ---------------------------------------------------------------------------
 
 
@@ -429,6 +439,14 @@ def test_a_shape_that_no_check_can_place_is_omitted(tmp_path: Path) -> None:
     boxes = [row["with"]["size"] for row in rubric["criterion"] if row["check"] == "shows_box"]
     assert boxes == [[1, 1, 1], [0.1, 0.1, 0.1]]
     assert "omitted: base: place and colour of all its boxes but the largest" in printed
+
+
+def test_the_place_of_equal_shapes_is_omitted(tmp_path: Path) -> None:
+    """Which of two equal boxes comes first in the file must not matter."""
+    second = '<visual><origin xyz="0 0 3"/><geometry><box size="1 1 1"/></geometry></visual></link>'
+    rubric, printed = rubric_of(robot().replace("</link>", second, 1), tmp_path)
+    assert [row["check"] for row in rubric["criterion"]] == ["urdf_loads", "shows_box"]
+    assert "omitted: base: place and colour of its boxes: they are equally large" in printed
 
 
 def test_an_inertia_that_is_not_its_shape_is_omitted(tmp_path: Path) -> None:
