@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.command_line import run
 
 numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
-sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}")
+sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}") | st.just("-0.2")
 vectors = st.tuples(numbers, numbers, numbers).map(" ".join)
 axes = st.sampled_from(("0 0 1", "0 -1 0", "2 0 0", "1 1 1", "0.3 -0.2 0.9"))
 channels = st.floats(0, 1).map(lambda value: f"{value:.3g}")
