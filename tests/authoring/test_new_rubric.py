@@ -346,6 +346,13 @@ def test_a_reference_that_ros_rejects_is_refused(name: str, tmp_path: Path) -> N
     assert not (tmp_path / "lab.toml").exists()
 
 
+def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loader reads rubrics up to a size, so no larger one is written."""
+    monkeypatch.setattr("grader.usecases.new_rubric.URDF_LIMIT", 1000)
+    assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", ARM)), "too many facts for a rubric")
+    assert not (tmp_path / "lab.toml").exists()
+
+
 def test_other_wrong_usage_is_refused(tmp_path: Path) -> None:
     """A missing reference, standard input, a folder without a URDF, another ending, a missing folder."""
     file = tmp_path / "lab.toml"
@@ -473,6 +480,22 @@ def test_what_only_the_name_of_a_joint_finds_is_a_criterion_if_the_name_is_used(
     assert values["joint-tool-joint-limit"] == {"@effort": 7, "@velocity": 3}
     assert values["joint-tool-joint-safety-controller"] == {"@k_velocity": 10}
     assert "omitted" not in printed
+
+
+def test_what_a_mesh_leaves_open_is_demanded_by_numbers(tmp_path: Path) -> None:
+    """The inertia of a link with a mesh, its mass centre, and a collision shape that is no visual have the reference's numbers."""
+    mesh = '<visual><geometry><mesh filename="package://ash/hand.stl"/></geometry></visual>'
+    collision = '<collision><origin xyz="0 0 0.1"/><geometry><sphere radius="0.05"/></geometry></collision>'
+    hand = body("hand").replace("<inertial>", '<inertial><origin xyz="0 0 0.02"/>')
+    cylinder = hand[hand.index("<visual>") : hand.index("<inertial>")]
+    rubric, _ = rubric_of(robot(hand.replace(cylinder, mesh)), tmp_path)
+    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert found["hand-inertia"]["values"]["@ixx"] == 0.0107
+    assert found["hand-mass-centre"]["values"] == {"@xyz": "0 0 0.02"}
+    (tmp_path / "lab.toml").unlink()
+    rubric, _ = rubric_of(robot(hand.replace(cylinder, mesh + collision)), tmp_path)
+    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert found["hand-collision"]["values"] == {"geometry/sphere/@radius": 0.05, "origin/@xyz": "0 0 0.1"}
 
 
 def test_a_path_of_one_machine_is_odd_and_not_demanded(tmp_path: Path) -> None:

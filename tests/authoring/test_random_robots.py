@@ -58,7 +58,7 @@ def urdfs(draw: st.DrawFn) -> str:
     return f'<robot name="ash">{"".join(draw(st.permutations(parts)))}</robot>'
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(text=urdfs())
 def test_a_random_reference_gets_full_marks(text: str) -> None:
     """Every rubric loads and gives its reference all points; the frame and the joint of each link are criteria."""
