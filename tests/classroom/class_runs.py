@@ -1,4 +1,4 @@
-"""Run commands over whole classes as a user does: in processes of their own."""
+"""Run commands over whole classes as a user does."""
 
 import io
 import os
@@ -36,14 +36,6 @@ def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
     words = [*map(str, arguments)]
     done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
     return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
-
-
-def run_in_process(*arguments: str | Path) -> Done:
-    """Run the command line in this process: its worker pool is reused, so that many small classes are fast."""
-    output, complained = io.StringIO(), io.StringIO()
-    with redirect_stdout(output), redirect_stderr(complained):
-        code = run_here([str(argument) for argument in arguments])
-    return Done(arguments, code, output.getvalue(), complained.getvalue())
 
 
 def environment(**variables: str) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.classroom.class_runs import Done, reasons, run_in_process
+from tests.classroom.class_runs import Done, grader, reasons
 from tests.classroom.repositories.contents import robot
 from tests.classroom.repositories.table import ROWS, Row, Work
 from tests.classroom.repositories.writing import write_class
@@ -46,7 +46,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Class:
     for layout in ("folders", "teams"):
         found.gradebooks[layout] = top / f"{layout}.db"
         options = ("--layout", layout, "--roster", top / "roster.csv", "--jobs", "2", "--report-format", "json")
-        found.runs[layout] = run_in_process(
+        found.runs[layout] = grader(
             "batch", found.folder, "--gradebook", top / f"{layout}.db", "--reports", top / layout, *options
         )
         assert found.runs[layout].returncode == 0, found.runs[layout].stderr
