@@ -147,6 +147,16 @@ def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
     return code, to.read_bytes() if to.exists() else output.getvalue()
 
 
+def without_hints(folder: Path) -> Path:
+    """Write the rubric of Lab 6 without hints, whose search takes ten times as long as grading; return its path."""
+    text = (ROOT / "rubrics/lab6.toml").read_text(encoding="utf-8")
+    assert text.count('hints = "edit"') == 1
+    (folder / "lab6.toml").write_text(text.replace('hints = "edit"', 'hints = "none"'), encoding="utf-8")
+    shutil.copy(ROOT / "rubrics/lab6.answers.toml", folder)
+    shutil.copytree(ROOT / "rubrics/lab6", folder / "lab6")
+    return folder / "lab6.toml"
+
+
 def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:
     """Make a class of single URDFs."""
     for _ in made_up.make_class(folder, count, seed):
