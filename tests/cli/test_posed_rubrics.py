@@ -165,7 +165,7 @@ def test_an_ambiguous_selector_of_a_reference_is_refused(tmp_path: Path) -> None
         (
             'check = "frame_at"',
             'check = "frame_at"\nat = { joint_1 = "up" }',
-            "24: at must be a table of numbers, not {'joint_1': 'up'}",
+            "24: at must be a table of numbers, not { joint_1 = 'up' }",
         ),
         (
             'check = "frame_at"',
