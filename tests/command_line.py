@@ -20,8 +20,8 @@ HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
 
-# Commands that start processes from the state of this one, and variables that the interpreter reads when it starts.
-_OWN_PROCESS = ("batch", "--watch")
+# What starts processes or threads that would outlive the command here, and variables that the interpreter reads when it starts.
+_OWN_PROCESS = ("--watch", "--cluster")
 _READ_AT_START = ("PYTHON", "LANG", "LC_", "TZ")
 
 
@@ -35,10 +35,7 @@ def run_with_input(
 ) -> Done:
     """Run the command line like `run`, with standard input or from another folder."""
     words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
-    own = any(option in words for option in _OWN_PROCESS) or any(
-        variable.startswith(_READ_AT_START) for variable in variables
-    )
-    if own or current_thread() is not main_thread():  # streams, variables and the current folder belong to the process
+    if _needs_own_process(words, variables, folder):
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
@@ -50,6 +47,19 @@ def run_with_input(
             stream.seek(0)
             texts.append(stream.read())
     return subprocess.CompletedProcess(words, code, *texts)
+
+
+def _needs_own_process(words: Sequence[str], variables: Mapping[str, str], folder: Path) -> bool:
+    """Return whether a command gives another result in this process.
+
+    All classes that are graded here share a fork server, which has the variables and the current folder of the first one.
+    """
+    return (
+        current_thread() is not main_thread()  # streams, variables and the current folder belong to the process
+        or any(option in words for option in _OWN_PROCESS)
+        or any(variable.startswith(_READ_AT_START) for variable in variables)
+        or ("batch" in words and (bool(variables) or folder != ROOT))
+    )
 
 
 def run_process(

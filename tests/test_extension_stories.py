@@ -143,6 +143,9 @@ def test_a_new_format(project: Path) -> None:
     replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
     add_to_changelog(project, "The format `line`.")
     python(project, "-m", "grader", "grade", "submissions/several-mistakes", "--format", "line", "--fail-under", "0")
-    passes(project, "-m", "not slow", "tests/report/test_hostile_text.py", "tests/report/test_same_facts.py",
+    hostile, facts = "tests/report/test_hostile_text.py", "tests/report/test_same_facts.py"
+    passes(project, f"{hostile}::test_text_of_a_broken_file_stays_text",
+           *(f"{hostile}::test_text_of_a_report_stays_text[{case}]" for case in ("hints-archive", "pictures-only-below")),
+           f"{facts}::test_all_formats_contain_the_same_facts[several-mistakes]",
            "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission/test_own_reports.py",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip

@@ -8,6 +8,7 @@ from typing import Any
 from grader.authoring.fact import Fact, exact, length, lengths, shown
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
+from grader.xml.wanted_element import readable
 
 _MASS_TOLERANCE = 0.001  # kg: the default of mass_is
 _SHARE = 0.01  # of a mass for which the default tolerance is too much
@@ -78,7 +79,7 @@ def _collision(link: str, collision: Collision, index: int) -> Fact:
         case Sphere(radius=radius):
             values, what = {"geometry/sphere/@radius": length(radius)}, f"sphere of radius {shown([radius])} m"
         case Mesh(filename=file, scale=scale):
-            values, what = {"geometry/mesh/@filename": file}, f"mesh {file}"
+            values, what = {"geometry/mesh/@filename": readable(file)}, f"mesh {readable(file)}"
             values |= {"geometry/mesh/@scale": shown(scale)} if scale != (1.0, 1.0, 1.0) else {}
     title = f"{link} collides as a {what}"
     if any(collision.origin.xyz):

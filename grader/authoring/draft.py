@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.authoring.bodies import body_facts
 from grader.authoring.elements import element_facts
-from grader.authoring.fact import Fact, Omission, is_finite
+from grader.authoring.fact import Fact, Omission, why_invalid
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.joints import joint_facts
 from grader.authoring.oddities import Doubts, oddities
@@ -38,7 +38,7 @@ def draft(solution: Solution, head: Head, path: Path) -> Draft:
     """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can tell."""
     found = list(_measured(solution))
     facts = _usable([it for it in found if isinstance(it, Fact)])
-    omissions = [it for it in found if isinstance(it, Omission)]
+    omissions = [*_omissions(found)]
     ignored, doubts = list(ignored_mutants(solution)), Doubts()
     while True:
         rows = criterion_ids(facts)
@@ -92,6 +92,14 @@ def _measured(solution: Solution) -> Iterator[Fact | Omission]:
 
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
-    """Return the facts that a rubric can hold: with finite numbers, and each check with its arguments once."""
-    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if is_finite(fact.arguments)}
+    """Return the facts that a rubric can hold: with arguments that the check takes, and each check with its arguments once."""
+    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not why_invalid(fact)}
     return list(different.values())
+
+
+def _omissions(found: Iterable[Fact | Omission]) -> Iterator[Omission]:
+    for it in found:
+        if isinstance(it, Omission):
+            yield it
+        elif why_invalid(it):
+            yield Omission(it.title, why_invalid(it))

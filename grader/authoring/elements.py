@@ -5,12 +5,15 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, shown
+from grader.authoring.fact import Fact, Omission, shown
+from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
 from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
+from grader.xml.wanted_element import readable
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
+_OF_CONTINUOUS = ("@effort", "@velocity")
 _IN_JOINTS = ("safety_controller", "calibration")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
@@ -21,16 +24,29 @@ _MAX_LISTED = 4  # values in a title
 Values = dict[str, Any]
 
 
-def element_facts(root: Element) -> Iterator[Fact]:
+def element_facts(root: Element) -> Iterator[Fact | Omission]:
     """Yield the values in the elements for simulators and controllers: a fact for each element in one of them."""
+    used = texts_in(root)
     for element in _children(root):
-        tag = name_of(element)
-        if tag in _FOREIGN:
+        if name_of(element) in _FOREIGN:
             yield from _facts_in(element)
-        elif tag == "joint":
+        elif name_of(element) == "joint":
             for child in _children(element):
-                if child.tag in _IN_JOINTS:
-                    yield _fact(element, child.tag, values_of(child), _label(element))
+                yield from _fact_of_joint(element, child, is_used=_name(element) in used)
+
+
+def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Iterator[Fact | Omission]:
+    """Yield what no other check tells of a joint; it is found by the name of the joint, which must not be free."""
+    tag = name_of(child)
+    is_limit = tag == "limit" and joint.get("type") == "continuous"
+    if tag in _IN_JOINTS or is_limit:
+        values = {key: value for key, value in values_of(child).items() if not is_limit or key in _OF_CONTINUOUS}
+        if is_used:
+            yield _fact(joint, tag, values, _label(joint, child))
+        elif values:
+            yield Omission(
+                f"<{tag}> of {_name(joint)}", "a check finds it by the name of the joint only, which is free"
+            )
 
 
 def _facts_in(element: Element) -> Iterator[Fact]:
@@ -50,11 +66,12 @@ def _facts_in(element: Element) -> Iterator[Fact]:
 
 def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
     arguments: dict[str, Any] = {"tag": name_of(element)}
-    attributes = {str(key): str(value) for key, value in element.attrib.items()}
+    is_joint = element.tag == "joint"
+    attributes = {str(key): str(value) for key, value in element.attrib.items() if not is_joint or key == "name"}
     arguments |= {"attributes": attributes} if attributes else {}
     arguments |= {"path": path} if path else {}
     arguments |= {"values": values} if values else {}
-    about = "The joints" if element.tag == "joint" else f"<{name_of(element)}>"
+    about = "The joints" if is_joint else f"<{name_of(element)}>"
     return Fact(label, "", _title(element, path, values), "element_present", arguments, about=about)
 
 
@@ -82,7 +99,9 @@ def values_of(element: Element, path: str = "") -> Values:
 
 
 def _add(found: Values, key: str, value: Any) -> None:
-    """Add a value; of several different ones with one path, a list."""
+    """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
+    if isinstance(value, str) and is_of_one_machine(value):
+        return
     if key not in found:
         found[key] = value
     else:
@@ -92,7 +111,7 @@ def _add(found: Values, key: str, value: Any) -> None:
 
 def _value(text: str) -> str | bool | int | float:
     """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
-    word = text.strip()
+    word = readable(text.strip())
     if word in _TRUTH:
         return _TRUTH[word]
     if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
@@ -129,7 +148,7 @@ def _shown(value: Any) -> str:
 
 
 def texts_in(root: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers, such as names of joints."""
+    """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
     found: set[str] = set()
     for element in _children(root):
         for inner in element.iter() if element.tag in _FOREIGN else ():

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from decimal import Decimal
 from math import cos, degrees, isclose, isfinite, radians
 from typing import Any
 
+from grader.checks.registry import find_check
+from grader.checks.toml_types import WrongValue
 from grader.robot.transforms import Vector
 
 _DIGITS = 6  # after the point, of a length in metres or a component of a direction
@@ -82,11 +85,23 @@ def is_same(one: float, other: float) -> bool:
     return isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
 
 
-def is_finite(value: Any) -> bool:
-    """Return whether all numbers in the arguments of a check are finite."""
+def why_invalid(fact: Fact) -> str:
+    """Return why the check does not take the arguments of a fact, such as a negative mass; empty if it does."""
+    check = find_check(fact.check)
+    assert check is not None, fact.check
+    for name, value in fact.arguments.items():
+        try:
+            check.parameters[name].type.parse(_as_read(value))
+        except WrongValue as error:
+            return f"{name} must be {error}"
+    return ""
+
+
+def _as_read(value: Any) -> Any:
+    """Return a value as it is read from a TOML file."""
     match value:
         case Mapping():
-            return all(map(is_finite, value.values()))
+            return {key: _as_read(item) for key, item in value.items()}
         case list():
-            return all(map(is_finite, value))
-    return not isinstance(value, float) or isfinite(value)
+            return list(map(_as_read, value))
+    return Decimal(repr(value)) if isinstance(value, float) else value

@@ -3,9 +3,11 @@
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, combinations
 
+from grader.authoring.elements import texts_in
 from grader.authoring.fact import Fact, shown
 from grader.authoring.solution import Solution
 from grader.checks.outcome import Outcome
+from grader.package.launch.places import is_of_one_machine, one_machine_only
 from grader.robot.model import Cylinder, Joint, Link, Mesh
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import dot
@@ -29,6 +31,8 @@ def oddities(solution: Solution) -> Iterator[str]:
             names.setdefault(what, []).append(joint.name)
     yield from (f"{enumerated(found, _MAX_NAMED)}: {what}" for what, found in names.items())
     yield from _mirrored_wheels(solution)
+    words = texts_in(solution.reading.root) if solution.reading.root is not None else ()
+    yield from (one_machine_only(word) for word in sorted(words) if is_of_one_machine(word))
 
 
 def _problems(solution: Solution) -> Iterator[str]:

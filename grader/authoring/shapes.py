@@ -4,11 +4,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from grader.authoring.fact import Fact, Omission, direction, is_same, length, lengths, shown
+from grader.checks.mesh_files import mesh_file
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty, volume
 from grader.robot.transforms import rotation_from_rpy
 
 _Z = (0.0, 0.0, 1.0)
+_CLEARLY_SMALLER = 0.95  # of the largest volume: more could be the largest in an equivalent robot
 
 
 def shape_facts(link: Link) -> Iterator[Fact | Omission]:
@@ -17,25 +19,29 @@ def shape_facts(link: Link) -> Iterator[Fact | Omission]:
     by_kind: dict[type[Geometry], list[Visual]] = {}
     for visual in visuals:
         by_kind.setdefault(type(visual.geometry), []).append(visual)
-    meshes = by_kind.pop(Mesh, [])
-    for number, visual in enumerate(meshes):
-        yield from _mesh(link.name, visual, number)
-    for visual in meshes[:1]:
-        yield from _colour(link.name, visual, "mesh", {})
-    if any(visual.material is not None for visual in meshes[1:]):
-        yield Omission(f"{link.name}: the colour of all its meshes but the first", "a check examines the first mesh")
+    yield from _meshes(link.name, by_kind.pop(Mesh, []))
     for kind, same in by_kind.items():
         yield from _sizes(link.name, same)
-        largest = max(same, key=lambda visual: volume(visual.geometry))
         name = kind.__name__.lower()
         selected = {"shape": name} if len(visuals) > 1 else {}
+        largest, *others = sorted(same, key=lambda visual: volume(visual.geometry), reverse=True)
+        if others and volume(others[0].geometry) > _CLEARLY_SMALLER * volume(largest.geometry):
+            yield Omission(f"{link.name}: place and colour of its {_PLURALS[kind]}", "they are equally large")
+            continue
         yield _place(link.name, largest, name, selected)
         yield from _colour(link.name, largest, name, selected)
-        if len(same) > 1:
-            yield Omission(
-                f"{link.name}: place and colour of all its {_PLURALS[kind]} but the largest",
-                "a check examines the largest shape of a kind",
-            )
+        if others:
+            what = f"{link.name}: place and colour of all its {_PLURALS[kind]} but the largest"
+            yield Omission(what, "a check examines the largest shape of a kind")
+
+
+def _meshes(link: str, meshes: Sequence[Visual]) -> Iterator[Fact | Omission]:
+    for number, visual in enumerate(meshes):
+        yield from _mesh(link, visual, number)
+    if len({visual.material and visual.material.rgba for visual in meshes}) == 1:
+        yield from _colour(link, meshes[0], "mesh", {})
+    elif meshes:
+        yield Omission(f"{link}: the colours of its meshes", "a check examines one mesh, and they differ")
 
 
 def _sizes(link: str, visuals: Sequence[Visual]) -> Iterator[Fact]:
@@ -112,7 +118,7 @@ def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -
 def _mesh(link: str, visual: Visual, number: int) -> Iterator[Fact]:
     mesh = visual.geometry
     assert isinstance(mesh, Mesh)
-    file = mesh.filename.partition("://")[2] or mesh.filename
+    file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
     scale, xyz, rpy = lengths(mesh.scale), lengths(visual.origin.xyz), lengths(visual.origin.rpy)
     title = f"{link} shows the mesh {file}"
     title += f", scaled by {shown(scale)}" if scale != [1.0, 1.0, 1.0] else ""

@@ -21,7 +21,9 @@ def loading_facts(solution: Solution) -> Iterator[Fact]:
 
 
 def tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the root of the tree, with a link that is fixed to it, and the numbers of joints that move."""
+    """Yield the root of the tree, with a link that is fixed to it, and the numbers of joints that move, if there are joints."""
+    if not solution.joints:
+        return
     root = solution.root
     fixed = (joint.child for joint in solution.joints.values() if joint.parent == root and joint.type == "fixed")
     holds = next(fixed, root)

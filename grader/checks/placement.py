@@ -120,7 +120,12 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
 
 
 def _moved_by(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:
-    """Return the origin that puts a visual off: its own if it moves the visual along that line, else the joint's."""
+    """Return the origin that puts a visual off: its own if it moves the visual along that line, else the joint's.
+
+    In the frame of its own link, nothing but the visual's own origin moves it.
+    """
+    if relative_to == link:
+        return place(visual.origin.location, "xyz") or place(visual.location)
     T_relative_link = robot.pose(link, relative_to=relative_to)
     moved, error = unit(T_relative_link.rotate(visual.origin.xyz)), unit(off)
     if moved is not None and error is not None and abs(dot(moved, error)) > _ALONG:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from math import ceil
+from tempfile import TemporaryFile
 from typing import NamedTuple
 
 from grader.documents import converter
@@ -175,22 +176,23 @@ class DocumentCollection:
 
     def _run(self, command: list[str], data: bytes, path: str) -> tuple[int, bytes]:
         """Return the exit code and the output of a converter, and show the path of its file if the user has to wait."""
-        with subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-        ) as process:
-            quiet = max(0.0, min(self._seconds, NOTICE_SECONDS - (MAX_SECONDS - self._seconds)))
-            try:
-                out = self._output(process, data, quiet, path)
-            except BaseException:  # time is up, or an interruption
-                process.kill()
-                raise
-            finally:
-                self.show_progress("")
-            return process.returncode, out
+        with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
+            file.write(data)
+            file.seek(0)
+            with subprocess.Popen(command, stdin=file, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+                quiet = max(0.0, min(self._seconds, NOTICE_SECONDS - (MAX_SECONDS - self._seconds)))
+                try:
+                    out = self._output(process, quiet, path)
+                except BaseException:  # time is up, or an interruption
+                    process.kill()
+                    raise
+                finally:
+                    self.show_progress("")
+                return process.returncode, out
 
-    def _output(self, process: subprocess.Popen[bytes], data: bytes, quiet: float, path: str) -> bytes:
+    def _output(self, process: subprocess.Popen[bytes], quiet: float, path: str) -> bytes:
         with suppress(subprocess.TimeoutExpired):
-            return process.communicate(data, quiet)[0]
+            return process.communicate(timeout=quiet)[0]
         self.show_progress(path)
         return process.communicate(timeout=self._seconds - quiet)[0]
 

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import tomllib
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
@@ -224,6 +225,15 @@ def test_a_schema_beside_the_rubric_is_named(tmp_path: Path) -> None:
     validate(rubric, json.loads(schema))
 
 
+def test_the_order_of_elements_does_not_matter(written: tuple[Path, str], tmp_path: Path) -> None:
+    """A robot that is written from its last element to its first has all points."""
+    robot = ET.fromstring(ARM.read_text())
+    for element in (robot, *robot.iter("link")):
+        element[:] = reversed(element)
+    (tmp_path / "reversed.urdf").write_bytes(ET.tostring(robot))
+    assert run(("grade", tmp_path / "reversed.urdf", "--rubric", written[0])).returncode == 0
+
+
 # --- Where the rubric and its reference are ---------------------------------------------------------------------------
 
 
@@ -336,6 +346,13 @@ def test_a_reference_that_ros_rejects_is_refused(name: str, tmp_path: Path) -> N
     assert not (tmp_path / "lab.toml").exists()
 
 
+def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loader reads rubrics up to a size, so no larger one is written."""
+    monkeypatch.setattr("grader.usecases.new_rubric.URDF_LIMIT", 1000)
+    assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", ARM)), "too many facts for a rubric")
+    assert not (tmp_path / "lab.toml").exists()
+
+
 def test_other_wrong_usage_is_refused(tmp_path: Path) -> None:
     """A missing reference, standard input, a folder without a URDF, another ending, a missing folder."""
     file = tmp_path / "lab.toml"
@@ -431,6 +448,14 @@ def test_a_shape_that_no_check_can_place_is_omitted(tmp_path: Path) -> None:
     assert "omitted: base: place and colour of all its boxes but the largest" in printed
 
 
+def test_the_place_of_equal_shapes_is_omitted(tmp_path: Path) -> None:
+    """Which of two equal boxes comes first in the file must not matter."""
+    second = '<visual><origin xyz="0 0 3"/><geometry><box size="1 1 1"/></geometry></visual></link>'
+    rubric, printed = rubric_of(robot().replace("</link>", second, 1), tmp_path)
+    assert [row["check"] for row in rubric["criterion"]] == ["urdf_loads", "shows_box"]
+    assert "omitted: base: place and colour of its boxes: they are equally large" in printed
+
+
 def test_an_inertia_that_is_not_its_shape_is_omitted(tmp_path: Path) -> None:
     """The criterion is not written, because the reference would lose it; a rounded one gets a larger tolerance."""
     rubric, printed = rubric_of(robot(body("hand", 0.0135), body("foot", 0.0111)), tmp_path)
@@ -439,11 +464,58 @@ def test_an_inertia_that_is_not_its_shape_is_omitted(tmp_path: Path) -> None:
     assert "omitted: hand-inertia: " in printed
 
 
+def test_what_only_the_name_of_a_joint_finds_is_a_criterion_if_the_name_is_used(tmp_path: Path) -> None:
+    """The effort of a continuous joint and safety controllers are omitted, unless a controller uses the joint's name."""
+    inside = '<limit effort="7" velocity="3"/><safety_controller k_velocity="10"/>'
+    base = robot(joint("continuous", inside=inside))
+    rubric, printed = rubric_of(base, tmp_path)
+    assert (
+        "omitted: <limit> of tool_joint and <safety_controller> of tool_joint: a check finds it by the name" in printed
+    )
+    assert "element_present" not in [row["check"] for row in rubric["criterion"]]
+    (tmp_path / "lab.toml").unlink()
+    control = '<ros2_control name="c" type="system"><joint name="tool_joint"/></ros2_control></robot>'
+    rubric, printed = rubric_of(base.replace("</robot>", control), tmp_path)
+    values = {row["id"]: row["with"]["values"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert values["joint-tool-joint-limit"] == {"@effort": 7, "@velocity": 3}
+    assert values["joint-tool-joint-safety-controller"] == {"@k_velocity": 10}
+    assert "omitted" not in printed
+
+
+def test_what_a_mesh_leaves_open_is_demanded_by_numbers(tmp_path: Path) -> None:
+    """The inertia of a link with a mesh, its mass centre, and a collision shape that is no visual have the reference's numbers."""
+    mesh = '<visual><geometry><mesh filename="package://ash/hand.stl"/></geometry></visual>'
+    collision = '<collision><origin xyz="0 0 0.1"/><geometry><sphere radius="0.05"/></geometry></collision>'
+    hand = body("hand").replace("<inertial>", '<inertial><origin xyz="0 0 0.02"/>')
+    cylinder = hand[hand.index("<visual>") : hand.index("<inertial>")]
+    rubric, _ = rubric_of(robot(hand.replace(cylinder, mesh)), tmp_path)
+    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert found["hand-inertia"]["values"]["@ixx"] == 0.0107
+    assert found["hand-mass-centre"]["values"] == {"@xyz": "0 0 0.02"}
+    (tmp_path / "lab.toml").unlink()
+    rubric, _ = rubric_of(robot(hand.replace(cylinder, mesh + collision)), tmp_path)
+    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "element_present"}
+    assert found["hand-collision"]["values"] == {"geometry/sphere/@radius": 0.05, "origin/@xyz": "0 0 0.1"}
+
+
+def test_a_path_of_one_machine_is_odd_and_not_demanded(tmp_path: Path) -> None:
+    """Students cannot have the instructor's home folder; a file of a package is demanded as xacro finds it."""
+    values = "<parameters>$(find ash)/config/a.yaml</parameters><log>/home/cedar/a.log</log>"
+    gazebo = f'<gazebo><plugin name="control">{values}</plugin></gazebo>'
+    text = robot(gazebo).replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    (tmp_path / "robot.xacro").write_text(text)
+    printed = new(tmp_path / "lab.toml", tmp_path / "robot.xacro")
+    rows = tomllib.loads((tmp_path / "lab.toml").read_text())["criterion"]
+    found = [row["with"]["values"] for row in rows if row["check"] == "element_present"]
+    assert found == [{"@name": "control", "parameters": "$(find ash)/config/a.yaml"}]
+    assert "odd: the path /home/cedar/a.log exists on one machine only" in printed
+
+
 def test_one_link_is_a_robot(tmp_path: Path) -> None:
     """A link alone has criteria for what it shows, and none for joints."""
     rubric, _ = rubric_of(robot(), tmp_path)
     checks = [row["check"] for row in rubric["criterion"]]
-    assert checks == ["urdf_loads", "shows_box", "centre_at", "shows_colour", "root_of_tree", "counts"]
+    assert checks == ["urdf_loads", "shows_box", "centre_at", "shows_colour"]
 
 
 def test_names_are_escaped_and_ids_unique(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.command_line import run
 
 numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
-sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}")
+sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}") | st.just("-0.2")
 vectors = st.tuples(numbers, numbers, numbers).map(" ".join)
 axes = st.sampled_from(("0 0 1", "0 -1 0", "2 0 0", "1 1 1", "0.3 -0.2 0.9"))
 channels = st.floats(0, 1).map(lambda value: f"{value:.3g}")
@@ -58,7 +58,7 @@ def urdfs(draw: st.DrawFn) -> str:
     return f'<robot name="ash">{"".join(draw(st.permutations(parts)))}</robot>'
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(text=urdfs())
 def test_a_random_reference_gets_full_marks(text: str) -> None:
     """Every rubric loads and gives its reference all points; the frame and the joint of each link are criteria."""

@@ -219,6 +219,16 @@ def test_a_wrong_centre_points_to_what_moved_it() -> None:
     fails(centre_at, scene(BASE, WHEEL, joint("j", "fixed", "base", "wheel")), at="<joint", **CENTRE)
 
 
+def test_a_centre_in_the_frame_of_its_own_link_points_to_the_visual() -> None:
+    """No joint moves a visual in the frame of its link, so the failure never points to one."""
+    joined, own = (
+        joint("j", "fixed", "base", "wheel", xyz="1 2 3"),
+        {**CENTRE, "relative_to": "wheel", "xyz": (0.0, 0.0, 0.1)},
+    )
+    for visuals, at in ((visual(cylinder(), xyz="0 0 0"), 'xyz="0 0 0"'), (visual(cylinder()), "<visual")):
+        fails(centre_at, scene(link("base"), link("wheel", visuals), joined), at=at, **own)
+
+
 def test_a_wrong_centre_points_along_its_error() -> None:
     """A visual moved perpendicular to the error is not the cause; the failure points to the joint's origin."""
     moved = link("wheel", visual(cylinder(), xyz="0 0 0.025"))

@@ -1,4 +1,4 @@
-"""Run commands over whole classes as a user does: in processes of their own."""
+"""Run commands over whole classes as a user does."""
 
 import io
 import os
@@ -36,14 +36,6 @@ def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
     words = [*map(str, arguments)]
     done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
     return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
-
-
-def run_in_process(*arguments: str | Path) -> Done:
-    """Run the command line in this process: its worker pool is reused, so that many small classes are fast."""
-    output, complained = io.StringIO(), io.StringIO()
-    with redirect_stdout(output), redirect_stderr(complained):
-        code = run_here([str(argument) for argument in arguments])
-    return Done(arguments, code, output.getvalue(), complained.getvalue())
 
 
 def environment(**variables: str) -> dict[str, str]:
@@ -153,6 +145,16 @@ def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
     with redirect_stdout(io.StringIO()), redirect_stderr(output):
         code = run_here(["grade", "--save", f"json={to}", "--format", "json", "--", str(path)])
     return code, to.read_bytes() if to.exists() else output.getvalue()
+
+
+def without_hints(folder: Path) -> Path:
+    """Write the rubric of Lab 6 without hints, whose search takes ten times as long as grading; return its path."""
+    text = (ROOT / "rubrics/lab6.toml").read_text(encoding="utf-8")
+    assert text.count('hints = "edit"') == 1
+    (folder / "lab6.toml").write_text(text.replace('hints = "edit"', 'hints = "none"'), encoding="utf-8")
+    shutil.copy(ROOT / "rubrics/lab6.answers.toml", folder)
+    shutil.copytree(ROOT / "rubrics/lab6", folder / "lab6")
+    return folder / "lab6.toml"
 
 
 def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import Done, run_in_process
+from tests.classroom.class_runs import Done, grader
 from tests.samples import ROOT
 
 GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
@@ -25,19 +25,19 @@ def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") ->
     if roster:
         (top / "roster.csv").write_text(roster, encoding="utf-8")
         more = (*more, "--roster", top / "roster.csv")
-    return run_in_process("batch", top / "class", "--gradebook", top / into, *more)
+    return grader("batch", top / "class", "--gradebook", top / into, *more)
 
 
 def students(top: Path, into: str = "g.db") -> dict[str, dict[str, Any]]:
     """Return everyone's current grade, by key."""
-    done = run_in_process("export", "json", "--gradebook", top / into)
+    done = grader("export", "json", "--gradebook", top / into)
     assert done.returncode == 0, done.stderr
     return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
 def mark(top: Path, who: str) -> None:
     """Give a student a manual mark."""
-    assert run_in_process("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
+    assert grader("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
 
 
 @pytest.mark.parametrize("name", ["alice", "ALICE", "Alice Ash", "Ash", "1"])
@@ -113,8 +113,8 @@ def test_sections_with_their_own_rosters(tmp_path: Path) -> None:
         tmp_path / "second.csv",
         "--add",
     )
-    assert run_in_process(*added).returncode == 0
-    listed = run_in_process("export", "csv", "--gradebook", tmp_path / "g.db").stdout
+    assert grader(*added).returncode == 0
+    listed = grader("export", "csv", "--gradebook", tmp_path / "g.db").stdout
     assert [line.split(",")[0] for line in listed.splitlines()[1:]] == ["abe", "ann", "bea", "cal"]
     assert "not on the roster" not in batch(tmp_path).stdout
     shutil.rmtree(tmp_path / "class/bea")

@@ -147,12 +147,13 @@ class _Terminal(StringIO):
 def test_a_document_that_takes_long_is_named(
     stream: type[StringIO], seconds: float, lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On a terminal, after a time; the line is removed before the report is printed."""
+    """On a terminal, after a time; the line is removed before the report is printed. The document is read all the same."""
     monkeypatch.setattr("grader.documents.collection.NOTICE_SECONDS", seconds)
     monkeypatch.setenv("COLUMNS", "80")
     path = submitted(tmp_path / "Ash", {"an\x1b swers.docx": docx("Task 1 step 15", "Two roots.")})
-    with redirect_stderr(stream()) as err, redirect_stdout(StringIO()):
-        in_process(["grade", str(path)])
+    with redirect_stderr(stream()) as err, redirect_stdout(StringIO()) as out:
+        in_process(["grade", str(path), "--verbose"])
+    assert "Two roots." in out.getvalue()
     text = "grader: reading an\\x1b swers.docx"
     assert err.getvalue() == f"\r\r{text}\r{' ' * len(text)}\r" * lines
 

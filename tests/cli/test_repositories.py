@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.report.formats import Format
-from tests.classroom.class_runs import rows, run_in_process, verdicts
+from tests.classroom.class_runs import grader, rows, verdicts
 from tests.cli.jobs import GithubJob
 from tests.command_line import run_with_input
 from tests.samples import ROOT
@@ -65,9 +65,7 @@ def test_a_robot_under_any_name(name: str, tmp_path: Path) -> None:
     alone = report(tmp_path / "class/ash" / name)
     assert (alone["score"], alone["max_score"]) == (70, 70)
     assert report(tmp_path / "class/ash")["score"] == 70
-    assert (
-        run_in_process("batch", tmp_path / "class", "--gradebook", tmp_path / "g.db", "--part", "task1").returncode == 0
-    )
+    assert grader("batch", tmp_path / "class", "--gradebook", tmp_path / "g.db", "--part", "task1").returncode == 0
     assert rows(tmp_path / "g.db", "SELECT key, score, out_of FROM grade") == [("ash", 700_000, 700_000)]
 
 
@@ -186,13 +184,13 @@ def test_batch_leaves_several_students_unassigned(team: Path) -> None:
     put(team.parent / "class/solo/my_robot", PACKAGE)
     team.rename(team.parent / "class/pair")
     book = team.parent / "g.db"
-    assert run_in_process("batch", team.parent / "class", "--gradebook", book).returncode == 0
+    assert grader("batch", team.parent / "class", "--gradebook", book).returncode == 0
     assert verdicts(book) == {"pair": "unreadable", "solo": "graded"}
     reason = "it contains the submissions of 2 students, Lab6/Ash and Lab6/Birch: left unassigned (--layout teams grades each)"
     assert rows(book, "SELECT reason, score, pending FROM grade WHERE key = 'pair'") == [(reason, 0, 1_000_000)]
-    done = run_in_process("export", "csv", "--gradebook", book)
+    done = grader("export", "csv", "--gradebook", book)
     assert f"it could not be graded: {reason}" in done.stdout
-    done = run_in_process("batch", team.parent / "class", "--gradebook", team.parent / "teams.db", "--layout", "teams")
+    done = grader("batch", team.parent / "class", "--gradebook", team.parent / "teams.db", "--layout", "teams")
     assert verdicts(team.parent / "teams.db") == {"pair/Ash": "graded", "pair/Birch": "graded", "solo": "graded"}
     assert "ignored: pair/Lab6/resources is named like a part of a submission" in done.stderr
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.classroom.class_runs import Done, reasons, run_in_process
+from tests.classroom.class_runs import Done, grader, reasons, without_hints
 from tests.classroom.repositories.contents import robot
 from tests.classroom.repositories.table import ROWS, Row, Work
 from tests.classroom.repositories.writing import write_class
@@ -43,10 +43,22 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Class:
     found = Class(write_class(top / "class", ROWS), {}, {}, {})
     with (top / "roster.csv").open("w", newline="") as file:
         csv.writer(file).writerows([("id", "login", "name", "group"), *_roster()])
+    rubric = without_hints(top)
     for layout in ("folders", "teams"):
         found.gradebooks[layout] = top / f"{layout}.db"
-        options = ("--layout", layout, "--roster", top / "roster.csv", "--jobs", "2", "--report-format", "json")
-        found.runs[layout] = run_in_process(
+        options = (
+            "--rubric",
+            rubric,
+            "--layout",
+            layout,
+            "--roster",
+            top / "roster.csv",
+            "--jobs",
+            "2",
+            "--report-format",
+            "json",
+        )
+        found.runs[layout] = grader(
             "batch", found.folder, "--gradebook", top / f"{layout}.db", "--reports", top / layout, *options
         )
         assert found.runs[layout].returncode == 0, found.runs[layout].stderr
@@ -80,7 +92,7 @@ def _roster() -> list[tuple[str, str, str, str]]:
 
 
 def _report(path: Path, *more: str) -> Report:
-    done = run(("grade", path, "--format", "json", *more))
+    done = run(("grade", path, "--hints", "none", "--format", "json", *more))
     assert done.stdout, done.stderr
     return dict(json.loads(done.stdout))
 

@@ -12,7 +12,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from tests.classroom.class_runs import WITH_HOSTILE, Done, grader, rows, run_in_process
+from tests.classroom.class_runs import WITH_HOSTILE, Done, grader, rows
 from tests.samples import ROOT
 
 LAB = ROOT / "rubrics"
@@ -52,14 +52,14 @@ def make(folder: Path, files: dict[str, str] = CLASS) -> Path:
 
 def batch(top: Path, *more: str | Path) -> Done:
     """Grade the class in a folder into its gradebook."""
-    done = run_in_process("batch", top / "class", "--gradebook", top / "g.db", *more)
+    done = grader("batch", top / "class", "--gradebook", top / "g.db", *more)
     assert done.returncode == 0, done.stderr
     return done
 
 
 def stats(top: Path, *more: str) -> Done:
     """Show the statistics of its gradebook."""
-    done = run_in_process("stats", "--gradebook", top / "g.db", *more)
+    done = grader("stats", "--gradebook", top / "g.db", *more)
     assert done.returncode == 0, done.stderr
     return done
 
@@ -67,7 +67,7 @@ def stats(top: Path, *more: str) -> Done:
 def fixes(done: Done) -> list[dict[str, Any]]:
     """Return the fixes of a class as JSON, which is valid under its schema."""
     found = json.loads(done.stdout)
-    jsonschema.validate(found, json.loads(run_in_process("schema", "class").stdout))
+    jsonschema.validate(found, json.loads(grader("schema", "class").stdout))
     return list(found["fixes"])
 
 
@@ -181,7 +181,7 @@ def test_the_gradebook_keeps_what_was_found(top: Path, graded: Path) -> None:
     before = rows(top / "g.db", "SELECT * FROM hint")
     done = stats(top)
     assert (done.stdout, done.stderr) == (saved(graded, "stats.txt").stdout, "")
-    exported = run_in_process("export", "json", "--gradebook", top / "g.db").stdout
+    exported = grader("export", "json", "--gradebook", top / "g.db").stdout
     assert exported == saved(graded, "stats.json").stdout
     assert rows(top / "g.db", "SELECT * FROM hint") == before
 
@@ -204,7 +204,7 @@ def test_a_moved_class_is_reported(tmp_path: Path) -> None:
 def test_a_manual_mark_settles_a_criterion(top: Path) -> None:
     """Who has all points of a change already does not need it."""
     for mark in (("fir", "lidar-frame", "6"), ("fir", "lidar-on-top", "2"), ("hazel", "lidar-frame", "6")):
-        assert run_in_process("mark", *mark, "--gradebook", top / "g.db").returncode == 0
+        assert grader("mark", *mark, "--gradebook", top / "g.db").returncode == 0
     assert [fix["count"] for fix in fixes(stats(top, "--format", "json"))] == [5, 3, 1]
 
 
@@ -251,7 +251,7 @@ def test_the_number_of_jobs_does_not_matter(tmp_path: Path) -> None:
     outputs: list[str] = []
     files: list[dict[str, bytes]] = []
     for jobs in ("1", "3"):
-        done = run_in_process(
+        done = grader(
             "batch", tmp_path / "class", "--gradebook", tmp_path / f"g{jobs}.db", "--jobs", jobs, "--format", "json",
             "--reports", tmp_path / jobs, "--report-format", "json", "--report-format", "markdown",
         )  # fmt: skip
@@ -285,7 +285,7 @@ def test_the_rubric_says_how_much_reports_tell(tmp_path: Path, level: str) -> No
 
 def test_a_manual_mark_replaces_a_hint(top: Path) -> None:
     """A person has decided the criterion: no hint promises its points."""
-    assert run_in_process("mark", "fir", "lidar-frame", "5", "--gradebook", top / "g.db").returncode == 0
+    assert grader("mark", "fir", "lidar-frame", "5", "--gradebook", top / "g.db").returncode == 0
     batch(top, "--reports", top / "reports", "--report-format", "json")
     results = {result["id"]: result for result in reports(top / "reports", ["fir"])["fir"]["results"]}
     assert results["lidar-frame"]["hints"] == []

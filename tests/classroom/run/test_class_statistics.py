@@ -8,7 +8,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from tests.classroom.class_runs import run_in_process
+from tests.classroom.class_runs import grader
 from tests.samples import ROOT
 
 URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_text(encoding="utf-8")
@@ -52,7 +52,7 @@ def top(tmp_path_factory: pytest.TempPathFactory) -> Path:
     rows = "".join(f"{name},{name.title()} Tree\n" for name in FILES if name not in COURSE)
     (top / "roster.csv").write_text(f"id,name\n{rows}", encoding="utf-8")
     (top / "start.urdf").write_text(HANDED_OUT, encoding="utf-8")
-    done = run_in_process(
+    done = grader(
         "batch", top / "class", "--gradebook", top / "g.db", "--roster", top / "roster.csv", "--ignore-file",
         top / "start.urdf", "--jobs", "2",
     )  # fmt: skip
@@ -64,15 +64,15 @@ def top(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def data(top: Path) -> dict[str, Any]:
     """Return the class as JSON, valid under its schema."""
-    found = json.loads(run_in_process("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
-    jsonschema.validate(found, json.loads(run_in_process("schema", "class").stdout))
+    found = json.loads(grader("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
+    jsonschema.validate(found, json.loads(grader("schema", "class").stdout))
     return dict(found)
 
 
 def text(top: Path) -> str:
     """Return the summary that batch has printed, without line breaks; stats prints the same, and edits."""
     out = (top / "out.txt").read_text(encoding="utf-8")
-    before, _, after = run_in_process("stats", "--gradebook", top / "g.db").stdout.partition("Edits that would fix")
+    before, _, after = grader("stats", "--gradebook", top / "g.db").stdout.partition("Edits that would fix")
     assert before + after.partition("\n\n")[2] == out
     return " ".join(out.split())
 
@@ -113,11 +113,11 @@ def test_the_main_reason_is_one_line(top: Path) -> None:
 def test_a_manual_mark_decides(top: Path) -> None:
     """A submission whose automatic points were all given by a person has no reason any more."""
     shutil.copy(top / "g.db", top / "marked.db")
-    found = json.loads(run_in_process("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
+    found = json.loads(grader("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
     for row in found["statistics"]["criteria"]:
         if row["pending"] == 2:
-            run_in_process("mark", "larch", row["id"], "0", "--gradebook", top / "marked.db")
-    done = run_in_process("stats", "--gradebook", top / "marked.db", "--format", "json")
+            grader("mark", "larch", row["id"], "0", "--gradebook", top / "marked.db")
+    done = grader("stats", "--gradebook", top / "marked.db", "--format", "json")
     after = json.loads(done.stdout)["statistics"]
     assert after["reasons"] == [{"reason": "the package other is not part of the submission", "count": 1}]
     assert after["undecided"] == 1
@@ -142,14 +142,14 @@ def test_a_carried_criterion_is_no_mistake(top: Path) -> None:
     assert not any(row["criterion"] == "footprint-at-wheel-bottoms" for row in found["failures"])
     (pine,) = (student for student in data(top)["students"] if student["id"] == "pine")
     assert (pine["score"], pine["carried"]) == (68, ["footprint-at-wheel-bottoms", "stands-on-ground"])
-    table = run_in_process("export", "csv", "--gradebook", top / "g.db").stdout.splitlines()
+    table = grader("export", "csv", "--gradebook", top / "g.db").stdout.splitlines()
     (row,) = (line for line in table if line.startswith("pine,"))
     assert row.endswith('"footprint-at-wheel-bottoms, stands-on-ground"')
 
 
 def test_a_report_from_the_gradebook_names_the_cause(top: Path) -> None:
     """Reports of a class are as those of one submission."""
-    done = run_in_process(
+    done = grader(
         "batch",
         top / "class",
         "--gradebook",
@@ -178,16 +178,14 @@ def test_identical_work_is_listed(top: Path) -> None:
 
 def test_handed_out_files_are_remembered(top: Path) -> None:
     """A later run and `stats` need not name them again; without them they are identical work."""
-    run_in_process(
-        "batch", top / "class", "--gradebook", top / "other.db", "--roster", top / "roster.csv", "--jobs", "2"
-    )
-    found = json.loads(run_in_process("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
+    grader("batch", top / "class", "--gradebook", top / "other.db", "--roster", top / "roster.csv", "--jobs", "2")
+    found = json.loads(grader("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
     assert [group["students"] for group in found["identical"]] == [["ash", "birch", "cedar"], ["hazel", "holly"]]
-    run_in_process(
+    grader(
         "batch", top / "class", "--gradebook", top / "other.db", "--roster", top / "roster.csv", "--ignore-file",
         top / "start.urdf",
     )  # fmt: skip
-    found = json.loads(run_in_process("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
+    found = json.loads(grader("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
     assert [group["students"] for group in found["identical"]] == [["ash", "birch", "cedar"]]
 
 
@@ -196,7 +194,7 @@ def test_a_wrong_ignore_file_is_refused(top: Path, name: str, reason: str) -> No
     """Before anything is graded, in one line."""
     (top / "empty").mkdir(exist_ok=True)
     (top / "empty/notes.txt").write_text("x", encoding="utf-8")
-    done = run_in_process("batch", top / "class", "--gradebook", top / "no.db", "--ignore-file", top / name)
+    done = grader("batch", top / "class", "--gradebook", top / "no.db", "--ignore-file", top / name)
     assert (done.returncode, done.stdout) == (2, "")
     assert reason in done.stderr
     assert not (top / "no.db").exists()
@@ -207,7 +205,7 @@ def test_a_shared_submission_is_not_identical_work(tmp_path: Path) -> None:
     (tmp_path / "class/team1").mkdir(parents=True)
     (tmp_path / "class/team1/my_robot.urdf").write_text(URDF, encoding="utf-8")
     (tmp_path / "roster.csv").write_text("id,name,group\n1,Ash Tree,team1\n2,Birch Tree,team1\n", encoding="utf-8")
-    done = run_in_process(
+    done = grader(
         "batch",
         tmp_path / "class",
         "--gradebook",
@@ -242,7 +240,7 @@ def test_without_a_roster_every_folder_is_graded(tmp_path: Path) -> None:
         (tmp_path / "class" / name / "my_robot.urdf").write_text(URDF, encoding="utf-8")
     (tmp_path / "roster.csv").write_text("id,name\nash,Ash Tree\ntemplate,Tem Plate\n", encoding="utf-8")
     for more in ((), ("--roster", tmp_path / "roster.csv")):
-        done = run_in_process(
+        done = grader(
             "batch", tmp_path / "class", "--gradebook", tmp_path / f"g{len(more)}.db", "--format", "json", *more
         )
         assert len(json.loads(done.stdout)["students"]) == 2

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import grader, rows, run_in_process
+from tests.classroom.class_runs import grader, rows
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/reference"
@@ -30,14 +30,14 @@ def top(tmp_path: Path) -> Path:
 
 def batch(top: Path, *more: str | Path) -> str:
     """Grade the class and return standard error."""
-    done = run_in_process("batch", top / "class", "--gradebook", top / "g.db", *more)
+    done = grader("batch", top / "class", "--gradebook", top / "g.db", *more)
     assert done.returncode == 0, done.stderr
     return str(done.stderr)
 
 
 def exported(top: Path) -> dict[str, dict[str, str]]:
     """Return the rows of the CSV export by student."""
-    text = run_in_process("export", "csv", "--gradebook", top / "g.db").stdout
+    text = grader("export", "csv", "--gradebook", top / "g.db").stdout
     return {row["id"]: row for row in csv.DictReader(io.StringIO(text))}
 
 
@@ -87,9 +87,9 @@ def test_one_part(top: Path) -> None:
         "dale": ("0", "70"),
     }
     assert {"lidar-frame", "package-found", "evidence-webcam"} & set(found["ash"]) == {"lidar-frame"}
-    shown = json.loads(run_in_process("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
+    shown = json.loads(grader("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
     assert len(shown["statistics"]["criteria"]) == len([name for name in found["ash"] if name.count("-")])
-    assert "Grades out of 70: " in run_in_process("stats", "--gradebook", top / "g.db").stdout
+    assert "Grades out of 70: " in grader("stats", "--gradebook", top / "g.db").stdout
 
 
 def test_the_maximum_of_an_lms_is_that_of_the_parts(top: Path) -> None:
@@ -97,7 +97,7 @@ def test_the_maximum_of_an_lms_is_that_of_the_parts(top: Path) -> None:
     batch(top, "--part", "task1")
     for points, code in (("70", 0), ("100", 2)):
         (top / "canvas.csv").write_text(CANVAS.format(points, "Ash,1,,ash,,\nBirch,2,,birch,,\n"))
-        done = run_in_process("export", "canvas", "--gradebook", top / "g.db", "--into", top / "canvas.csv")
+        done = grader("export", "canvas", "--gradebook", top / "g.db", "--into", top / "canvas.csv")
         assert done.returncode == code
     assert "is 100, but the rubric's maximum is 70" in done.stderr
 
@@ -120,7 +120,7 @@ def test_a_student_who_was_graded_on_other_parts_has_no_grade(top: Path) -> None
     batch(top)
     (top / "section").mkdir()
     shutil.copy(URDF, top / "section/elm.urdf")
-    done = run_in_process("batch", top / "section", "--gradebook", top / "g.db", "--add", "--part", "task1")
+    done = grader("batch", top / "section", "--gradebook", top / "g.db", "--add", "--part", "task1")
     assert done.returncode == 0
     found = exported(top)
     assert (found["elm"]["score"], found["elm"]["not_final_because"]) == ("70", "")
@@ -137,7 +137,7 @@ def test_parts_of_an_unreadable_submission(top: Path) -> None:
 
 def test_an_unknown_part_is_refused(top: Path) -> None:
     """Before anything is graded."""
-    done = run_in_process("batch", top / "class", "--gradebook", top / "g.db", "--part", "task9")
+    done = grader("batch", top / "class", "--gradebook", top / "g.db", "--part", "task9")
     assert (done.returncode, "the rubric lab6 has no part 'task9'" in done.stderr) == (2, True)
     assert not (top / "g.db").exists()
 
