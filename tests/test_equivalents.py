@@ -196,7 +196,7 @@ def carried(report: Report) -> set[str]:
     return {result.criterion.id for result in report.results if result.carried}
 
 
-@settings(max_examples=600, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=rewritings(REFERENCE))
 def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     """Nothing is lost by any composition of equivalent rewritings."""
@@ -256,7 +256,7 @@ _ADDED = st.sampled_from(
 )
 
 
-@settings(max_examples=700, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=350, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(draw=st.data())
 def test_no_value_is_an_error_of_the_grader(draw: st.DataObject) -> None:
     """Whatever a few attributes of the reference are set to, no criterion is errored."""

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import distribution
 from itertools import groupby
 from pathlib import Path
@@ -67,6 +67,7 @@ def read_report(text: str) -> Any:
     return data
 
 
+@lru_cache(maxsize=1)  # a text is read twice, to be checked and for its structure
 def read_junit(text: str) -> Any:
     """Return the root of a JUnit report, valid under the XML Schemas of tools that write and read such files."""
     root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
@@ -96,6 +97,7 @@ def read_by_schema(name: str) -> Callable[[str], Any]:
     return read
 
 
+@lru_cache(maxsize=1)
 def read_markdown(text: str) -> list[Token]:
     """Return the tokens of Markdown by CommonMark with tables and strikethrough, including inline tokens."""
     found: list[Token] = []

@@ -83,7 +83,7 @@ def written(texts: Mapping[str, str]) -> Report:
 @given(TEXTS)
 @example(EVERYWHERE)
 @example(FENCES)
-@settings(max_examples=100)
+@settings(max_examples=60)
 def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
     """Names of robots, links, joints, materials, files and folders, comments, answers, values and Python strings."""
     written(texts)
@@ -119,7 +119,7 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
 @pytest.mark.parametrize("name", ["hints", "pictures-only", "setup-as-created", "smart-quotes", "reference"])
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
 @example(["`" * 90 + "![x](y)"])
-@settings(max_examples=15)
+@settings(max_examples=10)
 def test_text_of_a_report_stays_text(name: str, base: Base, words: list[str]) -> None:
     """Also text that no file system and no XML can hold: NUL and lone surrogates, in every message, name and path."""
     following = cycle(words)
@@ -142,7 +142,7 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
 
 @given(TEXTS)
 @example(EVERYWHERE)
-@settings(max_examples=60)
+@settings(max_examples=30)
 def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
     """Reports, warnings and inspections contain no command; standard error has annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:

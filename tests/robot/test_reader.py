@@ -34,7 +34,7 @@ def message(read: Reading, code: str) -> str:
 # --- Any bytes --------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=750, deadline=None)
 @given(raw=data | st.binary(max_size=100))
 @example(raw=b"")
 @example(raw=b"\xff")

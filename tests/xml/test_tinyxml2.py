@@ -41,7 +41,7 @@ def assert_sound(scan: Scan, text: str) -> None:
     assert fatal <= {MISPLACED_DECLARATION}
 
 
-@settings(max_examples=2000, deadline=None)
+@settings(max_examples=1000, deadline=None)
 @given(raw=data)
 @example(raw=b"")
 @example(raw=b"<robot name='&#;'/>")
@@ -158,7 +158,7 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
     assert_same_if_plain(f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>")
 
 
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=750, deadline=None)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
     """Also for text without meaning, except names that XML and TinyXML2 read differently."""
