@@ -6,6 +6,7 @@ from typing import Any
 
 from grader.robot.model import Collision, Joint, Link, Robot, Visual
 from grader.robot.reader import Reading
+from grader.xml.parsing import Element
 
 _NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
 
@@ -31,7 +32,22 @@ def robot_hash(reading: Reading) -> str:
     if reading.robot is None or not reading.robot.links:
         return ""
     problems = sorted((problem.code, problem.message) for problem in reading.problems)
-    return sha256(repr((problems, normal_form(reading.robot))).encode("utf-8", "backslashreplace")).hexdigest()
+    content = problems, normal_form(reading.robot), _extensions(reading.root)
+    return sha256(repr(content).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def _extensions(root: Element | None) -> list[tuple[Any, ...]]:
+    """Return what the robot has besides links, joints and materials, such as <gazebo>, sorted."""
+    others = (child for child in root if child.tag not in ("link", "joint", "material")) if root is not None else ()
+    return sorted(map(_content, others), key=repr)
+
+
+def _content(element: Element) -> tuple[Any, ...]:
+    """Return an element and all in it, in document order; the numbers of children tell the levels apart."""
+    return tuple(
+        (str(inner.tag), sorted(inner.attrib.items()), " ".join((inner.text or "").split()), len(inner))
+        for inner in element.iter()
+    )
 
 
 def _renamed(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
