@@ -7,6 +7,7 @@ import pytest
 from tests.hints.measure import of_samples, of_students, verdicts
 from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, hints_for
+from tests.samples import SAMPLES
 
 REFERENCE = BASES["reference"]
 _MUTANTS = 8  # of each correct robot; all of them take minutes: python -m tests.hints.measure
@@ -95,3 +96,11 @@ def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -
     hints = hints_for(REFERENCE.changed(changed))
     assert hints.lost
     assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]
+
+
+@pytest.mark.parametrize(("name", "link"), [("arm-diameter-for-radius", "shoulder"), ("arm-box-lying", "forearm")])
+def test_an_inertia_is_not_fitted_to_a_wrong_shape(name: str, link: str) -> None:
+    """The only hint corrects the shape, with which the inertia is correct."""
+    hints = hints_for(SAMPLES[name].open(), SAMPLES[name].rubric)
+    assert [set(found.gains) for found in hints.found] == [{f"{link}-inertia", f"{link}-shape"}]
+    assert hints.is_full

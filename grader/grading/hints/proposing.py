@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _NUMBERS = ("xyz", "size", "radius", "length", "colour")  # arguments of checks
 # Those about the joint that moves a link.
 _JOINT_NUMBERS = ("lower", "upper", "effort", "velocity", "multiplier", "offset", "damping", "friction")
+_SHAPE_CHECKS = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
 _BODY_CHECKS = ("mass_is", "inertia_plausible", "collision_matches_visual")
 NO_TARGETS = Targets((), ())
 
@@ -78,10 +79,14 @@ class Proposing:
 
 
 def _bodies(criteria: Iterable[Criterion]) -> dict[str, float | None]:
-    """Return the links whose mass, inertia or collision is examined, with the expected mass if a criterion gives it."""
+    """Return the links whose mass, inertia or collision is examined, with the expected mass if a criterion gives it.
+
+    Not those with another shape than a criterion expects: an inertia or a collision of the wrong shape would be a wrong hint.
+    """
     found: dict[str, float | None] = {}
+    misshapen = {criterion.arguments["link"] for criterion in criteria if criterion.check.name in _SHAPE_CHECKS}
     for criterion in criteria:
-        if criterion.check.name in _BODY_CHECKS:
+        if criterion.check.name in _BODY_CHECKS and criterion.arguments["link"] not in misshapen:
             link, mass = criterion.arguments["link"], criterion.arguments.get("mass")
             found[link] = mass if mass is not None else found.get(link)
     return found
