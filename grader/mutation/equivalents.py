@@ -52,8 +52,8 @@ def _for_counts(arguments: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _for_kinematics(arguments: Mapping[str, Any]) -> tuple[str, ...]:
-    """The joints are paired by name, or by their order in the file."""
-    return ("order of elements",) if arguments.get("match") == "order" else ("joints renamed",)
+    """The joints are paired by name, or by their order along the chains to the links."""
+    return () if arguments.get("match") == "order" else ("joints renamed",)
 
 
 def _for_elements(arguments: Mapping[str, Any]) -> tuple[str, ...]:

@@ -60,7 +60,7 @@ def _counts(test: RubricTest) -> Iterator[str]:
     same = f", {found.same} {'is' if found.same == 1 else 'are'} the same robot" if found.same else ""
     ignored = f", {len(found.ignored)} ignored by the rubric" if found.ignored else ""
     survive = _some(len(found.survivors), "survives", "survive")
-    yield f"Mutants      {found.tried}{sample} graded, {found.caught} lose something{same}{ignored}, {survive}"
+    yield f"Mutants      {found.tried}{sample} graded, {found.caught} lose points{same}{ignored}, {survive}"
 
 
 def _some(count: int, one: str, several: str) -> str:
