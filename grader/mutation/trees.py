@@ -1,5 +1,6 @@
 """The element tree of a URDF, for rewriting a robot: poses, frames, joints."""
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from random import Random
 from typing import TypeVar
@@ -8,19 +9,24 @@ from lxml import etree
 
 from grader.mutation.elements import FOREIGN
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 
 __all__ = ["Element"]
 _Item = TypeVar("_Item")
+_FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree, without comments."""
+    """Return a copy of a tree, without comments; meshes that xacro has found by $(find package) are those of package://."""
     copy = etree.fromstring(etree.tostring(root, with_tail=False))
     for element in list(copy.iter(etree.Comment, etree.ProcessingInstruction)):
         above = element.getparent()
         if above is not None:
             above.remove(element)
+    for mesh in copy.iter("mesh"):
+        if mesh.get("filename"):
+            mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
     return copy
 
 

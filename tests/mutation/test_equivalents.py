@@ -4,9 +4,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from lxml import etree
 
 from grader.grading.rubric import Criterion, Rubric
 from grader.mutation.equivalents import FAMILIES, FORBIDDEN, Equivalent, Equivalents, forbidden
+from grader.mutation.trees import copied
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
@@ -176,3 +178,10 @@ def test_the_seed_decides(tmp_path: Path) -> None:
     """The same seed gives the same bytes."""
     rubric = rubric_in(tmp_path, TOP)
     assert made(rubric) == made(rubric)
+
+
+def test_a_mesh_that_xacro_has_found_stays_that_of_its_package() -> None:
+    """The expansion has a made-up path for $(find package), which no equivalent may contain."""
+    robot = b'<robot><mesh filename="file:///install/arm/share/arm/meshes/a.stl"/><mesh filename="package://b/c.stl"/></robot>'
+    names = [mesh.get("filename") for mesh in copied(etree.fromstring(robot))]
+    assert names == ["package://arm/meshes/a.stl", "package://b/c.stl"]
