@@ -97,6 +97,7 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
+        patch.object(sys, "warnoptions", ["error"]),  # of the fork server
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),
