@@ -141,7 +141,10 @@ MISTAKES = [
     ("a = 1\rb = 2", f"3:6: {RETURN}"),
     ("# a\rb", f"3:4: {RETURN}"),
     ('a = "b\0c"', "3:7: there is a null byte: save the file as UTF-8 text"),
-    ("<<<<<<< HEAD\na = 1", "3:1: this is a git merge conflict marker: keep one of the two versions and remove the markers"),
+    (
+        "<<<<<<< HEAD\na = 1",
+        "3:1: this is a git merge conflict marker: keep one of the two versions and remove the markers",
+    ),
     ('a = "\\ud800"', '3:12: escaped character is not a Unicode scalar value: a = "\\ud800"'),
 ]
 
