@@ -105,7 +105,7 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
         ("number +0.05: joint slide/origin xyz.x", "no criterion looks at it; try frame_at"),
         (
             "number negated: link plate/visual/geometry/box size.x",
-            "plate-box passes all the same; look at its arguments",
+            "plate-box passes nevertheless; check the arguments",
         ),
     ],
 )
