@@ -136,7 +136,7 @@ def picture() -> str:
 
 def escaped(text: str) -> str:
     """Return text in which tags are not HTML and bars do not end a table cell."""
-    return text.replace("<", "&lt;").replace("|", "\\|")
+    return re.sub(r"(`[^`]*`)|<", lambda found: found[1] or "&lt;", text).replace("|", "\\|")
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ class Draft(NamedTuple):
 
 
 def draft(solution: Solution, head: Head, path: Path) -> Draft:
-    """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can tell."""
+    """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test."""
     found = list(_measured(solution))
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [*_omissions(found)]

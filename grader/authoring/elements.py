@@ -36,7 +36,7 @@ def element_facts(root: Element) -> Iterator[Fact | Omission]:
 
 
 def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Iterator[Fact | Omission]:
-    """Yield what no other check tells of a joint; it is found by the name of the joint, which must not be free."""
+    """Yield what no other check tests of a joint; it is found by the name of the joint, which must not be free."""
     tag = name_of(child)
     is_limit = tag == "limit" and joint.get("type") == "continuous"
     if tag in _IN_JOINTS or is_limit:

@@ -17,7 +17,7 @@ _WHOLE = 0.1  # degrees: closer angles are meant as whole ones, such as 90 for 1
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """A fact of the reference that one check can tell: a criterion without its points.
+    """A fact of the reference that one check can test: a criterion without its points.
 
     `subject` and `aspect` make its id, `about` is its heading. `otherwise` are the facts that count instead if
     the reference does not pass it; `is_doubtful` is set where it may then be wrong.

@@ -1,4 +1,4 @@
-"""Mutants of the reference that no check can tell from it, for the rubric to declare with the reason."""
+"""Mutants that no check can distinguish from the reference, for the rubric to declare with the reason."""
 
 import re
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ class Ignored(NamedTuple):
 
 
 _SIZED = ("box", "cylinder", "sphere")
-_NEGATIVE = "ROS 2 loads a negative size; the checks of shapes compare its amount."
+_NEGATIVE = "ROS 2 loads a negative size; the checks of shapes compare its absolute value."
 _TEMPLATE = "These entries of data_files are those of the template; the criteria are about files that ROS 2 opens."
 _MODULES = "No check is about the Python modules of the package, or about where its programs are installed."
 

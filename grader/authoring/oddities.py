@@ -1,4 +1,4 @@
-"""What looks odd in a reference: it gets full marks all the same, so only its author can tell whether it is right."""
+"""What looks odd in a reference: it gets full marks anyway, so only its author knows whether it is correct."""
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain, combinations
@@ -93,7 +93,7 @@ def _mirrored_wheels(solution: Solution) -> Iterator[str]:
                 for it in (one, other)
             ]
             if dot(*axes) < _OPPOSITE:
-                yield f"{one.child} and {other.child} are equal wheels with opposite axes: a positive turn of both turns the robot on the spot"
+                yield f"{one.child} and {other.child} are equal wheels with opposite axes: positive velocities of both turn the robot on the spot"
 
 
 def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:

@@ -37,19 +37,19 @@ def element_present(
     values: Mapping[str, Content] | None = None,
     tolerance: NonNegative = 1e-6,
 ) -> Outcome:
-    """Directly in the robot is an element with the given attributes, and in it one with all of the given values.
+    """The robot directly contains an element with the given attributes, which contains all of the given values.
 
-    Numbers, and lists of numbers in a text, are compared as numbers; true is equal to 1, and false to 0. Of xacro, the expanded
-    text counts. Comments do not count.
+    Numbers, and lists of numbers in a text, are compared as numbers; true is equal to 1, and false to 0. Xacro is
+    expanded first. Comments do not count.
 
     Args:
         tag: The name of the element, such as gazebo, ros2_control, transmission or link, with its prefix if it has one.
         attributes: The attributes of this element, by their names.
-        path: The element in it that is examined: names with slashes between, such as "sensor/camera"; by default, the
+        path: The element in it that is examined: names separated by slashes, such as "sensor/camera"; by default, the
             element itself.
         values: What the examined element contains. A key is a path in it, which ends with "@name" for an attribute, such as
             "camera/image/width" or "plugin/@filename". If elements are repeated, one of them must have the value; for a list
-            of values, a different one must have each.
+            of values, each must be that of a different element.
         tolerance: How far a number may be off, in the number's own unit.
     """
     del robot  # the elements are read from the text, but only where there is a robot

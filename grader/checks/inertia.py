@@ -104,7 +104,7 @@ def _inertial(robot: Configuration, link: str) -> Inertial:
 
 
 def _impossible(link: str, inertial: Inertial) -> Outcome | None:
-    """Return the failure of a mass or inertia that no body has."""
+    """Return the failure of a mass or inertia that is physically impossible."""
     if not inertial.mass > 0.0:
         message = f"the mass of {link!r} is {inertial.mass:.6g} kg; it should be positive"
         return failed(message, place(inertial.location, "value", "mass"))
@@ -115,7 +115,7 @@ def _impossible(link: str, inertial: Inertial) -> Outcome | None:
         return failed(f"the inertia of {link!r} is not positive definite: {moments}; each should be positive", at)
     if not smallest + middle >= (1.0 - _ROUNDING) * largest:
         rule = "none should be larger than the sum of the other two"
-        return failed(f"no body has the inertia of {link!r}: {moments}; {rule}", at)
+        return failed(f"the inertia of {link!r} is physically impossible: {moments}; {rule}", at)
     return None
 
 

@@ -23,7 +23,7 @@ _UNITS = (
 
 
 def mistake_of(inertia: Tensor, solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]) -> str:
-    """Return which single mistake makes of the inertia of a solid the given one; empty if none of those known does."""
+    """Return the known mistake that explains a wrong inertia of a solid, as a clause; empty if none does."""
     for cause, candidate in _candidates(solid, shapes):
         is_distinct = difference(candidate, solid.inertia) > _DISTINCT * principal_moments(solid.inertia)[2]
         if is_distinct and _is_near(inertia, candidate):
@@ -36,9 +36,9 @@ def _is_near(inertia: Tensor, candidate: Tensor) -> bool:
 
 
 def _candidates(solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]) -> Iterator[tuple[str, Tensor]]:
-    """Yield mistakes as they are told, each with the inertia that it leads to."""
+    """Yield the known mistakes in words, each with the inertia that results from it."""
     xx, xy, xz, yy, yz, zz = solid.inertia
-    yield "ixy, ixz and iyz had the other sign", (xx, -xy, -xz, yy, -yz, zz)
+    yield "ixy, ixz and iyz had the opposite sign", (xx, -xy, -xz, yy, -yz, zz)
     yield (
         "it were about the origin of the link, not about the centre of mass",
         shifted(solid.inertia, solid.mass, solid.centre),

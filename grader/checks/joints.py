@@ -161,7 +161,7 @@ def joint_dynamics(
 ) -> Outcome:
     """The joint that moves a link has the given friction and damping.
 
-    What the file does not give is 0, as in ROS 2. With neither argument, the joint must have `<dynamics>`.
+    Omitted values are 0, as in ROS 2. With neither argument, the joint must have `<dynamics>`.
 
     Args:
         link: The link that the joint moves.

@@ -60,7 +60,7 @@ def shows_mesh(
 
     Args:
         link: The link that is examined.
-        file: The end of the path of the mesh, in whole folders and with the name; upper and lower case differ.
+        file: The end of the mesh's path: complete folder names and the file name; case-sensitive.
         scale: The scale along x, y and z.
         xyz: Where the origin of the mesh is, in metres.
         rpy: How the mesh is turned, in radians about fixed axes, within 1 degree.

@@ -33,10 +33,10 @@ def kinematics_match_reference(
     match: Match = "name",
     relative_to: str = "",
 ) -> Outcome:
-    """The links move as those of the reference solution when its joints move within their limits.
+    """The links move as in the reference solution when the joints move within its limits.
 
-    Compared are the pose with all joints at 0, those with one joint at an end of its range or between, and random ones, which
-    are always the same. Mimic joints follow. A joint that moves a link, and has no counterpart in the reference, fails.
+    Poses are compared with all joints at 0, with one joint at an end of its range or between, and at random positions, which
+    are always the same. Mimic joints follow. An additional joint that moves a link makes the check fail.
 
     Args:
         links: The links whose motion is compared.
@@ -121,7 +121,7 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
 
 
 def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
-    """Return the failure of a joint that cannot move as its counterpart does: it should turn, and slides."""
+    """Return the failure of a joint that cannot move as its counterpart does: it is prismatic, for example, but should turn."""
     if joint.type == other.type or {joint.type, other.type} <= {"revolute", "continuous"} or other.type not in SINGLE:
         return None
     if "@type" in joint.unresolved:

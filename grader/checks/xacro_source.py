@@ -47,9 +47,9 @@ def xacro_uses(
     Args:
         file: The end of the path of the one file whose definitions and includes count, such as "urdf/wheel.xacro"; by
             default, all files. They may be used in any file.
-        properties: How many properties must be defined and used, or their names.
-        macros: How many macros must be defined and called, or their names.
-        includes: How many files must be included, or the ends of their paths.
+        properties: How many properties must at least be defined and used, or their names.
+        macros: How many macros must at least be defined and called, or their names.
+        includes: How many files must at least be included, or the ends of their paths.
     """
     source = _source(submission, file)
     if isinstance(source, Outcome):

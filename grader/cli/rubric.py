@@ -91,8 +91,8 @@ def new_rubric(
 ) -> str:
     """Write a rubric from a reference solution.
 
-    It has a criterion for each fact that can be measured, and is tried on the reference, which gets full marks. What no
-    check can tell is omitted; what looks odd in the solution is listed.
+    It has a criterion for each fact that can be measured. It is graded on the reference, which must get full marks. The
+    output lists the facts that no check can test, and what looks like a mistake in the solution.
 
     Examples:
 
@@ -126,13 +126,13 @@ def run_test(
     folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random choices.")] = 0,
-    mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Mutants to grade at most.")] = 500,
+    mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Maximum number of mutants to grade.")] = 500,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
-    """Test a rubric on mutants of its reference and on samples.
+    """Test a rubric on equivalents and mutants of its reference, and on samples.
 
-    The reference and rewritings of it must lose nothing, every mutant something. Mutants that get full marks are listed with a
-    suggestion.
+    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks are listed
+    with a suggestion.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the
     rubric is broken or has no reference; 3 a check is faulty.

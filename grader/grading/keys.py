@@ -101,7 +101,9 @@ PART = KeyTable(
     {
         "id": described(_ID, "The part's id, one word."),
         "title": described(_TITLE, "The heading of the part in reports."),
-        "needs": described(toml_type(Literal["urdf", "package", "files"]), "What it is graded on; files: all of them."),
+        "needs": described(
+            toml_type(Literal["urdf", "package", "files"]), "What the part is graded on; files: all files."
+        ),
         "points": described(_POINTS, "The sum of the part's points, which is then verified."),
     },
     required=("id", "title"),
@@ -133,7 +135,7 @@ CRITERION = KeyTable(
         "check": described(_TEXT, "The check that decides it: one of the grader, or of an installed plug-in."),
         "with": described(_table({"type": "object"}), "The arguments of the check."),
         "at": described(
-            toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; else 0."
+            toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; default: 0."
         ),
         "requires": described(_NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
         "carried": described(
@@ -208,12 +210,12 @@ RUBRIC = KeyTable(
             "The criteria of the URDF if there is evidence, but no URDF: failed (the default), or manual grading.",
         ),
         "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
-        "defaults": described(_table(DEFAULTS.schema), "Values of criteria that do not give their own."),
+        "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),
         "part": described(_rows(PART), "The parts of the lab, in the order of the report."),
         "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),
         "evidence": described(_rows(EVIDENCE), "The pictures and documents that the lab asks for."),
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
-        "test": described(_table(TEST.schema), "What `grader rubric test` should not expect of the rubric."),
+        "test": described(_table(TEST.schema), "Settings for `grader rubric test`."),
     },
     required=("id", "title", "part", "criterion"),
 )

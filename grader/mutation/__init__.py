@@ -1,1 +1,1 @@
-"""Test a rubric: mutants of its reference must lose something, equivalents of it nothing, samples what they declare."""
+"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they declare."""

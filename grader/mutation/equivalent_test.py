@@ -52,7 +52,7 @@ def _lost(trial: Trial, submission: Submission) -> Iterator[tuple[str, str]]:
 
 
 def _asked(trial: Trial, submission: Submission) -> Collection[str]:
-    """Return the criteria that the robot decides; on a URDF on its own, those that need nothing else."""
+    """Return the criteria that depend on the robot; for a URDF on its own, those that need nothing else."""
     checks = {name: trial.expected[name].criterion.check for name in trial.tested}
     others = ("package", "submission") if submission.is_single else ("package",)
     return [name for name, check in checks.items() if check.subject not in others and check.name not in UNASKED]

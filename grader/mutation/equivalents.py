@@ -62,7 +62,7 @@ def _for_elements(arguments: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 # The families that a check forbids. Names in the arguments of any check are renamed nowhere, and their frames are not moved. Problems
-# that `without_problems` forbids are looked for in each rewriting, and `xacro_uses` is not asked about any.
+# that `without_problems` forbids are looked for in each rewriting, and criteria with `xacro_uses` are not graded on any.
 FORBIDDEN: Mapping[str, Callable[[Mapping[str, Any]], tuple[str, ...]]] = {
     "counts": _for_counts,
     "kinematics_match_reference": _for_kinematics,
@@ -135,7 +135,7 @@ class Equivalents:
         return Surroundings(self._named, self._may_move)
 
     def _may_move(self, link: str) -> bool:
-        """Return whether nothing speaks of the frame of a link; @root, @tip and @moved:2 name links by structure."""
+        """Return whether nothing refers to the frame of a link; @root, @tip and @moved:2 name links by structure."""
         parents = [joint for joint in self._robot.joints if joint.child == link]
         if link in self._named or len(parents) != 1:
             return False

@@ -1,4 +1,4 @@
-"""The margin of each tolerance: how far the reference is from it, and which deviations of mutants it tells apart."""
+"""The margin of each tolerance: how far the reference is from it, and which deviations of mutants it separates."""
 
 from math import atan2, degrees, hypot
 from typing import NamedTuple

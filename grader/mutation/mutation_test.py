@@ -1,4 +1,4 @@
-"""Grade the mutants of a rubric's reference: each must lose something, and each criterion be failed by some mutant."""
+"""Grade the mutants of a rubric's reference: each must lose points, and some mutant must fail each criterion."""
 
 from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase

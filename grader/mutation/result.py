@@ -46,7 +46,7 @@ class MutantResults(NamedTuple):
 
     @property
     def score(self) -> Decimal:
-        """The mutation score: the share of the mutants that lose something, in percent, without those that the rubric ignores."""
+        """The mutation score: the share of the mutants that lose points, in percent, without those that the rubric ignores."""
         count = self.caught + len(self.survivors)
         return Decimal(100 * self.caught) / count if count else Decimal(100)
 

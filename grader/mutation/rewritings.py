@@ -94,7 +94,7 @@ def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bo
 
 
 def move_frames(random: Random, tree: Element, around: Surroundings) -> bool:
-    """Move the frames of links together with what is in them, where nothing speaks of the frame."""
+    """Move the frames of links together with what is in them, where nothing refers to the frame."""
     links = [link for link in tree.iterchildren("link") if around.may_move(link.get("name", ""))]
     moved = False
     for link in some(random, links):

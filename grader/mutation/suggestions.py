@@ -88,10 +88,10 @@ def suggestion(
     tolerant = [found.id for found in near if found.id in tolerated]
     if tolerant:
         return f"{enumerated(tolerant, 3)} {'measures' if len(tolerant) == 1 else 'measure'} it, within the tolerance"
-    attempt = f"try {enumerated(others, word='or')}" if others else "look at its arguments" if near else ""
+    attempt = f"try {enumerated(others, word='or')}" if others else "check the arguments" if near else ""
     if near:
         ids = enumerated([found.id for found in near], 3)
-        return f"{ids} {'passes' if len(near) == 1 else 'pass'} all the same; {attempt}"
+        return f"{ids} {'passes' if len(near) == 1 else 'pass'} nevertheless; {attempt}"
     return f"no criterion looks at it; {attempt}" if attempt else "no criterion looks at it, and no check does"
 
 

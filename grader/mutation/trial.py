@@ -20,7 +20,7 @@ _OF_ROBOT = (".urdf", ".xacro")
 
 
 class Trial:
-    """The reference of a rubric, and what its criteria say of changed copies. Criteria that only a person decides do not count."""
+    """The reference of a rubric, and what its criteria say of changed copies. Criteria of manual checks do not count."""
 
     def __init__(self, report: Report, reference: Submission) -> None:
         self.rubric, self.reference = report.rubric, reference

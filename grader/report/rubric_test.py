@@ -134,7 +134,7 @@ def _margins(margins: Sequence[Margin]) -> Iterator[str]:
     width = max(len(margin.criterion) for margin in margins)
     yield from (
         "",
-        "How far values are off: of the reference, and of mutants the most that passes and the least that fails",
+        "Deviations: of the reference, the largest of a mutant that passes, and the smallest of one that fails",
     )
     yield f"  {'':{width}}{'tolerance':>12}{'reference':>12}{'passes':>12}{'fails':>12}"
     for margin in margins:

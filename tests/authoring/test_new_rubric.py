@@ -300,7 +300,7 @@ def test_a_reference_is_whatever_can_be_graded(kind: str, tmp_path: Path) -> Non
 
 
 def test_mutants_of_a_package_lose_something_or_are_declared(tmp_path: Path) -> None:
-    """What no check can tell is declared in the rubric, with a reason and with patterns that match."""
+    """What no check can test is declared in the rubric, with a reason and with patterns that match."""
     shutil.copytree(LAB6, tmp_path / "my_robot")
     new(tmp_path / "lab.toml", tmp_path / "my_robot")
     done = run(("rubric", "test", tmp_path / "lab.toml", "--fail-under", "100%", "--format", "json"))

@@ -176,7 +176,7 @@ UP = (0.0, 0.0, 0.3)
 
 
 def mirrored(inertia: Tensor) -> Tensor:
-    """Return an inertia with the products of the other sign."""
+    """Return an inertia with products of inertia of the opposite sign."""
     xx, xy, xz, yy, yz, zz = inertia
     return (xx, -xy, -xz, yy, -yz, zz)
 
@@ -229,7 +229,7 @@ MISTAKES = [
         PLATE,
         mirrored(turned(solid_inertia(PLATE, 2.0), TILTED)),
         {"rpy": (0.0, 0.5, 0.0)},
-        "it would fit if ixy, ixz and iyz had the other sign",
+        "it would fit if ixy, ixz and iyz had the opposite sign",
     ),
     (PLATE, solid_inertia(PLATE, 2.0), {"rpy": (0.0, 0.5, 0.0)}, "it would fit if the box were not turned"),
     (PLATE, (0.05, 0.0, 0.0, 0.0667, 0.0, 0.09), {}, "ixx is 0.05, not 0.0333, izz is 0.09, not 0.0867"),

@@ -105,7 +105,7 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
         ("number +0.05: joint slide/origin xyz.x", "no criterion looks at it; try frame_at"),
         (
             "number negated: link plate/visual/geometry/box size.x",
-            "plate-box passes all the same; look at its arguments",
+            "plate-box passes nevertheless; check the arguments",
         ),
     ],
 )
@@ -165,7 +165,7 @@ def test_an_incomplete_ignore_is_a_mistake_of_the_rubric(tmp_path: Path, ignore:
 
 
 def test_an_idle_criterion_is_named(tmp_path: Path) -> None:
-    """No mutant fails it, not even one that was not sampled; a criterion that only a person decides is not counted."""
+    """No mutant fails it, not even one that was not sampled; a criterion that always needs manual grading is not counted."""
     anywhere = EXACT.replace('"frame"', '"anywhere"').replace("0.002", "1000").replace("angle = 1", "angle = 181")
     rubric = write_rubric(tmp_path, TOP + EXACT + anywhere + PENDING, SMALL)
     assert data(rubric, "--mutants", 0)["idle"] == ["anywhere"]
