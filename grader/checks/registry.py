@@ -73,6 +73,9 @@ CHECKS = (
 
 _PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
+# The arguments of checks that name links, or list their names.
+LINK_ARGUMENTS = ("link", "leader", "relative_to", "parent", "holds", "on", "of", "base", "links", "wheels")
+
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
 SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 

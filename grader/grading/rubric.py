@@ -16,7 +16,7 @@ from grader.grading.reference import Reference
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
 from grader.names import did_you_mean
-from grader.robot.selectors import has_selector
+from grader.robot.selectors import is_selector, texts_in
 from grader.text import printable_path, shell_quoted
 
 _URDF = "robot.urdf"
@@ -235,5 +235,5 @@ def _criterion(
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
     own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
-    own["has_selectors"] = has_selector((arguments, carried[2] if carried is not None else ()))
+    own["has_selectors"] = any(map(is_selector, texts_in((arguments, carried[2] if carried is not None else ()))))
     return Criterion(**own, carried=Carried(*carried) if carried is not None else None)

@@ -5,12 +5,13 @@ from decimal import Decimal
 from functools import cache
 from typing import Any
 
-from grader.checks.registry import Check, check_names, find_check
+from grader.checks.registry import LINK_ARGUMENTS, Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST, KeyTable
 from grader.grading.toml_lines import Path
 from grader.names import did_you_mean
+from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
@@ -100,6 +101,10 @@ class Validation:
         """Complain of a pose for a check of something else, and of a comparison with a reference that the rubric lacks."""
         if "at" in row and "robot" not in check.examined:
             self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
+        links = [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]
+        texts = (*row.get("at", ()), *texts_in(links))
+        for name in (text for text in texts if text.startswith("@") and not is_selector(text)):
+            self._complain(where, f"no link is named by {name!r}: write @root, @tip, or @moved:1, @moved:2 and so on")
         if "reference" in check.examined and not self.rubric.get("reference"):
             message = f"the check {check.name} compares with the reference solution: the rubric needs the key reference"
             self._complain((*where, "check"), message)

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from grader.errors import MissingElement, NotDecided
@@ -26,16 +26,16 @@ def is_selector(text: str) -> bool:
     return _SELECTOR.fullmatch(text) is not None
 
 
-def has_selector(value: Any) -> bool:
-    """Return whether a text, or one in a list or table, names a link by its place in the tree."""
+def texts_in(value: Any) -> Iterator[str]:
+    """Yield a text, or the texts in a list or in the values of a table."""
     match value:
         case str():
-            return is_selector(value)
+            yield value
         case list() | tuple():
-            return any(map(has_selector, value))
+            for item in value:
+                yield from texts_in(item)
         case Mapping():
-            return any(map(has_selector, value.values()))
-    return False
+            yield from texts_in(list(value.values()))
 
 
 def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:

@@ -202,6 +202,17 @@ def test_mistakes_are_named_with_their_line(tmp_path: Path, old: str, new: str, 
     assert (code, f"arm.toml:{line}" in text) == (2, True), text
 
 
+@pytest.mark.parametrize(
+    "more",
+    ['with = { link = "@moved:0", xyz = [0, 0, 0] }\n', 'at = { "@moved:0" = 1 }\nwith = { xyz = [0, 0, 0] }\n'],
+)
+def test_a_misspelt_selector_is_named_with_its_line(tmp_path: Path, more: str) -> None:
+    """The message lists what there is."""
+    code, text = graded(tmp_path, more)
+    message = "arm.toml:20: no link is named by '@moved:0': write @root, @tip, or @moved:1, @moved:2 and so on"
+    assert (code, message in text) == (2, True), text
+
+
 def test_a_criterion_overrides_the_defaults(tmp_path: Path) -> None:
     """What a criterion gives itself counts, and the other defaults stay."""
     more = 'points = 7\nwith = { link = "fore", xyz = [0, 0, 0.3] }\n'

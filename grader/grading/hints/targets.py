@@ -1,13 +1,13 @@
 """The links that a criterion depends on: those that its arguments name, and those on the chains between them."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.rubric import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
-from grader.robot.selectors import selected_link
+from grader.robot.selectors import selected_link, texts_in
 
 _MAX_LINKS, _MAX_CHAIN = 40, 12
 
@@ -25,7 +25,7 @@ def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) ->
     moved: dict[str, None] = {}
     posed = Configuration(robot)
     for criterion in criteria:
-        given = (selected(posed, name) for name in texts(criterion.arguments))
+        given = (selected(posed, name) for name in texts_in(criterion.arguments))
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
         shown |= dict.fromkeys(named)
         moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
@@ -39,17 +39,6 @@ def selected(posed: Configuration, name: str) -> str:
         return selected_link(posed.robot, posed.parent_joints, name)
     except (MissingElement, NotDecided):
         return name
-
-
-def texts(value: Any) -> Iterator[str]:
-    """Yield the texts in the arguments of a check."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping):
-        yield from texts(list(value.values()))
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from texts(item)
 
 
 def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
