@@ -129,7 +129,7 @@ def run_test(
     mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Maximum number of mutants to grade.")] = 500,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
-    """Test a rubric on equivalents and mutants of its reference, and on samples.
+    """Test a rubric on variants of its reference and on samples.
 
     The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks are listed
     with a suggestion.
