@@ -21,7 +21,7 @@ from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
 from grader.usecases import Warn
 from grader.usecases.rubrics import summary
-from grader.usecases.writing import save_bytes
+from grader.usecases.writing import missing_folder, save_bytes
 
 _URDF = "robot.urdf"
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
@@ -45,6 +45,8 @@ def _check_target(file: Path, *, force: bool) -> None:
         raise GraderError(f"a rubric is a .toml file: give a name that ends in .toml, not {shown}")
     if os.path.lexists(file) and not force:
         raise GraderError(f"{shown} exists already: give another name, or --force to replace it")
+    if not file.parent.is_dir():
+        raise missing_folder(file)
 
 
 def _solution(reference: str, warn: Warn) -> Solution:

@@ -362,7 +362,7 @@ def test_other_wrong_usage_is_refused(tmp_path: Path) -> None:
     (tmp_path / "notes" / "a.txt").write_text("no robot")
     assert_refused(run(("rubric", "new", file, "--from", tmp_path / "notes")), "has no URDF")
     assert_refused(run(("rubric", "new", tmp_path / "lab.txt", "--from", ARM)), "ends in .toml")
-    assert_refused(run(("rubric", "new", tmp_path / "none" / "lab.toml", "--from", ARM)), "none")
+    assert_refused(run(("rubric", "new", tmp_path / "none" / "lab.toml", "--from", ARM)), "there is no folder ")
 
 
 def assert_refused(done: Done, reason: str) -> None:
