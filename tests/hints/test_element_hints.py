@@ -96,6 +96,21 @@ def test_several_values_are_corrected_together(tmp_path: Path) -> None:
     assert [(found["old"], found["new"]) for found in hint["edits"]] == [("5", "30"), ("320", "640")]
 
 
+def test_no_second_sensor_is_added(tmp_path: Path) -> None:
+    """A sensor at another link, with another rate, is corrected where it is."""
+    robot = ROBOT.replace('reference="camera_link"', 'reference="base"').replace("<rate>30<", "<rate>10<")
+    (hint,) = hints_of(tmp_path, robot)
+    assert [found["new"] for found in hint["edits"]] == ['reference="camera_link"', "30"]
+
+
+def test_a_sensor_outside_of_its_element_is_put_into_it(tmp_path: Path) -> None:
+    """A <sensor> directly in <robot> is moved, not copied."""
+    (hint,) = hints_of(tmp_path, ROBOT.replace(f'<gazebo reference="camera_link">\n{SENSOR}\n</gazebo>', SENSOR))
+    (edit,) = hint["edits"]
+    assert edit["old"].startswith("<sensor")
+    assert edit["new"] == f'<gazebo reference="camera_link">{edit["old"]}</gazebo>'
+
+
 def test_xacro_is_edited_where_it_is_written(tmp_path: Path) -> None:
     """The value of an attribute is changed in the property that it comes from; a text that is evaluated is left alone."""
     robot = XACRO.replace('type="camera"', 'type="${kind}"').replace(

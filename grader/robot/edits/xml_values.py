@@ -19,6 +19,8 @@ from grader.xml.element_values import (
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import WantedElement, readable
 
+_IDENTIFYING = ("name", "type", "filename")  # attributes by which an element is recognised
+_OF_ROS = ("link", "joint", "material")
 _MAX_TAGS = 6  # elements whose attributes are corrected
 
 
@@ -41,6 +43,10 @@ def element_proposals(draft: Draft, reference: Draft, wanted: WantedElement) -> 
         edits = tuple(edit for key in wrong for edit in _written(draft, element, key, wanted.attributes[key]))
         what = f"the attribute {wrong[0]!r}" if len(wrong) == 1 else "the attributes"
         yield Proposal(edits, what, f"correct {what}{{}}", f"<{wanted.tag}>")
+        for inner in elements_at(element, steps_of(wanted.path))[:1]:
+            values = tuple(edit for key in wanted.wrong(inner) for edit in _corrected(draft, inner, key, wanted))
+            if values:
+                yield Proposal((*edits, *values), f"{what} and values", f"correct {what} and values{{}}", wanted.inner)
     if not found:
         yield from _missing(draft, reference, fitting, wanted)
 
@@ -94,11 +100,19 @@ def _added(draft: Draft, element: Element, key: str, value: Scalar) -> Edits:
 
 
 def _missing(draft: Draft, reference: Draft, fitting: Sequence[Element], wanted: WantedElement) -> Iterator[Proposal]:
-    """Add what the reference has: the whole element, or what is at the path in it."""
+    """Add what the reference has: the whole element, or what is at the path in it, unless it is in another place of the file."""
     steps = steps_of(wanted.path)
+    for child in draft.root if steps and not fitting else ():
+        if name_of(child) == steps[0]:
+            edits = draft.replace(child, f"{wanted.element}{draft.text(child)}</{wanted.tag}>")
+            yield Proposal(
+                edits, f"<{steps[0]}> is outside of <{wanted.tag}>", f"put <{steps[0]}> into {wanted.element}"
+            )
     for other in reference.root:
         if name_of(other) == wanted.tag and wanted.fits(other) and elements_at(other, steps):
             inner = elements_at(other, steps[:1])[0]
+            if _is_elsewhere(draft, inner):
+                return
             edits = (
                 draft.insert(fitting[0], reference.text(inner))
                 if fitting and steps
@@ -106,3 +120,11 @@ def _missing(draft: Draft, reference: Draft, fitting: Sequence[Element], wanted:
             )
             yield Proposal(edits, f"{wanted.inner} is missing", f"add {wanted.inner}")
             return
+
+
+def _is_elsewhere(draft: Draft, inner: Element) -> bool:
+    """Return whether an element of a simulator, or one of its name or type, is anywhere in the file: a copy would be a second one."""
+    keys = [key for key in _IDENTIFYING if attribute(inner, key) is not None]
+    own = (element for child in draft.root if name_of(child) not in _OF_ROS for element in child.iter())
+    others = (element for element in own if name_of(element) == name_of(inner))
+    return any(attribute(element, key) == attribute(inner, key) for element in others for key in keys)
