@@ -27,6 +27,8 @@ def with_hints(
     if is_fixed and level != "edit":
         cause = f"the rubric {report.rubric.id} allows" if level == allowed else "--hints asks for"
         raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
+    if wanted is not None and level != wanted:
+        warn(f"--hints {wanted}: the rubric {report.rubric.id} allows hints up to the level {allowed}")
     if level == "none" or not (report.has_failures or is_fixed):
         return report, None
     try:

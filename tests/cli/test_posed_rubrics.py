@@ -256,3 +256,11 @@ def test_joints_of_one_name_cannot_be_posed(tmp_path: Path) -> None:
     assert status == 1
     assert "2 joints are called 'joint_1'; each needs a name of its own" in text
     assert "arm.urdf:9:" in text
+
+
+def test_hints_above_the_level_of_the_rubric_are_refused_aloud(tmp_path: Path) -> None:
+    """Standard error says why they are no more detailed than usual."""
+    (tmp_path / "arm.urdf").write_text(ARM, encoding="utf-8")
+    (tmp_path / "arm.toml").write_text(RUBRIC + "with = { xyz = [0, 0, 0.4] }\n", encoding="utf-8")
+    done = run(("grade", tmp_path / "arm.urdf", "--rubric", tmp_path / "arm.toml", "--hints", "edit"))
+    assert done.stderr.decode() == "grader: --hints edit: the rubric arm allows hints up to the level cause\n"
