@@ -115,7 +115,7 @@ def read_cmake(tree: Tree) -> CMake:
 
 
 def _commands(text: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield each command with its arguments; parentheses in them are left out."""
+    """Yield each command with its arguments; parentheses in them are ignored."""
     name, arguments, depth = "", list[str](), 0
     for token in _TOKEN.finditer(text):
         _, in_quotes, bracket, word = token.groups()
