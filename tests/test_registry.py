@@ -30,6 +30,8 @@ SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 SCALAR = str | float | bool
 CONTENT = SCALAR | list[SCALAR]
 
+UNIT = re.compile(r"metre|degree|radian|kilogram|newton|N m|m/s|percent|ratio|units?\b|from 0")
+
 every_check = pytest.mark.parametrize("check", own_checks(), ids=NAMES)
 
 
@@ -62,11 +64,12 @@ def test_the_signature_is_a_schema(check: Check) -> None:
 
 @every_check
 def test_every_argument_is_documented(check: Check) -> None:
-    """`Args:` names exactly the arguments of the signature, in its order, with a sentence for each."""
+    """`Args:` names exactly the arguments of the signature, in its order, each with a sentence, and numbers with their unit."""
     meanings = check.documentation.arguments
     assert list(meanings) == list(check.parameters)
-    for meaning in meanings.values():
+    for name, meaning in meanings.items():
         assert re.fullmatch(r"[A-Z].*\.", meaning), meaning
+        assert check.parameters[name].type.schema.get("type") != "number" or UNIT.search(meaning), meaning
     assert "Args" not in " ".join(check.documentation.paragraphs)
 
 
