@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.gradebook.result import GradingResult
-from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.grade import grade
 from grader.submission.opening import read_submission
+from tests.classroom.lab6_class import read_class
 from tests.samples import LAB6, ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts

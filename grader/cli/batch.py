@@ -6,7 +6,6 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import (
-    DEFAULT_RUBRIC,
     DueOption,
     FormatOption,
     GradebookOption,
@@ -18,6 +17,7 @@ from grader.cli.output import screen, warn
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
+from grader.usecases import DEFAULT_RUBRIC
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."

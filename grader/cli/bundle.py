@@ -5,7 +5,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, RubricOption
+from grader.cli.options import RubricOption
+from grader.usecases import DEFAULT_RUBRIC
 
 
 def bundle(

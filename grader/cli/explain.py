@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, RubricOption, explainable
+from grader.cli.options import RubricOption, explainable
+from grader.usecases import DEFAULT_RUBRIC
 
 _NAME = "For example URDF051, frame_at or lidar-frame."
 

@@ -5,12 +5,13 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
+from grader.cli.options import ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
 from grader.cli.output import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.levels import Level
 from grader.report.formats import Format, render
+from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.github import is_github_job, publish_refusal, publish_report
 from grader.usecases.grade import GradeRequest, grade_and_save, read_saves
 from grader.usecases.writing import write_stdout

@@ -11,7 +11,6 @@ from grader.report.formats import Format, OutputFormat
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
 
-DEFAULT_RUBRIC = "lab6"
 SHELLS = ["bash", "zsh", "fish"]
 
 

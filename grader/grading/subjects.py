@@ -67,7 +67,9 @@ class Subjects:
         if key not in self._posed:
             found = [(_joint(robot, name), value) for name, value in key]
             positions = {joint.name: radians(value) if joint.type in _TURNING else value for joint, value in found}
-            self._posed[key] = Configuration(robot.robot, positions)
+            for name in positions:
+                _check_name(robot, name)
+            self._posed[key] = Configuration(robot.robot, positions, holding=robot.parent_joints)
         return self._posed[key]
 
     def _missing(self, name: Subject) -> object:
@@ -113,3 +115,11 @@ def named_links(value: Any, robot: Configuration) -> Any:
         case Mapping():
             return {key: named_links(item, robot) for key, item in value.items()}
     return value
+
+
+def _check_name(robot: Configuration, name: str) -> None:
+    """Raise MissingElement if several joints with this name turn or slide: a position has only the name of its joint."""
+    found = [joint for joint in robot.robot.joints if joint.name == name and joint.type in (*_TURNING, *_SLIDING)]
+    if len(found) > 1:
+        message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"
+        raise MissingElement("own name", name, message=message, location=found[1].location)

@@ -216,6 +216,8 @@ def _shown(value: Any) -> str:
         case list():
             text = ", ".join(map(_shown, value[:6]))
             return f"[{text}{', ...' if len(value) > 6 else ''}]"
+        case dict():
+            text = f"{{ {', '.join(f'{key} = {_shown(it)}' for key, it in value.items())} }}" if value else "{}"
         case bool():
             return str(value).lower()
         case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits

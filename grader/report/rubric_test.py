@@ -46,7 +46,11 @@ def _counts(test: RubricTest) -> Iterator[str]:
     report, equivalents, samples = test.reference, test.equivalents, test.samples
     score, most = format_points(report.score), counted_points(report.max_score - report.pending)
     yield f"Reference    {score} of {most}"
-    yield f"Equivalents  {sum(equivalents.tried.values())} graded, {_some(len(equivalents.losses), 'loses', 'lose')} points"
+    if equivalents.tried:
+        losing = _some(len(equivalents.losses), "loses", "lose")
+        yield f"Equivalents  {sum(equivalents.tried.values())} graded, {losing} points"
+    else:
+        yield f"Equivalents  none graded: {next(iter(equivalents.unused.values()), '')}"
     if samples is not None:
         skipped = f", {samples.skipped} of other rubrics skipped" if samples.skipped else ""
         differ = _some(len(samples.different), "differs", "differ")

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from grader.report.screen import Screen
 
+DEFAULT_RUBRIC = "lab6"  # of the command line
 Warn = Callable[[str], None]
 Progress = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path
 

@@ -13,7 +13,7 @@ from grader.errors import GraderError, InputError
 from grader.grading.levels import Level
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
-from grader.usecases import Progress, Warn
+from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
-_DEFAULT_RUBRIC = "lab6"  # of the command line
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 Saves = tuple[tuple[Format, Path], ...]
 
@@ -54,7 +53,7 @@ class GradeRequest:
     @property
     def choice(self) -> str:
         """The options that choose the rubric and its parts, as a shell reads them."""
-        words = [("--rubric", self.rubric)] if self.rubric != _DEFAULT_RUBRIC else []
+        words = [("--rubric", self.rubric)] if self.rubric != DEFAULT_RUBRIC else []
         words += [("--part", part) for part in self.parts]
         return "".join(f" {option} {shell_quoted(value)}" for option, value in words)
 

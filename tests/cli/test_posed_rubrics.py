@@ -165,7 +165,7 @@ def test_an_ambiguous_selector_of_a_reference_is_refused(tmp_path: Path) -> None
         (
             'check = "frame_at"',
             'check = "frame_at"\nat = { joint_1 = "up" }',
-            "24: at must be a table of numbers, not {'joint_1': 'up'}",
+            "24: at must be a table of numbers, not { joint_1 = 'up' }",
         ),
         (
             'check = "frame_at"',
@@ -204,3 +204,23 @@ def test_explain_shows_the_pose(tmp_path: Path) -> None:
         code,
         "The robot is posed: joint_1 = 90, slide = 0.1 (degrees or metres); its other joints are at 0." in text,
     ) == (0, True)
+
+
+SELECTED = 'at = { "@moved:1" = 90 }\nwith = { xyz = [0.4, 0.0, 0.0] }\n'
+
+
+def test_a_fixed_joint_with_the_name_of_a_posed_joint_does_not_matter(tmp_path: Path) -> None:
+    """A joint that is pasted and not renamed is no fault of the grader: the joint that moves the link is posed."""
+    robot = ARM.replace('name="hand_joint"', 'name="joint_1"')
+    status, text = graded(tmp_path, SELECTED, robot, rubric=RUBRIC.replace('reference = "arm.urdf"', ""))
+    assert status == 0, text
+    assert "2/2" in text
+
+
+def test_joints_of_one_name_cannot_be_posed(tmp_path: Path) -> None:
+    """If several joints that move have the name, the criterion fails and says so, at the second of them."""
+    robot = ARM.replace('name="slide"', 'name="joint_1"').replace('joint="slide"', 'joint="joint_1"')
+    status, text = graded(tmp_path, SELECTED, robot, rubric=RUBRIC.replace('reference = "arm.urdf"', ""))
+    assert status == 1
+    assert "2 joints are called 'joint_1'; each needs a name of its own" in text
+    assert "arm.urdf:9:" in text

@@ -204,6 +204,14 @@ def test_a_reference_that_loses_points_fails(tmp_path: Path) -> None:
     assert data(tmp_path / "arm.toml", "--mutants", 20)["reference"]["lost"] == ["plate-box"]
 
 
+def test_a_reference_that_ros_2_does_not_load_has_no_equivalents(tmp_path: Path) -> None:
+    """The reason is said instead of a number; the reference has lost points by then."""
+    done = command(write_rubric(tmp_path, TOP, SMALL.replace("</robot>", '<link name="c"/></robot>')), "--mutants", 5)
+    assert done.returncode == 1
+    line = "Equivalents none graded: ROS 2 does not load the reference without problems"
+    assert line in " ".join(done.stdout.decode().split())
+
+
 def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A check that looks at the numbers of a file, not at the robot, is found out."""
 

@@ -18,13 +18,13 @@ from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from tests.grading.broken_urdfs import BROKEN, REFERENCE, Broken
 from tests.robot.problem_samples import SAMPLES as PROBLEMS
-from tests.samples import LAB6, SAMPLES, opened
+from tests.samples import LAB6, LAB6_SAMPLES, SAMPLES, opened
 
 # Samples whose text is what is wrong; an empty file has no hint.
 REFERENCE_DRAFT = Draft.of(read_urdf(REFERENCE.encode()))
 REJECTED = [
     name
-    for name, sample in SAMPLES.items()
+    for name, sample in LAB6_SAMPLES.items()
     if sample.expected.verdict in ("rejected", "degraded") and "xacro" not in name and name != "empty-urdf"
 ]
 # Problems whose samples stay as they are, with the reason.

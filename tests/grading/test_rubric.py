@@ -297,8 +297,8 @@ def test_a_rubric_has_parts_and_criteria(tmp_path: Path) -> None:
     assert complaints(tmp_path, 'id = "r"\ntitle = "R"\n') == [f"1: {missing[0]}", f"1: {missing[1]}"]
     single = 'id = "r"\ntitle = "R"\n[part]\nid = "a"\n[criterion]\nid = "c"\n'
     assert complaints(tmp_path, single) == [
-        "3: part must be one or more [[part]] tables, not {'id': 'a'}",
-        "5: criterion must be one or more [[criterion]] tables, not {'id': 'c'}",
+        "3: part must be one or more [[part]] tables, not { id = 'a' }",
+        "5: criterion must be one or more [[criterion]] tables, not { id = 'c' }",
     ]
     listed = 'id = "r"\ntitle = "R"\npart = [1]\ncriterion = []\n'
     assert complaints(tmp_path, listed) == [
@@ -348,6 +348,7 @@ COLOUR = 'link = "a", colour = [0, 1, 0], tolerance = 0'
         ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), "links of bottoms_at_height must be a list of strings, not 'a'"),
         ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), "links of bottoms_at_height must be a list of strings, not []"),
         ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of strings, not ['j']"),
+        ("joints_named", 'parent = "a", joints = { j = true, k = [nan] }', "joints of joints_named must be a table of strings, not { j = true, k = [NaN] }"),
     ],
 )  # fmt: skip
 def test_wrong_arguments_are_reported(tmp_path: Path, check: str, given: str, complaint: str) -> None:
@@ -774,7 +775,7 @@ def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:
     tables = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
     assert complaints(tmp_path, names + tables) == [
         "13: parent of joints_named must be a string, not 3",
-        "15: joints of joints_named must be a table of strings, not {'j': 'lidar', 'k': 4}",
+        "15: joints of joints_named must be a table of strings, not { j = 'lidar', k = 4 }",
     ]
     dotted = 'with.parent = 3\nwith.joints.j = "lidar"\nwith.jionts = 3\n'
     assert complaints(tmp_path, names + dotted) == [

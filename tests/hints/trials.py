@@ -16,7 +16,7 @@ from grader.submission.editing import content, with_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from tests.samples import LAB6, SAMPLES, reference
+from tests.samples import LAB6, LAB6_SAMPLES, SAMPLES, reference
 
 
 class Hints(NamedTuple):
@@ -129,7 +129,7 @@ def _alone(submission: Submission, urdf: Read) -> Submission:
 def _bases() -> Iterator[Base]:
     """Yield the reference and every different text of the equivalents, the files that xacro includes as well."""
     texts: Counter[bytes] = Counter()
-    for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in SAMPLES if name.startswith("equivalent-"))]:
+    for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in LAB6_SAMPLES if name.startswith("equivalent-"))]:
         submission = sample.open()
         urdf = submission.urdf
         assert isinstance(urdf, Read)

@@ -1,9 +1,14 @@
 """Which changes leave a robot the same, and which do not."""
 
+import re
+
 import pytest
 
+from grader.mutation.mutants import mutants
 from grader.mutation.sameness import is_same_robot
 from grader.submission.urdf import read_as_ros
+from tests.hints.behaviour import behaviour, differences
+from tests.hints.trials import BASES
 from tests.mutation.robots import ARM
 
 REFERENCE = read_as_ros(ARM.encode(), "birch.urdf")
@@ -81,3 +86,17 @@ def test_what_changes_the_robot_does_not(old: str, new: str) -> None:
 def test_a_name_that_something_refers_to_counts() -> None:
     """A rubric, or another file of the package."""
     assert not is_same('joint name="tool_joint"', 'joint name="other"', "tool_joint")
+
+
+def test_no_mutant_of_lab6_that_counts_as_the_same_robot_behaves_otherwise() -> None:
+    """Shapes, colours, axes and frames, measured in the frame of the base, are where they were."""
+    base = BASES["reference"]
+    urdf, expected = base.submission.urdf, behaviour(base.submission)
+    same = 0
+    drawn_twice = re.compile("element duplicated: link [a-z_]+/visual")
+    for mutant in mutants(base.text):
+        changed = base.changed(mutant.applied(base.text))
+        if is_same_robot(urdf, changed.urdf, ()):
+            same += 1
+            assert drawn_twice.fullmatch(mutant.id) or not differences(expected, behaviour(changed)), mutant.id
+    assert same > 100

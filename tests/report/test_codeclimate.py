@@ -9,7 +9,7 @@ from grader.report.codeclimate import render_codeclimate
 from grader.report.findings import findings
 from grader.report.locations import Base
 from tests.report.readers import read_by_schema
-from tests.samples import SAMPLES
+from tests.samples import REPORTED, SAMPLES
 
 READ = read_by_schema("codeclimate")
 SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
@@ -22,7 +22,7 @@ def issues(report: Report, base: Base = Base("lab/")) -> Any:  # noqa: B008  imm
     return found
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", REPORTED)
 def test_every_finding_is_an_issue(name: str) -> None:
     """Its rule, severity, text and line in the repository are those of the finding."""
     report = SAMPLES[name].grade()

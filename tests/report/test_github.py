@@ -17,7 +17,7 @@ from grader.source import Location
 from grader.text import printable
 from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command
-from tests.samples import ROOT, SAMPLES
+from tests.samples import REPORTED, ROOT, SAMPLES
 
 MAX_ANNOTATIONS = 10  # annotations of each type that GitHub shows for a step
 NAMES = {"error": "error", "warning": "warning", "note": "notice"}
@@ -69,7 +69,7 @@ def test_each_finding_is_on_its_line() -> None:
     assert "25 passed, 7 failed" in summary.data
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", REPORTED)
 def test_the_number_of_annotations_is_limited(name: str) -> None:
     """Ten of each type at most; the last one counts the rest and its points, and names all criteria that lost some."""
     report = SAMPLES[name].grade()

@@ -63,7 +63,7 @@ def read_class(
     roster: Roster | None = None,
     layout: str = "auto",
     assignment: str = "",
-    rubric_id: str = "lab6",
+    rubric_id: str = "",
     lab_folders: tuple[str, ...] = (),
 ) -> Intake:
     """Return the submissions in a class folder or zip; raises InputError if there are none.
@@ -77,7 +77,7 @@ def read_class(
     listing, name = _listing(path), path.name
     with suppress(OSError):
         name = path.resolve().name
-    lab_folders = lab_folders or (rubric_id,)
+    lab_folders = lab_folders or tuple(filter(None, (rubric_id,)))
     folder = ClassFolder(
         listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment, lab_folders=lab_folders
     )

@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.matching import canvas_name
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.classroom.lab6_class import read_class
 
 FILES = (
     "doejane_LATE_123_9001_lab6.zip",

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.submission.labs import LabFolders
 from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.classroom.lab6_class import read_class
 
 TEAM = (
     "red/Lab6/Ash/ws/src/my_robot/package.xml",

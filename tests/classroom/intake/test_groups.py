@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.classroom.lab6_class import read_class
 
 ANN = Student("100", "Ann Ash", login="aash")
 BEA = Student("200", "Bea Birch", login="bbirch")

@@ -12,11 +12,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.intake.layouts.layout import MAX_LINES
-from grader.classroom.intake.reading import LAYOUTS, read_class
+from grader.classroom.intake.reading import LAYOUTS
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.classroom.lab6_class import read_class
 from tests.processor_time import processor_time
 
 LARGE = 30_000

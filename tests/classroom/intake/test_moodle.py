@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.classroom.lab6_class import read_class
 
 FOLDER = "assignsubmission_file"
 

@@ -22,7 +22,7 @@ from tests.classroom.class_runs import (
     verdicts,
 )
 from tests.command_line import GRADER
-from tests.samples import ROOT, SAMPLES
+from tests.samples import LAB6_SAMPLES, ROOT
 
 JSON = ("--report-format", "json")
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
@@ -53,7 +53,7 @@ def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
 def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a class whose submissions are the samples."""
     folder = tmp_path_factory.mktemp("samples") / "class"
-    for name, sample in SAMPLES.items():
+    for name, sample in LAB6_SAMPLES.items():
         graded = ROOT / sample.path
         shutil.copytree(graded if graded.is_dir() else graded.parent, folder / name)
     return folder
@@ -116,7 +116,7 @@ def is_undecided(report: bytes | str) -> bool:
 def test_the_command_grade_gives_the_same_in_its_own_process(samples: Path, tmp_path: Path) -> None:
     """A few of the samples give the same through the whole command line."""
     reports = batch(samples, tmp_path / "out", "--layout", "folders")
-    for name in list(SAMPLES)[::20]:
+    for name in list(LAB6_SAMPLES)[::20]:
         assert grader("grade", samples / name, "--format", "json").stdout.encode() == reports[name], name
 
 

@@ -1,0 +1,78 @@
+"""The labs that come with the grader are data: the code knows none of them, and each is complete."""
+
+import ast
+from collections.abc import Iterator
+from decimal import Decimal
+
+import pytest
+
+from grader.grading.rubric import Rubric, shipped_rubrics
+from grader.usecases import DEFAULT_RUBRIC
+from tests.command_line import run
+from tests.samples import ROOT, RUBRICS, SAMPLES
+from tests.test_architecture import MODULES
+
+every_rubric = pytest.mark.parametrize("rubric", RUBRICS.values(), ids=RUBRICS)
+# Names of ROS 2 and of REP 105, which no lab made up.
+STANDARD = {"/robot_description", "robot_state_publisher", "rviz2", "ament_python", "base_link", "base_footprint"}
+
+
+def names(rubric: Rubric) -> Iterator[str]:
+    """Yield the names of a lab: those of the rubric, of its criteria, and of what the robot of the reference consists of."""
+    assert rubric.solution is not None
+    robot = rubric.solution.robot.robot
+    yield from (rubric.id, rubric.package, rubric.urdf, *rubric.folders)
+    yield from (criterion.id for criterion in rubric.criteria)
+    yield from (link.name for link in robot.links)
+    yield from (joint.name for joint in robot.joints)
+
+
+def constants(tree: ast.AST) -> Iterator[str]:
+    """Yield the strings of a module, without docstrings."""
+    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
+            yield node.value
+
+
+def test_the_code_knows_no_lab() -> None:
+    """No module has the name of a lab, of its criteria, links or joints as a value; the one exception is the default of --rubric.
+
+    Names of one plain word, such as `lidar`, are words of the field, too.
+    """
+    made_up = {name for rubric in RUBRICS.values() for name in names(rubric) if name and not name.isalpha()} - STANDARD
+    assert {"lab6", "joint_4", "camera_optical_frame", "arm.urdf", "left-wheel-forward"} <= made_up
+    found = [
+        (module, text)
+        for module, path in MODULES.items()
+        for text in constants(ast.parse(path.read_text(encoding="utf-8")))
+        if text in made_up
+    ]
+    assert found == [("grader.usecases", DEFAULT_RUBRIC)]
+
+
+@every_rubric
+def test_a_lab_has_samples_and_a_page(rubric: Rubric) -> None:
+    """It has eight correct robots and twenty-five mistakes at least, and a page, which names parts and links, in the README's list."""
+    own = [name for name, sample in SAMPLES.items() if sample.rubric is rubric]
+    correct = [name for name in own if name.startswith(("equivalent-", "reference"))]
+    assert len(correct) >= 8
+    assert len(own) - len(correct) >= 25
+    page = (ROOT / f"docs/{rubric.id}.md").read_text(encoding="utf-8")
+    assert rubric.solution is not None
+    needed = [*(part.id for part in rubric.parts), *(link.name for link in rubric.solution.robot.robot.links)]
+    assert [name for name in needed if f"`{name}`" not in page] == []
+    assert f"docs/{rubric.id}.md" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", [name for name in SAMPLES if name.startswith(("arm-", "sensors-"))])
+def test_a_mistake_costs_what_it_is_worth(name: str) -> None:
+    """One mistake costs at most 15 % of all points, although it moves, turns or weighs what other criteria measure."""
+    report = SAMPLES[name].grade()
+    assert 0 < report.max_score - report.score <= report.max_score * Decimal("0.15")
+
+
+def test_the_rubrics_are_listed() -> None:
+    """`grader rubric list` names all three."""
+    listed = run(("rubric", "list")).stdout.decode()
+    assert [line.split()[0] for line in listed.splitlines()] == [*shipped_rubrics()] == ["arm", "lab6", "sensors"]
