@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from grader.authoring.fact import Fact
+from grader.package.launch.model import Launch, StartedNode
 from grader.package.package import Package
 from grader.package.rviz import RvizFile
 from grader.text import enumerated
@@ -56,9 +57,7 @@ def _launch_facts(package: Package, path: str, opened: dict[str, str]) -> Iterat
     name, launch = posixpath.basename(path), package.launch(path)
     yield _fact(name, "found", f"There is a launch file {name}", "launch_found", name=name)
     yield _installed("launch", path)
-    nodes = [node for node in launch.nodes if node.when]
-    pairs = dict.fromkeys((node.package, node.executable) for node in nodes)
-    names = [executable if owner == executable else f"{owner}/{executable}" for owner, executable in pairs]
+    names = _started(launch)
     if names:
         yield _fact(name, "nodes", f"{name} starts {enumerated(names)}", "launch_starts", name=name, nodes=names)
     if launch.named("urdf", "rviz", "include"):
@@ -67,6 +66,17 @@ def _launch_facts(package: Package, path: str, opened: dict[str, str]) -> Iterat
     rviz = package.rviz_opened(launch)
     if rviz is not None:
         opened.setdefault(rviz, name)
+
+
+def _started(launch: Launch) -> list[str]:
+    """Return the nodes that start; one that a condition replaces is an alternative, as joint_state_publisher for its GUI."""
+    names = {when: list(dict.fromkeys(_node(it) for it in launch.nodes if it.when is when)) for when in (True, False)}
+    alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
+    return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
+
+
+def _node(node: StartedNode) -> str:
+    return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"
 
 
 def _rviz_facts(package: Package, path: str, launch: str) -> Iterator[Fact]:
