@@ -1,5 +1,8 @@
-"""Loaded only by the fork server: keep it silent when a worker starts while the command ends."""
+"""Loaded only by the fork server: workers start with all checks, and silently if the command ends."""
 
 import sys
 
+from grader.checks.registry import own_checks
+
+own_checks()
 sys.excepthook = lambda *_: None  # the parent process reports what goes wrong in a worker
