@@ -7,7 +7,7 @@ from typing import Any
 from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
-from grader.grading.report import Exhibits, GradedPackage, GradedSubmission, Quote, Report, Result
+from grader.grading.report import Exhibits, GradedPackage, GradedSubmission, Originals, Report, Result
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
 from grader.source import Location
@@ -53,14 +53,14 @@ def to_record(report: Report, template: Template | None = None) -> str:
     return _ENCODER.encode(data)
 
 
-def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template: Template | None = None) -> Report:
+def from_record(text: str, rubric: Rubric, originals: Originals | None = None, template: Template | None = None) -> Report:
     """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
     evidence = {proof.id: proof for proof in rubric.evidence}
     uncertain = data.get("perhaps") or [()] * len(data["evidence"])  # records of earlier versions have none
     return Report(
-        _submission(data, quote),
+        _submission(data, originals),
         rubric,
         tuple(data["parts"]),
         tuple(_read_result(rubric, same, entry) for entry in data["results"]),
@@ -88,7 +88,7 @@ def has_evidence_only(text: str) -> bool:
     return json.loads(text)["submission"][-1] is True  # records of earlier versions end with a text
 
 
-def _submission(data: Any, quote: Quote | None = None) -> GradedSubmission:
+def _submission(data: Any, originals: Originals | None = None) -> GradedSubmission:
     identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, *rest = data["submission"]
     package = GradedPackage(*package) if package is not None else None
     others = tuple(OtherCandidate(*file) for file in others)
@@ -104,7 +104,7 @@ def _submission(data: Any, quote: Quote | None = None) -> GradedSubmission:
         is_single,
         unread,
         rest == [True],
-        quote,
+        originals,
     )
 
 

@@ -1,25 +1,35 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from grader import __version__
 from grader.checks.outcome import Outcome
 from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.problems import Problem
+from grader.robot.model import Robot
 from grader.robot.reader import Verdict
 from grader.source import Edit, Location, Source
 from grader.submission.submission import Submission
-from grader.submission.urdf import OtherCandidate
+from grader.submission.urdf import OtherCandidate, Read, Urdf
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _NOTHING = Decimal(0)
 
-Quote = Callable[[str], Source | None]  # returns the text of one file of a submission; None where it cannot be read
+
+class Originals(Protocol):
+    """The files of a submission, as far as they can still be read."""
+
+    @property
+    def urdf(self) -> Urdf:
+        """The URDF that was graded; absent if it has changed since."""
+
+    def source(self, path: str) -> Source | None:
+        """Return the text of one of the files; None where it cannot be read."""
 
 
 class ManualMark(NamedTuple):
@@ -104,8 +114,7 @@ class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
     `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; with
-    `has_evidence_only` there are pictures or documents, but no URDF. `quote` returns the text of one of the files, or None where it
-    cannot be read.
+    `has_evidence_only` there are pictures or documents, but no URDF. `originals` are its files.
     """
 
     id: str
@@ -119,7 +128,7 @@ class GradedSubmission:
     is_single: bool = False
     unread: str = ""
     has_evidence_only: bool = False
-    quote: Quote | None = field(default=None, repr=False, compare=False)
+    originals: Originals | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, submission: Submission) -> "GradedSubmission":
@@ -137,12 +146,18 @@ class GradedSubmission:
             submission.is_single,
             submission.unread,
             submission.has_evidence_only,
-            submission.source,
+            submission,
         )
 
     def source(self, path: str) -> Source | None:
-        """Return the text of one of the files, where `quote` has it."""
-        return self.quote(path) if self.quote is not None else None
+        """Return the text of one of the files; None where it cannot be read."""
+        return self.originals.source(path) if self.originals is not None else None
+
+    @property
+    def robot(self) -> Robot | None:
+        """The robot that was graded; None if there is none, or the URDF can no longer be read."""
+        urdf = self.originals.urdf if self.originals is not None else None
+        return urdf.reading.robot if isinstance(urdf, Read) else None
 
 
 @dataclass(frozen=True, slots=True)

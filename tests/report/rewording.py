@@ -2,14 +2,25 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 from grader.grading.report import GradedPackage, GradedSubmission, Hint, Report, Result
 from grader.report.content import other_problems
 from grader.source import Location, Source
-from grader.submission.urdf import OtherCandidate
+from grader.submission.urdf import Absent, OtherCandidate, Urdf
 from grader.text import printable
 
 Words = Callable[[], str]
+
+
+class Reworded(NamedTuple):
+    """The files of a submission, each with the same text."""
+
+    text: str
+    urdf: Urdf
+
+    def source(self, path: str) -> Source:
+        return Source(path, self.text)
 
 
 def recast(report: Report, words: Words) -> Report:
@@ -49,7 +60,7 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
-        quote=lambda path: Source(path, text),
+        originals=Reworded(text, old.originals.urdf if old.originals is not None else Absent()),
     )
 
 

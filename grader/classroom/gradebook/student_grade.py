@@ -14,6 +14,7 @@ from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.source import Source
 from grader.submission.submission import Submission
+from grader.submission.urdf import Absent, Urdf
 from grader.text import counted, counted_points
 
 
@@ -33,9 +34,14 @@ class SubmissionSources:
     def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
         self._files, self._rubric = files, rubric
 
-    def __call__(self, path: str) -> Source | None:
+    def source(self, path: str) -> Source | None:
         """Return the text of one file; None if it cannot be read or has changed."""
         return self._submission.source(path) if self._submission is not None else None
+
+    @property
+    def urdf(self) -> Urdf:
+        """The URDF; absent if it cannot be read or has changed."""
+        return self._submission.urdf if self._submission is not None else Absent()
 
     @cached_property
     def _submission(self) -> Submission | None:

@@ -301,15 +301,15 @@ def test_lines_are_quoted_while_a_file_is_unchanged(tmp_path: Path) -> None:
     while not (now := fingerprint(str(tmp_path), ("ann",), time.time_ns())):
         pass  # until it has settled
     origin = SubmissionFiles(str(tmp_path), ("ann",), (), "ann", now)
-    source = SubmissionSources(origin, LAB6)("my_robot.urdf")
+    source = SubmissionSources(origin, LAB6).source("my_robot.urdf")
     assert source is not None
-    assert SubmissionSources(origin, LAB6)("missing.urdf") is None
-    assert SubmissionSources(origin._replace(fingerprint=""), LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6).source("missing.urdf") is None
+    assert SubmissionSources(origin._replace(fingerprint=""), LAB6).source("my_robot.urdf") is None
     with (tmp_path / "ann/my_robot.urdf").open("a") as file:
         file.write("\n")
-    assert SubmissionSources(origin, LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6).source("my_robot.urdf") is None
     shutil.rmtree(tmp_path / "ann")
-    assert SubmissionSources(origin, LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6).source("my_robot.urdf") is None
 
 
 # --- A class as a folder and as one zip -------------------------------------------------------------------------------
