@@ -21,7 +21,7 @@ LAYERS = (
     ("checks",),
     ("grading",),
     ("mutation", "authoring"),
-    ("classroom", "bundle"),
+    ("classroom", "bundle", "drawing"),
     ("report",),
     ("usecases",),
     ("cli",),

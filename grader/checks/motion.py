@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import hypot
+from typing import Literal
 
 from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
@@ -45,26 +46,40 @@ def rolls_forward(
     robot = _as_turning(robot, link) if any_type else robot
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
-    poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    lowest = highest = poses[0]
-    if len(poses) > 1:
-        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], upward)[0])
-        highest = max(poses, key=lambda shape: extent(shape[0], shape[1], upward)[1])
-    low, high = farthest(*lowest, minus((0.0, 0.0, 0.0), upward)), farthest(*highest, upward)
-    displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
-    moved_low = _flat(minus(displaced.apply(low), low), upward)
-    moved_high = _flat(minus(displaced.apply(high), high), upward)
-    rolled = hypot(*minus(moved_low, moved_high))
+    travel, why_not = travel_of(robot, link, joint, base, upward)
     at, detail = axis_place(joint), f" (joint {joint.name!r})"
-    travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
-    if travel is None or rolled < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), upward):
-        how = "its lowest point does not move" if travel is None else "it swivels about an upright axis"
-        message = f"{link!r} does not roll when its joint turns: {how}"
+    if travel is None:
+        message = f"{link!r} does not roll when its joint turns: {why_not}"
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
     message = f"a small positive turn of {link!r} {_heading(off, travel, base)}{'' if fine else '; it should drive it forward'}"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
+
+
+def travel_of(
+    robot: Configuration, link: str, joint: Joint, base: str, up: Vector
+) -> tuple[Vector, Literal[""]] | tuple[None, str]:
+    """Return the direction in which a small positive turn of a wheel drives its base, or None and why it does not roll.
+
+    The direction is a unit vector in the base's frame, across the unit vector `up`. Raises MissingElement, NotDecided or UnknownShape
+    where that is not known.
+    """
+    poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
+    lowest = highest = poses[0]
+    if len(poses) > 1:
+        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
+        highest = max(poses, key=lambda shape: extent(shape[0], shape[1], up)[1])
+    low, high = farthest(*lowest, minus((0.0, 0.0, 0.0), up)), farthest(*highest, up)
+    displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
+    moved_low = _flat(minus(displaced.apply(low), low), up)
+    moved_high = _flat(minus(displaced.apply(high), high), up)
+    travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
+    if travel is None:
+        return None, "its lowest point does not move"
+    if hypot(*minus(moved_low, moved_high)) < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), up):
+        return None, "it swivels about an upright axis"
+    return travel, ""
 
 
 def axis_along(

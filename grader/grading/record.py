@@ -53,7 +53,9 @@ def to_record(report: Report, template: Template | None = None) -> str:
     return _ENCODER.encode(data)
 
 
-def from_record(text: str, rubric: Rubric, originals: Originals | None = None, template: Template | None = None) -> Report:
+def from_record(
+    text: str, rubric: Rubric, originals: Originals | None = None, template: Template | None = None
+) -> Report:
     """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)

@@ -1,0 +1,179 @@
+"""A graded robot as a picture shows it: the scene, where the reference differs, and which criteria failed where."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from grader.checks.motion import rolls_forward
+from grader.checks.visuals import main_visual
+from grader.drawing.scene import Body, Scene, scene_of
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.grading.hints.targets import selected
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Criterion, Rubric
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.likeness import mismatch
+from grader.robot.selectors import texts_in
+from grader.robot.transforms import Vector, minus
+
+_SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
+_FRAMES = ("relative_to", "base", "on", "of", "parent")  # and in whose frame
+_SAME = 0.001  # metres: shapes and frames that differ by less look equal
+
+
+class Callout(NamedTuple):
+    """The criteria that failed on a link, and the point that marks it in the picture, in metres in the scene's frame.
+
+    `point` is None where the link has no place in the picture; `link` is empty for criteria on the whole robot.
+    """
+
+    number: int
+    link: str
+    point: Vector | None
+    results: tuple[Result, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """What a picture of a graded robot shows.
+
+    `reference` is the reference solution in the same frame, None where there is none, or its rubric's hints must not tell it.
+    `outlines` are the bodies of the reference that links show which lost points, where they differ, and `frames` the links whose
+    frames differ there.
+    """
+
+    scene: Scene
+    reference: Scene | None
+    outlines: tuple[Body, ...]
+    frames: tuple[str, ...]
+    callouts: tuple[Callout, ...]
+
+
+def picture_of(report: Report) -> Picture | None:
+    """Return the picture of a graded robot; None if there is no robot, or it can no longer be read."""
+    if report.submission.robot is None or not report.submission.robot.links:
+        return None
+    robot = Configuration(report.submission.robot)
+    solution = _reference(report.rubric)
+    frame, reference_frame = _frames(report.rubric, robot, solution)
+    if frame is None:
+        return None
+    wheels = [*_wheels(report.rubric, robot)] or None
+    scene = scene_of(robot, frame, wheels)
+    reference = scene_of(solution, reference_frame, wheels) if solution is not None and reference_frame else None
+    lost = [result for result in report.results if _is_marked(result)]
+    about = _by_link(lost, robot, solution)
+    outlines, frames = _differences(scene, reference, [*about]) if reference is not None else ((), ())
+    callouts = tuple(
+        Callout(number, link, _point(scene, link) or _point(reference, link), tuple(results))
+        for number, (link, results) in enumerate(about.items(), 1)
+    )
+    return Picture(scene, reference, outlines, frames, callouts)
+
+
+def _reference(rubric: Rubric) -> Configuration | None:
+    """Return the reference solution, unless the hints of the rubric do not say what should be."""
+    if rubric.solution is None or rubric.hints in ("none", "place"):
+        return None
+    with suppress(InputError):
+        return rubric.solution.robot
+    return None
+
+
+def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
+    """Return the links of both robots in whose frames they are drawn: that in which the rubric measures most, else the roots.
+
+    In that frame most links of the student's robot have a place.
+    """
+    given = Counter(
+        value
+        for criterion in rubric.criteria
+        for key, value in criterion.arguments.items()
+        if key in _FRAMES and isinstance(value, str)
+    )
+    named = [name for name, _ in given.most_common()]
+    pairs = [(selected(robot, name), selected(solution, name) if solution is not None else name) for name in named]
+    roots = (next(iter(robot.main_tree), None), next(iter(solution.main_tree), None) if solution is not None else None)
+    known = [pair for pair in pairs if robot.robot.has_link(pair[0]) and _has(solution, pair[1])]
+    sizes = Counter(_root_of(robot, link.name) for link in robot.robot.links)
+    return max(known, key=lambda pair: sizes[_root_of(robot, pair[0])], default=roots)
+
+
+def _has(robot: Configuration | None, link: str) -> bool:
+    return robot is None or robot.robot.has_link(link)
+
+
+def _root_of(robot: Configuration, link: str) -> str:
+    with suppress(MissingElement):
+        return robot.root_of(link)
+    return ""
+
+
+def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
+    """Yield the links that the rubric expects to roll."""
+    for criterion in rubric.criteria:
+        if criterion.check.function is rolls_forward:
+            yield selected(robot, str(criterion.arguments["link"]))
+
+
+def _is_marked(result: Result) -> bool:
+    """Return whether a picture marks a criterion: it failed on the robot, and its points are lost."""
+    is_about_robot = result.criterion.check.subject in ("urdf", "robot")
+    return is_about_robot and result.outcome.status == "failed" and result.is_lost and result.manual_mark is None
+
+
+def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configuration | None) -> dict[str, list[Result]]:
+    """Return the criteria by the link that they are about, the links in the order of the rubric."""
+    found: dict[str, list[Result]] = {}
+    for result in lost:
+        links = [*_links(result.criterion, robot, solution)]
+        found.setdefault(links[0] if links else "", []).append(result)
+    return found
+
+
+def _links(criterion: Criterion, robot: Configuration, solution: Configuration | None) -> Iterator[str]:
+    """Yield the links that a criterion examines and that one of the robots has."""
+    for key in _SUBJECTS:
+        for name in texts_in(criterion.arguments.get(key)):
+            link = selected(robot, name)
+            if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
+                yield link
+
+
+def _differences(scene: Scene, reference: Scene, links: Sequence[str]) -> tuple[tuple[Body, ...], tuple[str, ...]]:
+    """Return the bodies and the frames of some links of the reference that differ from the scene's."""
+    outlines = tuple(body for body in reference.bodies if body.link in links and not _shows(scene, reference, body))
+    frames = tuple(link for link in links if link in reference.poses and not _is_same_place(scene, reference, link))
+    return outlines, frames
+
+
+def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:
+    """Return whether a link of the scene shows a body where the reference does."""
+    for body in scene.bodies:
+        if body.link == wanted.link:
+            found = mismatch(wanted.shape, reference.pose(wanted), body.shape, scene.pose(body), _SAME)
+            if found is not None and found.largest <= _SAME:
+                return True
+    return False
+
+
+def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
+    if link not in scene.poses:
+        return False
+    apart = minus(scene.poses[link].translation, reference.poses[link].translation)
+    return max(map(abs, apart)) <= _SAME
+
+
+def _point(scene: Scene | None, link: str) -> Vector | None:
+    """Return the centre of what a link shows, or else the origin of its frame; None where it has no place."""
+    if scene is None or link not in scene.poses:
+        return None
+    pose = scene.poses[link]
+    if not any(body.link == link for body in scene.bodies):
+        return pose.translation
+    with suppress(MissingElement, NotDecided):
+        return placed_by(pose, main_visual(scene.robot, link).origin).translation
+    return pose.translation

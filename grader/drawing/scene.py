@@ -1,0 +1,175 @@
+"""The content of a picture of a robot: shapes in their colours, frames, and the way its wheels drive."""
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import NamedTuple
+
+from grader.checks.motion import travel_of
+from grader.checks.visuals import main_visual
+from grader.errors import MissingElement, NotDecided
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Cylinder, Joint, Mesh, Sphere, Visual
+from grader.robot.shapes import Shape, UnknownShape, is_empty
+from grader.robot.transforms import Transform, Vector
+from grader.text import counted, enumerated, quoted
+
+Rgba = tuple[float, float, float, float]
+
+MAX_BODIES = 2000
+_MAX_COORDINATE = 1e4  # metres
+_MAX_NAMED = 4
+_WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
+_UP: Vector = (0.0, 0.0, 1.0)
+_NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
+
+
+class Body(NamedTuple):
+    """A shape that a link shows: its place in the link's frame in metres, and its colour. Sizes are not negative."""
+
+    link: str
+    shape: Shape
+    T_link_shape: Transform
+    rgba: Rgba
+
+
+class Wheel(NamedTuple):
+    """A wheel in the frame of a scene: its centre and the joint's unit axis, and the unit direction in which a positive turn drives.
+
+    `travel` is None where it does not roll.
+    """
+
+    link: str
+    joint: str
+    centre: Vector
+    axis: Vector
+    travel: Vector | None
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A robot as a picture shows it, in the frame of the link `frame`, whose z axis points up.
+
+    `poses` are the T_frame_link of the links that have a place there, and `bodies` what these links show, in file order. `missing`
+    says in sentences what is not shown, and why.
+    """
+
+    robot: Configuration
+    frame: str
+    poses: Mapping[str, Transform]
+    bodies: tuple[Body, ...]
+    wheels: tuple[Wheel, ...]
+    missing: tuple[str, ...]
+
+    def pose(self, body: Body) -> Transform:
+        """Return T_frame_shape of one of the bodies."""
+        return self.poses[body.link] @ body.T_link_shape
+
+    @property
+    def ground(self) -> Transform | None:
+        """The frame of the root of the robot's tree, at whose z = 0 the robot stands; None if it has no place here."""
+        return self.poses.get(self.robot.root_of(self.frame))
+
+
+def scene_of(robot: Configuration, frame: str, wheels: Collection[str] | None = None) -> Scene:
+    """Return what a picture of a robot shows in the frame of one of its links.
+
+    `wheels` are the links that are meant to roll; without them those that show a cylinder or a sphere and turn without limit.
+    """
+    poses = dict(_poses(robot, frame))
+    shown, meshes, unshown = _bodies(robot, poses)
+    turning = _rolling(robot) if wheels is None else wheels
+    found = tuple(wheel for link in turning if link in poses for wheel in _wheel(robot, link, frame))
+    rest = [link.name for link in robot.robot.links if link.name not in poses and link.visuals]
+    reasons = (
+        (rest, "no chain of joints gives them a place"),
+        (meshes, "mesh files are not opened"),
+        (unshown, "their shapes have no size or place that can be drawn"),
+    )
+    missing = tuple(
+        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}; {why}" for names, why in reasons if names
+    )
+    if len(shown) > MAX_BODIES:
+        missing += (f"Not shown: {counted(len(shown) - MAX_BODIES, 'more shape')}",)
+    return Scene(robot, frame, poses, tuple(shown[:MAX_BODIES]), found, missing)
+
+
+def _poses(robot: Configuration, frame: str) -> Iterator[tuple[str, Transform]]:
+    for link in robot.robot.links:
+        try:
+            pose = robot.pose(link.name, relative_to=frame)
+        except _NOT_KNOWN:
+            continue
+        if _is_drawable(pose.translation):
+            yield link.name, pose
+
+
+def _bodies(robot: Configuration, poses: Mapping[str, Transform]) -> tuple[list[Body], list[str], list[str]]:
+    """Return the shapes of links that have a pose, and the names of links with a mesh, or with a shape that cannot be drawn."""
+    shown: list[Body] = []
+    meshes: dict[str, None] = {}
+    unshown: dict[str, None] = {}
+    for link in robot.robot.links:
+        if link.name not in poses:
+            continue
+        if link.unresolved.keys() & {"visual", ""}:
+            unshown[link.name] = None
+        for visual in link.visuals:
+            if isinstance(visual.geometry, Mesh):
+                meshes[link.name] = None
+                continue
+            body = _body(link.name, visual, visual.geometry)
+            if body is not None:
+                shown.append(body)
+            else:
+                unshown[link.name] = None
+    return shown, [*meshes], [*unshown]
+
+
+def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
+    drawn: Shape
+    match shape:
+        case Box(size=(x, y, z)):
+            sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
+        case Cylinder(radius=radius, length=length):
+            sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
+        case Sphere(radius=radius):
+            sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
+    pose = placed_by(Transform(), visual.origin)
+    if is_empty(shape) or not _is_drawable(sizes) or not _is_drawable(pose.translation):
+        return None
+    return Body(link, drawn, pose, visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL)
+
+
+def _is_drawable(values: Vector) -> bool:
+    return all(isfinite(value) and abs(value) <= _MAX_COORDINATE for value in values)
+
+
+def _rolling(robot: Configuration) -> list[str]:
+    """Return the links that turn without limit and show a cylinder or a sphere."""
+    turning = [joint.child for joint in robot.parent_joints.values() if joint.type == "continuous"]
+    return [link for link in turning if isinstance(_main_shape(robot, link), Cylinder | Sphere)]
+
+
+def _main_shape(robot: Configuration, link: str) -> object:
+    try:
+        return main_visual(robot, link).geometry
+    except _NOT_KNOWN:
+        return None
+
+
+def _wheel(robot: Configuration, link: str, frame: str) -> Iterator[Wheel]:
+    """Yield a link as a wheel, if a joint turns it and its shape and place are known."""
+    try:
+        joint: Joint = robot.moving_joint(link)
+        if joint.type not in ("continuous", "revolute"):
+            return
+        T_frame_link = robot.pose(link, relative_to=frame)
+        centre = placed_by(T_frame_link, main_visual(robot, link).origin).translation
+        axis = robot.pose(joint.child, relative_to=frame).rotate(robot.axis(joint))
+        travel, _ = travel_of(robot, link, joint, frame, _UP)
+    except _NOT_KNOWN:
+        return
+    if _is_drawable(centre):
+        yield Wheel(link, joint.name, centre, axis, travel)
