@@ -36,6 +36,8 @@ LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
     "lxml": {"xml", "report", "mutation"},  # a report may be XML; a robot is rewritten as a tree
+    "jinja2": {"report"},
+    "markupsafe": {"report"},
     "yaml": {"package", "xacro"},
     "ast": {"static_python", "package", "mutation"},
     "docx": {"documents"},
