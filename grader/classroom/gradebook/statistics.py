@@ -43,6 +43,11 @@ class CriterionStatistics:
     share: float | None
     discrimination: float | None
 
+    @property
+    def of(self) -> int:
+        """The number of students for whom it was graded, or needs manual grading."""
+        return self.decided + self.pending + self.errored
+
 
 @dataclass(frozen=True, slots=True)
 class CommonFailure:
