@@ -9,11 +9,10 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.summary import summary_of
-from grader.classroom.run.hint_search import same_robot
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
 from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
@@ -30,7 +29,7 @@ def class_statistics(
     """Return the summary of a gradebook's class with the edits that would gain points. Raises InputError."""
     with Gradebook(gradebook) as book:
         grades = Grades(book, read_deadline(due))
-        search_hints(book, [grades.newest_rubric()], same_robot, HintOptions(), progress, warn)
+        search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
         return class_summary(grades, kind, screen, with_fixes=True)
 
 

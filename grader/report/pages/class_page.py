@@ -33,7 +33,7 @@ from grader.report.pages.shell import render_page
 from grader.text import counted, format_points, printable
 
 MAX_DRAWINGS = MAX_LISTED
-_LINE_KINDS = {"-": "del", "+": "ins"}
+_ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
 
 
 def render_class_page(
@@ -120,7 +120,7 @@ def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:
 def _criteria(statistics: ClassStatistics) -> list[dict[str, Any]]:
     """Return the rows of the criteria, the hardest first."""
     asked = [row for row in statistics.criteria if row.of] if statistics.graded else []
-    asked.sort(key=lambda row: 2.0 if row.share is None else row.share)
+    asked.sort(key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points))
     return [_criterion(row) for row in asked]
 
 
@@ -140,7 +140,7 @@ def _fix(fix: CommonFix, drawings: Mapping[str, str]) -> dict[str, Any]:
     return {
         "who": counted(fix.count, "student"),
         "action": fix.action,
-        "lines": [(_LINE_KINDS.get(sign, ""), sign, line) for sign, line in edit_lines(fix.example)],
+        "lines": [(_ELEMENTS.get(sign, "span"), f"{sign} {line}") for sign, line in edit_lines(fix.example)],
         "gain": gain(fix),
         "drawing": Markup(drawings.get(fix.action, "")),  # noqa: S704  from a tree of elements
     }

@@ -78,7 +78,8 @@ def groups(
     for verdict, words in VERDICTS.items():
         yield f"status-{verdict}", Group(words, [one.student.key for one in grades if one.verdict == verdict])
     yield "attention", Group("need attention", [one.student.key for one in grades if one.why_attention])
-    yield "pending", Group("need manual grading", [one.student.key for one in grades if one.pending])
+    pending = {one.student.key for one in grades if one.pending}
+    yield "pending", Group("need manual grading", [key for key in members if key in pending])
     yield "late", Group("late", [one.student.key for one in grades if one.late.days])
     for tenth in range(len(statistics.bins)):
         keys = [key for key, member in members.items() if member.tenth == tenth]
