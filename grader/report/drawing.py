@@ -14,11 +14,11 @@ from grader.drawing.projection import Stroke, projection
 from grader.drawing.sheet import WIDTH, Cell, sheet_of
 from grader.drawing.views import SIDE
 from grader.report.drawing_key import description, put_key, put_legend
-from grader.report.drawing_signs import outlines, put_callouts, put_frames, put_ground, put_outlines, put_wheels
+from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels, outlines
 from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_HIDDEN = {"stroke-opacity": "0.4", "stroke-width": "1"}
+_HIDDEN = {"stroke-opacity": "0.5", "stroke-width": "0.9"}
 _THUMBNAIL = (160.0, 100.0)
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
@@ -30,14 +30,13 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     """
     root = _root(title or "Three views of the robot", description(picture))
     sheet = sheet_of(picture, top)
-    put(root, "rect", "paper", {"x": 0, "y": 0, "width": WIDTH, "height": 0})
+    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
+    titles = put(root, "g", "faint")
     for cell in sheet.cells:
-        group = put(root, "g")
-        put(group, "text", "faint", {"x": cell.left + 12.0, "y": cell.top + 14.0}, cell.view.title)
-        _put_view(group, cell, picture)
+        put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
+        _put_view(put(root, "g"), cell, picture)
     put_key(put(root, "g"), sheet, picture)
-    height = put_legend(put(root, "g"), sheet.height, picture) if legend else sheet.height
-    return _sized(root, WIDTH, height)
+    return _sized(root, WIDTH, put_legend(root, sheet.height, picture) if legend else sheet.height)
 
 
 def thumbnail_element(picture: Picture) -> Any:
@@ -58,7 +57,7 @@ def thumbnail_element(picture: Picture) -> Any:
 def empty_element(title: str, words: str, height: float) -> Any:
     """Return a drawing without a robot: paper of a height in pixels."""
     root = _root(title, words)
-    put(root, "rect", "paper", {"x": 0, "y": 0, "width": WIDTH, "height": 0})
+    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     return _sized(root, WIDTH, height)
 
 
@@ -72,7 +71,9 @@ def _sized(root: Any, width: float, height: float) -> Any:
 
 
 def _root(title: str, words: str) -> Any:
-    root = etree.Element(f"{{{SVG}}}svg", {"class": "drawing", "role": "img", "font-family": _FONT}, nsmap=_NAMESPACES)
+    root = etree.Element(
+        f"{{{SVG}}}svg", {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}, nsmap=_NAMESPACES
+    )
     put(root, "title", text=title)
     if words:
         put(root, "desc", text=words)
@@ -80,13 +81,15 @@ def _root(title: str, words: str) -> Any:
 
 
 def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
-    labels = Labels(cell)
-    put_ground(group, cell, picture)
+    labels, below, above = Labels(cell), Signs(), Signs()
+    add_ground(below, cell, picture, labels)
+    below.put(group)
     _put_bodies(group, cell, picture)
-    put_outlines(group, cell, picture, labels)
-    put_frames(group, cell, picture, labels)
-    put_wheels(group, cell, picture.scene, labels)
-    put_callouts(group, cell, picture, labels)
+    add_outlines(above, cell, picture)
+    add_frames(above, cell, picture, labels)
+    add_wheels(above, cell, picture, labels)
+    add_callouts(above, cell, picture, labels)
+    above.put(group)
 
 
 def _put_bodies(group: Any, cell: Cell, picture: Picture) -> None:
@@ -95,14 +98,10 @@ def _put_bodies(group: Any, cell: Cell, picture: Picture) -> None:
     for seen in shown.bodies:
         body = put(group, "path", "", {"d": path_data(cell, seen.outline, closed=True), **colour(seen.body.rgba)})
         put(body, "title", text=seen.body.link)
-    _put_strokes(put(group, "g", "", _HIDDEN), cell, shown.hidden, {"stroke-width": "1"})
-    _put_strokes(group, cell, shown.visible, {})
-
-
-def _put_strokes(group: Any, cell: Cell, strokes: tuple[Stroke, ...], attributes: dict[str, object]) -> None:
-    for look, some in groupby(sorted(strokes, key=_look), _look):
-        path = path_data(cell, (stroke.curve for stroke in some))
-        put(group, "path", look, {"d": path, **attributes})
+    for strokes, attributes in ((shown.hidden, _HIDDEN), (shown.visible, {})):
+        for look, some in groupby(sorted(strokes, key=_look), _look):
+            path = path_data(cell, (stroke.curve for stroke in some))
+            put(group, "path", look, {"d": path, **attributes})
 
 
 def _look(stroke: Stroke) -> str:

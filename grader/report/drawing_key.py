@@ -7,92 +7,91 @@ from typing import Any
 from grader.drawing.picture import Callout, Picture
 from grader.drawing.sheet import WIDTH, Place, Sheet
 from grader.report.content import points_of
-from grader.report.drawing_signs import put_badge, put_wheel
-from grader.report.svg_elements import put, segments, wrapped
-from grader.text import enumerated, printable
+from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
+from grader.report.svg_elements import circle, put, segments
+from grader.report.svg_text import put_lines
+from grader.text import counted_points, enumerated, printable
 
 _ROW = 18.0
-_LINE = 15.0
 _SIGN = 34.0  # pixels left of the text of a row
 _LEFT = 14.0
+_INDENT = 26.0
 _NOWHERE = "not in the picture"
-_Sign = Callable[[Any, Place], None]
+_Draw = Callable[[Signs, Place], None]
 
 
 def put_key(group: Any, sheet: Sheet, picture: Picture) -> None:
     """Add the scale bar, and each sign that the drawing has with its meaning."""
     left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
-    length, text = sheet.bar
-    bar = [((left, top), (left + length, top)), *(((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))]
-    put(group, "path", "ground", {"d": segments(bar)})
-    put(group, "text", "text", {"x": left + length + 8.0, "y": top + 4.0}, text)
-    for row, (sign, meaning) in enumerate(_signs(picture), 1):
-        y = top + 6.0 + row * _ROW
-        sign(group, (left, y))
-        put(group, "text", "faint", {"x": left + _SIGN, "y": y + 4.0, "font-size": 11}, meaning)
+    signs = Signs()
+    length, words = sheet.bar
+    ends = (((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))
+    signs.line("ground", segments([((left, top), (left + length, top)), *ends]))
+    signs.text("text", (left + length + 8.0, top + 4.0), words)
+    for row, (draw, meaning) in enumerate(_meanings(picture), 1):
+        place = left, top + 6.0 + row * _ROW
+        draw(signs, place)
+        signs.text("faint", (left + _SIGN, place[1] + 4.0), meaning)
+    signs.put(group)
 
 
-def _signs(picture: Picture) -> Iterator[tuple[_Sign, str]]:
+def _meanings(picture: Picture) -> Iterator[tuple[_Draw, str]]:
+    """Yield the signs of a drawing with their meanings."""
+    scene, reference = picture.scene, picture.reference
     if any(callout.point is not None for callout in picture.callouts):
-        yield lambda group, at: put_badge(group, (at[0] + 12.0, at[1]), 1), "points lost: see below"
-    if picture.outlines or picture.frames:
-        yield partial(_put_line, "reference"), "reference solution"
-    if any(wheel.travel is not None for wheel in picture.scene.wheels):
-        yield lambda group, at: put_wheel(group, (at[0] - 3.0, at[1]), (1.0, 0.0, 0.0)), "a positive turn drives so"
-    if any(wheel.travel is None for wheel in picture.scene.wheels):
-        yield lambda group, at: put_wheel(group, (at[0] + 12.0, at[1]), None), "does not roll when turned"
-    if picture.scene.poses:
-        yield _put_axes, "frame of a link: x, y, z"
-    if len(picture.scene.bodies) > 1:
-        yield partial(_put_line, "edge"), "hidden edge"
+        yield lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1), "points lost: see below"
+    grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
+    is_elsewhere = grounds[0] is not None and grounds[1] is not None and is_lifted(grounds[0], grounds[1])
+    if picture.outlines or picture.frames or is_elsewhere:
+        yield partial(_draw_line, "reference"), "reference solution"
+    if any(wheel.travel is not None for wheel in scene.wheels):
+        yield (
+            lambda signs, at: signs.line("arrow", wheel_sign((at[0] - 3.0, at[1]), (1.0, 0.0, 0.0))),
+            "positive turn drives this way",
+        )
+    if any(wheel.travel is None for wheel in scene.wheels):
+        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "turned, it does not roll"
+    yield _draw_axes, "frame of a link: x, y, z"
+    if len(scene.bodies) > 1:
+        yield partial(_draw_line, "hidden"), "hidden edge"
 
 
-def _put_line(look: str, group: Any, at: Place) -> None:
-    line = put(group, "path", look, {"d": segments([(at, (at[0] + 26.0, at[1]))])})
-    if look == "edge":
-        line.set("stroke-opacity", "0.4")
+def _draw_line(look: str, signs: Signs, at: Place) -> None:
+    signs.line(look, segments([(at, (at[0] + 26.0, at[1]))]))
 
 
-def _put_axes(group: Any, at: Place) -> None:
+def _draw_axes(signs: Signs, at: Place) -> None:
     x, y = at[0] + 6.0, at[1] + 5.0
-    put(group, "path", "axis-x", {"d": segments([((x, y), (x + 14.0, y))])})
-    put(group, "path", "axis-z", {"d": segments([((x, y), (x, y - 14.0))])})
-    put(group, "circle", "axis-y", {"cx": x, "cy": y, "r": 2.5})
+    signs.line("axis-x", segments([((x, y), (x + 14.0, y))]))
+    signs.line("axis-z", segments([((x, y), (x, y - 14.0))]))
+    signs.line("axis-y", circle((x, y), 2.5))
 
 
-def put_legend(group: Any, top: float, picture: Picture) -> float:
+def put_legend(root: Any, top: float, picture: Picture) -> float:
     """Add the criteria that are called out and what is not shown, below `top`; return where they end, in pixels."""
-    y = top + 8.0
-    if picture.callouts or picture.scene.missing:
-        put(group, "path", "rule", {"d": segments([((_LEFT, y), (WIDTH - _LEFT, y))])})
-        y += 20.0
+    if not picture.callouts and not picture.scene.missing:
+        return top
+    put(root, "path", "rule", {"d": segments([((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0))])})
+    badges, strong, plain = Signs(), put(root, "g", "strong"), put(root, "g", "text")
+    left, width, y = _LEFT + _INDENT, WIDTH - 2.0 * _LEFT - _INDENT, top + 28.0
     for callout in picture.callouts:
-        y = _put_callout(group, y, callout)
+        add_badge(badges, (_LEFT + 9.0, y - 4.0), callout.number)
+        y = put_lines(strong, left, y, width, heading(callout))
+        for result in callout.results:
+            criterion = result.criterion
+            words = f"{criterion.id} ({counted_points(criterion.points)}): {result.outcome.message}"
+            y = put_lines(plain, left, y, width, words)
+        y += 6.0
     for sentence in picture.scene.missing:
-        y = _put_lines(group, "faint", y, sentence)
-    return y + 4.0
-
-
-def _put_callout(group: Any, y: float, callout: Callout) -> float:
-    put_badge(group, (_LEFT + 9.0, y - 4.0), callout.number)
-    y = _put_lines(group, "strong", y, heading(callout))
-    for result in callout.results:
-        y = _put_lines(group, "text", y, f"{result.criterion.id}: {result.outcome.message}")
-    return y + 6.0
+        y = put_lines(plain, left, y, width, sentence)
+    badges.put(root)
+    return y + 2.0
 
 
 def heading(callout: Callout) -> str:
     """Return the link of a callout, the points that its criteria cost, and whether it has no place in the picture."""
     words = f"{callout.link or 'The robot'}: {points_of(callout.results)} lost"
     return words if callout.point is not None else f"{words} ({_NOWHERE})"
-
-
-def _put_lines(group: Any, look: str, y: float, text: str) -> float:
-    left = _LEFT + 26.0
-    for line in wrapped(text, WIDTH - left - _LEFT):
-        put(group, "text", look, {"x": left, "y": y}, line)
-        y += _LINE
-    return y
 
 
 def description(picture: Picture) -> str:

@@ -1,8 +1,5 @@
 """A report as a picture: SVG with the three views of the graded robot, and the criteria that failed where they did."""
 
-from collections.abc import Sequence
-from typing import Any
-
 from lxml import etree
 
 from grader.drawing.picture import Picture, picture_of
@@ -12,10 +9,12 @@ from grader.grading.report import Report
 from grader.report.content import score_text, summary
 from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection
-from grader.report.svg_elements import DARK_RULES, SVG, put, wrapped
+from grader.report.svg_elements import DARK_RULES, SVG, put
+from grader.report.svg_text import LINE, put_lines, wrapped
 
 _STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
-_LEFT, _TITLE, _LINE = 14.0, 28.0, 15.0
+_LEFT, _TITLE = 14.0, 28.0  # pixels
+_WIDTH = WIDTH - 2.0 * _LEFT
 
 
 def render_svg(report: Report) -> str:
@@ -40,22 +39,14 @@ def inspection_svg(inspection: Inspection) -> str:
 
 
 def _file(picture: Picture | None, title: str, words: str, reason: str) -> str:
-    lines = wrapped(words, WIDTH - 2.0 * _LEFT)
-    top = _TITLE + _LINE * len(lines) + 8.0
-    if picture is not None:
-        root = drawing_element(picture, title, top)
-    else:
-        root = empty_element(title, reason, top + 2.0 * _LINE)
-        lines.append(reason)
-    _add_heading(root, title, lines)
+    lines = wrapped(words, _WIDTH) + ([] if picture is not None else ["", *wrapped(reason, _WIDTH)])
+    top = _TITLE + LINE * len(lines) + 8.0
+    root = drawing_element(picture, title, top) if picture is not None else empty_element(title, reason, top)
+    put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
+    faint = put(root, "g", "faint")
+    for number, line in enumerate(lines, 1):
+        put(faint, "text", "", {"x": _LEFT, "y": _TITLE + LINE * number}, line)
     style = etree.Element(f"{{{SVG}}}style")
     style.text = _STYLE
     root.insert(1, style)
     return etree.tostring(root, encoding="unicode") + "\n"
-
-
-def _add_heading(root: Any, title: str, lines: Sequence[str]) -> None:
-    group = put(root, "g")
-    put(group, "text", "title", {"x": _LEFT, "y": _TITLE - 2.0}, next(iter(wrapped(title, WIDTH / 1.45, 1)), ""))
-    for number, line in enumerate(lines, 1):
-        put(group, "text", "faint", {"x": _LEFT, "y": _TITLE + _LINE * number}, line)

@@ -7,7 +7,6 @@ classes in dark mode.
 from collections.abc import Iterable, Mapping, Sequence
 from math import atan2, degrees, hypot, isfinite, tau
 from typing import Any
-from unicodedata import east_asian_width
 
 from lxml import etree
 
@@ -18,51 +17,50 @@ from grader.text import printable
 
 SVG = "http://www.w3.org/2000/svg"
 _LINE = {"fill": "none", "stroke-linecap": "round", "stroke-linejoin": "round"}
-_TEXT = {"fill": "#1c1f23", "font-size": "12"}
-# The looks of each class: presentation attributes, and the colours that dark mode changes. The hues are told apart by
-# people with any kind of colour vision (Okabe and Ito, Color Universal Design, 2008), and are never the only sign.
+_AXIS = {**_LINE, "stroke-width": "1.8"}
+_INK, _PAPER = "#1c1f23", "#ffffff"
+_DARK_INK, _DARK_PAPER = "#e8eaed", "#16191d"
+# The looks of each class: presentation attributes, and the colours that dark mode changes. No sign is told by its hue alone.
 LOOKS: Mapping[str, tuple[Mapping[str, str], Mapping[str, str]]] = {
-    "paper": ({"fill": "#ffffff"}, {"fill": "#16191d"}),
+    "paper": ({"fill": _PAPER}, {"fill": _DARK_PAPER}),
     "rule": ({**_LINE, "stroke": "#c9ced6"}, {"stroke": "#3a4048"}),
-    "edge": ({**_LINE, "stroke": "#1c1f23", "stroke-width": "1.3"}, {"stroke": "#e8eaed"}),
-    "edge-on-light": ({**_LINE, "stroke": "#1c1f23", "stroke-width": "1.3"}, {}),
-    "edge-on-dark": ({**_LINE, "stroke": "#e8eaed", "stroke-width": "1.3"}, {}),
+    "edge": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {"stroke": _DARK_INK}),
+    "edge-on-light": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {}),
+    "edge-on-dark": ({**_LINE, "stroke": _DARK_INK, "stroke-width": "1.3"}, {}),
+    "hidden": ({**_LINE, "stroke": _INK, "stroke-opacity": "0.5"}, {"stroke": _DARK_INK}),
     "ground": ({**_LINE, "stroke": "#6b7280", "stroke-width": "1.5"}, {"stroke": "#9aa3af"}),
     "halo": (
-        {**_LINE, "stroke": "#ffffff", "stroke-width": "4", "stroke-opacity": "0.75"},
-        {"stroke": "#16191d"},
+        {**_LINE, "stroke": _PAPER, "stroke-width": "5", "stroke-opacity": "0.75"},
+        {"stroke": _DARK_PAPER},
     ),
     "reference": (
         {**_LINE, "stroke": "#a3157f", "stroke-width": "1.8", "stroke-dasharray": "6 3.5"},
         {"stroke": "#ff8fd8"},
     ),
-    "axis-x": ({**_LINE, "stroke": "#d01f2e", "stroke-width": "1.8"}, {"stroke": "#ff7b72"}),
-    "axis-y": ({**_LINE, "stroke": "#00805c", "stroke-width": "1.8"}, {"stroke": "#3ddc97"}),
-    "axis-z": ({**_LINE, "stroke": "#0a5fd0", "stroke-width": "1.8"}, {"stroke": "#79b8ff"}),
-    "arrow": ({**_LINE, "stroke": "#1c1f23", "stroke-width": "2.6"}, {"stroke": "#ffffff"}),
+    "axis-x": ({**_AXIS, "stroke": "#d01f2e"}, {"stroke": "#ff7b72"}),
+    "axis-y": ({**_AXIS, "stroke": "#00805c"}, {"stroke": "#3ddc97"}),
+    "axis-z": ({**_AXIS, "stroke": "#0a5fd0"}, {"stroke": "#79b8ff"}),
+    "dot-x": ({"fill": "#d01f2e"}, {"fill": "#ff7b72"}),
+    "dot-y": ({"fill": "#00805c"}, {"fill": "#3ddc97"}),
+    "dot-z": ({"fill": "#0a5fd0"}, {"fill": "#79b8ff"}),
+    "arrow": ({**_LINE, "stroke": _INK, "stroke-width": "2.6"}, {"stroke": "#ffffff"}),
     "leader": ({**_LINE, "stroke": "#b3261e", "stroke-width": "1.2"}, {"stroke": "#ff8a80"}),
-    "badge": (
-        {"fill": "#b3261e", "stroke": "#ffffff", "stroke-width": "1.5"},
-        {"fill": "#ff8a80", "stroke": "#16191d"},
-    ),
-    "number": (
-        {"fill": "#ffffff", "font-size": "12", "font-weight": "700", "text-anchor": "middle"},
-        {"fill": "#16191d"},
-    ),
-    "text": (_TEXT, {"fill": "#e8eaed"}),
-    "strong": ({**_TEXT, "font-weight": "700"}, {"fill": "#e8eaed"}),
-    "title": ({**_TEXT, "font-size": "17", "font-weight": "700"}, {"fill": "#e8eaed"}),
-    "faint": ({**_TEXT, "fill": "#4b5563"}, {"fill": "#b6bdc7"}),
+    "badge": ({"fill": "#b3261e"}, {"fill": "#ff8a80"}),
+    "number": ({"fill": _PAPER, "font-weight": "700", "text-anchor": "middle"}, {"fill": _DARK_PAPER}),
+    "text": ({"fill": _INK}, {"fill": _DARK_INK}),
+    "strong": ({"fill": _INK, "font-weight": "700"}, {"fill": _DARK_INK}),
+    "title": ({"fill": _INK, "font-size": "17", "font-weight": "700"}, {"fill": _DARK_INK}),
+    "faint": ({"fill": "#4b5563"}, {"fill": "#b6bdc7"}),
     "letter": (
         {
-            **_TEXT,
+            "fill": _INK,
             "font-size": "11",
             "text-anchor": "middle",
-            "stroke": "#ffffff",
+            "stroke": _PAPER,
             "stroke-width": "2.5",
             "paint-order": "stroke",
         },
-        {"fill": "#e8eaed", "stroke": "#16191d"},
+        {"fill": _DARK_INK, "stroke": _DARK_PAPER},
     ),
 }
 DARK_RULES = "".join(
@@ -146,18 +144,7 @@ def segments(lines: Iterable[tuple[Place, Place]]) -> str:
     return "".join(f"M{number(a)} {number(b)}L{number(c)} {number(d)}" for (a, b), (c, d) in lines)
 
 
-def text_width(text: str, size: float = 12.0) -> float:
-    """Return about how wide a text is in a sans-serif font; rather too much than too little."""
-    return size * sum(1.0 if east_asian_width(letter) in "WF" else 0.57 for letter in text)
-
-
-def wrapped(text: str, width: float, most: int = 3) -> list[str]:
-    """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
-    lines = [""]
-    room = max(1, int(width / 12.0))  # letters of a name without spaces
-    words = (word if text_width(word) <= width else word[:room] for word in printable(text).split(" "))
-    for word in words:
-        line = f"{lines[-1]} {word}" if lines[-1] else word
-        lines = [*lines[:-1], line] if text_width(line) <= width else [*lines, word]
-    lines = [line for line in lines if line]
-    return lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1][:-4]} ..."]
+def circle(centre: Place, radius: float) -> str:
+    """Return a circle on the sheet as path data."""
+    half = f"{number(radius)} {number(radius)} 0 1 1"
+    return f"M{number(centre[0] - radius)} {number(centre[1])}a{half} {number(2 * radius)} 0a{half} {number(-2 * radius)} 0"
