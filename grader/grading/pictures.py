@@ -70,8 +70,16 @@ def _spans(document: Document, result: Result, documents: DocumentCollection) ->
     heads: list[tuple[Document, Heading]] = []
     if criterion.check.function is evidence_shown:
         heads = headed(documents, criterion.arguments["names"])
-    spans = [(head.start, head.end) for other, head in heads if other is document]
+    spans = [(head.start, _last(document, head)) for other, head in heads if other is document]
     return spans or [(0, len(document.lines))]
+
+
+def _last(document: Document, head: Heading) -> int:
+    """Return the end of what is below a heading without empty lines, which may be on the next page."""
+    end = head.end
+    while end > head.start + 1 and not document.lines[end - 1].strip():
+        end -= 1
+    return end
 
 
 def _limited(found: Iterable[Picture | NotShown]) -> Iterator[Picture | NotShown]:
