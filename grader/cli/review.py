@@ -27,7 +27,7 @@ def review(
 
       grader review --gradebook lab6.db --criterion answer-floating-link
     """
-    from grader.usecases.manual_marks import review as review_all
+    from grader.usecases.review import review as review_all
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
