@@ -21,14 +21,17 @@ def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotSh
 
     A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned.
     """
+    return tuple(_limited(found for path in files_of(result) for found in _at(path, result, submission)))
+
+
+def files_of(result: Result) -> tuple[str, ...]:
+    """Return the paths of the files whose pictures belong to a criterion."""
     outcome = result.outcome
     if isinstance(outcome.measured, tuple):
-        paths = tuple(map(str, outcome.measured))
-    elif outcome.location is None or "[picture]" not in str(outcome.measured):
+        return tuple(map(str, outcome.measured))
+    if outcome.location is None or "[picture]" not in str(outcome.measured):
         return ()
-    else:
-        paths = (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
-    return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
+    return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
 
 
 def _at(path: str, result: Result, submission: Submission) -> Iterator[Picture | NotShown]:

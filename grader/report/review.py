@@ -1,11 +1,13 @@
 """A criterion as `grader review` shows it: the answer, the model answer, where the pictures are."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.gradebook.marks import Mark, QueuedResult
+from grader.classroom.students import Student
 from grader.report.console import wrapped
 from grader.text import counted_points, printable
 
@@ -13,13 +15,11 @@ _INDENT = 2
 _WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
-def render_item(item: QueuedResult, position: str, console: Console) -> None:
+def render_item(item: QueuedResult, position: str, pictures: Sequence[str], console: Console) -> None:
     """Print a criterion of a student, at `position` in the review. Text of the submission is never interpreted as markup."""
     criterion, outcome = item.result.criterion, item.result.outcome
-    student = item.grade.student
-    who = f"{student.name} ({student.key})" if student.name else student.key
     console.print()
-    head = f"{position}  {printable(who)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
+    head = f"{position}  {who(item.grade.student)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
     wrapped(console, Text(head, style="bold"), 0)
     wrapped(console, Text(printable(outcome.message)), 0)
     if item.result.manual_mark is not None and item.mark is not None:
@@ -28,12 +28,19 @@ def render_item(item: QueuedResult, position: str, console: Console) -> None:
         _print_block("Found", outcome.measured, console)
     elif isinstance(outcome.measured, tuple | list):
         _print_block("Look at", "\n".join(_where(item, str(file)) for file in outcome.measured), console)
+    if pictures:
+        _print_block("Pictures", "\n".join(pictures), console)
     if criterion.answer:
         _print_block("Model answer", criterion.answer, console)
     if outcome.location is not None:
         path = outcome.location.path
         line = "" if path.lower().endswith(_WITHOUT_LINES) else f", line {outcome.location.line}"
         wrapped(console, Text(printable(f"in {_where(item, path)}{line}"), "dim"), 0)
+
+
+def who(student: Student) -> str:
+    """Return the name and key of a student, printable."""
+    return printable(f"{student.name} ({student.key})" if student.name else student.key)
 
 
 def mark_text(mark: Mark) -> str:

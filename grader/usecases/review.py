@@ -13,20 +13,26 @@ from grader.report.review import mark_text, render_item
 from grader.report.screen import draw
 from grader.text import format_points
 from grader.usecases import Terminal
+from grader.usecases.review_pictures import write_pictures
 
 NOTHING = "nothing needs manual grading\n"
 _HELP = "points and a comment, s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
 
-def review(gradebook: Path, criterion: str, by: str, terminal: Terminal) -> str:
-    """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary."""
+def review(gradebook: Path, criterion: str, by: str, pictures: Path | None, terminal: Terminal) -> str:
+    """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary.
+
+    Pictures are written into the folder `pictures` first.
+    """
     with Gradebook(gradebook) as book:
         session = ReviewSession(Grades(book, answers=True), criterion, by)
         if not session.queue:
             return NOTHING
+        files = write_pictures(session, book, pictures, terminal.show) if pictures is not None else {}
         while session.item is not None:
-            page = partial(render_item, session.item, f"{session.position + 1} of {len(session.queue)}")
+            lines = files.get(session.queue[session.position], [])
+            page = partial(render_item, session.item, f"{session.position + 1} of {len(session.queue)}", lines)
             terminal.show(draw(page, terminal.screen()))
             if not _go_on(session, terminal):
                 break

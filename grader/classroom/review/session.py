@@ -15,8 +15,12 @@ from grader.classroom.gradebook.marks import (
     queued_result,
     reusable_comments,
 )
+from grader.classroom.gradebook.student_grade import SubmissionSources
+from grader.documents.pictures import NotShown, Picture
+from grader.grading.pictures import files_of, pictures_of
 
 MAX_COMMENTS = 9  # one key each
+_CHANGED = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
 
 
 class _Given(NamedTuple):
@@ -33,15 +37,15 @@ class ReviewSession:
     """
 
     def __init__(self, grades: Grades, criterion: str = "", by: str = "") -> None:
+        self.criteria = grades.newest_rubric().criteria
         if criterion:
             criterion_of(grades.newest_rubric(), criterion)
         self._grades, self._criterion, self._by = grades, criterion, by
         self.queue = tuple(manual_grading_queue(grades, criterion))
         self._given: list[_Given] = []
         self._own: dict[int, int] = {}  # the newest mark of this review, by the position of its item
-        self.position = -1
         self.item: QueuedResult | None = None
-        self.next()
+        self.start()
 
     @property
     def marked(self) -> int:
@@ -62,6 +66,11 @@ class ReviewSession:
     def can_undo(self) -> bool:
         """Return whether a mark of this review can be undone."""
         return bool(self._given)
+
+    def start(self) -> None:
+        """Go to the first item that is not marked by others, or to the end."""
+        self.position = -1
+        self.next()
 
     def go(self, position: int) -> None:
         """Go to a position in the queue, whatever has been done there; beyond it to the end."""
@@ -138,6 +147,16 @@ class ReviewSession:
         """Leave an item to others: what this review has marked there can no longer be undone."""
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
+
+    def pictures(self) -> tuple[Picture | NotShown, ...]:
+        """Return the pictures of the current item, and what is not shown. The submission is opened again, and must be unchanged."""
+        item = self.item
+        if item is None or not files_of(item.result):
+            return ()
+        submission = SubmissionSources(item.grade.files, self._grades.rubric(item.grade.rubric)).submission
+        if submission is None:
+            return (NotShown("pictures", _CHANGED),)
+        return pictures_of(item.result, submission)
 
     def comments(self) -> list[str]:
         """Return comments that were given before for the criterion of the current item, the most frequent first."""
