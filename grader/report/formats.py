@@ -36,6 +36,7 @@ class Format(StrEnum):
     GITHUB = "github", "github.txt", "github:render_github", "base"
     GRADESCOPE = "gradescope", "gradescope.json", "gradescope:render_gradescope"
     CLASSROOM50 = "classroom50", "classroom50.json", "classroom50:render_classroom50", "identity"
+    HTML = "html", "html", "pages.student:render_html"
     CODECLIMATE = "codeclimate", "codeclimate.json", "codeclimate:render_codeclimate", "base"
 
     def __new__(cls, name: str, ending: str = "", function: str = "", needs: Need = "") -> Self:

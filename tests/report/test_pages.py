@@ -2,6 +2,8 @@
 
 import hashlib
 import re
+import subprocess
+import sys
 from base64 import b64encode
 
 import pytest
@@ -10,6 +12,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from grader.report.pages.shell import render_page
+from tests.command_line import ROOT
 
 VALUES = {"version": "1", "title": "A page"}
 
@@ -47,3 +50,15 @@ def test_unknown_values_are_an_error() -> None:
         render_page("base.html", {"version": "1"}, {}, "", "")
     with pytest.raises(ValueError, match="JSON"):
         render_page("base.html", VALUES, {"x": float("nan")}, "", "")
+
+
+def test_grade_without_html_imports_nothing_of_it() -> None:
+    """A cold `grade` loads neither the templates nor the pages."""
+    program = """
+import sys
+from grader.cli.app import run
+assert run(["grade", "submissions/axis-negated", "--save", "markdown=/dev/null", "--save", "json=/dev/null"]) == 1
+loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.drawing"))]
+assert not loaded, loaded
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
