@@ -21,14 +21,17 @@ def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotSh
 
     A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned.
     """
+    return tuple(_limited(found for path in files_of(result) for found in _at(path, result, submission)))
+
+
+def files_of(result: Result) -> tuple[str, ...]:
+    """Return the paths of the files whose pictures belong to a criterion."""
     outcome = result.outcome
     if isinstance(outcome.measured, tuple):
-        paths = tuple(map(str, outcome.measured))
-    elif outcome.location is None or "[picture]" not in str(outcome.measured):
+        return tuple(map(str, outcome.measured))
+    if outcome.location is None or "[picture]" not in str(outcome.measured):
         return ()
-    else:
-        paths = (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
-    return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
+    return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
 
 
 def _at(path: str, result: Result, submission: Submission) -> Iterator[Picture | NotShown]:
@@ -70,8 +73,16 @@ def _spans(document: Document, result: Result, documents: DocumentCollection) ->
     heads: list[tuple[Document, Heading]] = []
     if criterion.check.function is evidence_shown:
         heads = headed(documents, criterion.arguments["names"])
-    spans = [(head.start, head.end) for other, head in heads if other is document]
+    spans = [(head.start, _last(document, head)) for other, head in heads if other is document]
     return spans or [(0, len(document.lines))]
+
+
+def _last(document: Document, head: Heading) -> int:
+    """Return the end of what is below a heading without empty lines, which may be on the next page."""
+    end = head.end
+    while end > head.start + 1 and not document.lines[end - 1].strip():
+        end -= 1
+    return end
 
 
 def _limited(found: Iterable[Picture | NotShown]) -> Iterator[Picture | NotShown]:

@@ -15,7 +15,7 @@ from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
-from grader.usecases.report_names import file_names, update_index
+from grader.usecases.report_names import INDEX, report_names, update_index
 from grader.usecases.writing import refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
@@ -46,9 +46,9 @@ def write_reports(
     except OSError as error:
         raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
     with Gradebook(book) as opened:
-        keys = [str(row[0]) for row in opened.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")]
-    names = file_names(keys)
-    earlier = update_index(folder, names)
+        names = report_names(opened)
+    keys = list(names)
+    earlier = update_index(folder / INDEX, names)
     tasks = [
         executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
         for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
 from grader.errors import InputError
 from grader.usecases.writing import save
@@ -18,6 +19,11 @@ _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?|index")
 _DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
 _MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it stays below the 255 of a file system
+
+
+def report_names(book: Gradebook) -> dict[str, str]:
+    """Return the file name without ending of each student who has a result, by key."""
+    return file_names([str(row[0]) for row in book.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")])
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
@@ -37,12 +43,11 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     return names
 
 
-def update_index(folder: Path, names: dict[str, str]) -> list[str]:
+def update_index(index: Path, names: dict[str, str]) -> list[str]:
     """Record the student of each report, and return the names of earlier reports whose students have none now.
 
     Raises InputError if the report of another student would be overwritten.
     """
-    index = folder / INDEX
     try:
         before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
     except (OSError, ValueError, IndexError):
