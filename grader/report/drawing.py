@@ -11,15 +11,15 @@ from lxml import etree
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
 from grader.drawing.projection import Stroke, projection
-from grader.drawing.sheet import WIDTH, Cell, sheet_of
-from grader.drawing.views import SIDE
+from grader.drawing.sheet import TITLE, WIDTH, Cell, framed_links, sheet_of
+from grader.drawing.views import SIDE, View
 from grader.report.drawing_key import description, put_key, put_legend
-from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels, outlines
+from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
 _HIDDEN = {"stroke-opacity": "0.5", "stroke-width": "0.9"}
-_THUMBNAIL = (160.0, 100.0)
+_TRIM = 20.0  # pixels that a thumbnail omits around a view
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
 
@@ -39,18 +39,22 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture) if legend else sheet.height)
 
 
-def thumbnail_element(picture: Picture) -> Any:
-    """Return a small picture of a robot: the side view without labels."""
-    root = _root("The robot from its side", description(picture))
-    width, height = _THUMBNAIL
-    cell = next(cell for cell in sheet_of(picture).cells if cell.view is SIDE)
-    group = put(root, "g")
+def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
+    """Return a small picture of a robot: one view, where the reference differs, and the way the wheels drive."""
+    root = _root(f"The robot in the {view.title} view", description(picture))
+    cell = next(cell for cell in sheet_of(picture).cells if cell.view is view)
+    labels, below, above, group = Labels(cell), Signs(), Signs(), put(root, "g")
+    add_ground(below, cell, picture, labels)
+    below.put(group)
     _put_bodies(group, cell, picture)
-    for seen in outlines(picture, cell):
-        put(group, "path", "reference", {"d": path_data(cell, seen.outline, closed=True)})
-    root.set("viewBox", f"{cell.left:g} {cell.top:g} {cell.width:g} {cell.height:g}")
-    root.set("width", f"{width:g}")
-    root.set("height", f"{height:g}")
+    add_outlines(above, cell, picture)
+    add_frames(above, cell, picture, labels, [link for link in picture.frames if link in picture.scene.poses])
+    add_wheels(above, cell, picture, labels)
+    above.put(group)
+    left, top, width, height = cell.left, cell.top + TITLE, cell.width, cell.height - TITLE
+    root.set("viewBox", f"{left + _TRIM:g} {top + _TRIM:g} {width - 2 * _TRIM:g} {height - 2 * _TRIM:g}")
+    root.set("width", f"{width - 2 * _TRIM:g}")
+    root.set("height", f"{height - 2 * _TRIM:g}")
     return root
 
 
@@ -86,7 +90,7 @@ def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
     below.put(group)
     _put_bodies(group, cell, picture)
     add_outlines(above, cell, picture)
-    add_frames(above, cell, picture, labels)
+    add_frames(above, cell, picture, labels, framed_links(picture))
     add_wheels(above, cell, picture, labels)
     add_callouts(above, cell, picture, labels)
     above.put(group)

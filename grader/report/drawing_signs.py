@@ -1,6 +1,6 @@
 """The signs of a drawing: ground, frames with axes, the way wheels drive, the reference's outlines, numbers where criteria failed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import hypot
 from typing import Any
 
@@ -8,7 +8,7 @@ from grader.drawing.labels import Labels
 from grader.drawing.order import Seen
 from grader.drawing.picture import Picture
 from grader.drawing.projection import seen_in
-from grader.drawing.sheet import Cell, Place, framed_links
+from grader.drawing.sheet import Cell, Place
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
@@ -103,10 +103,10 @@ def outlines(picture: Picture, cell: Cell) -> list[Seen]:
     return seen_in(picture.reference, picture.outlines, cell.view) if picture.reference is not None else []
 
 
-def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
     """Add the frames of links with their axes and letters, each that looks the same once."""
     shown: set[object] = set()
-    for link in framed_links(picture):
+    for link in links:
         pose = picture.scene.poses[link]
         key = tuple(round(value) for value in (*cell.place(pose.translation), *(10.0 * part for part in pose.rotation)))
         if key not in shown:

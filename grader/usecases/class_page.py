@@ -1,5 +1,6 @@
 """Write the class's page beside the pages of its students."""
 
+from concurrent.futures import Executor
 from datetime import datetime
 from pathlib import Path
 from urllib.parse import quote
@@ -10,14 +11,18 @@ from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import Format
 from grader.text import without_commands
 from grader.usecases.report_names import CLASS_PAGE
+from grader.usecases.thumbnails import thumbnails
 from grader.usecases.writing import save
 
 _MAX_ATTENTION = 100  # students who are named
 
 
-def write_class_page(book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
+def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
     """Write the page into the folder of the students' pages. A submission that is gone has no link."""
-    from grader.report.pages.class_page import render_class_page  # late: only pages need a library of templates
+    from grader.report.pages.class_page import (  # late: only pages need a library of templates
+        MAX_DRAWINGS,
+        render_class_page,
+    )
 
     with Gradebook(book) as opened:
         grades = Grades(opened, due)
@@ -27,5 +32,6 @@ def write_class_page(book: Path, folder: Path, names: dict[str, str], due: datet
             for grade in grades.all()
             if grade.student.key in names and not grade.is_gone
         }
-        page = render_class_page(summary, grades, links, {})
+        drawings = thumbnails(executor, book, summary.fixes[:MAX_DRAWINGS])
+        page = render_class_page(summary, grades, links, drawings)
     save(folder / CLASS_PAGE, without_commands(page))

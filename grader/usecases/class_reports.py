@@ -56,7 +56,7 @@ def write_reports(
     for task in tasks:
         task.result()
     if Format.HTML in formats:
-        write_class_page(book, folder, names, due)
+        write_class_page(executor, book, folder, names, due)
     warn(f"{counted(len(keys), 'report')} written to {printable_path(folder)}")
     if earlier:
         verb = "is" if len(earlier) == 1 else "are"
