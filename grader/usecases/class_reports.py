@@ -15,7 +15,7 @@ from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
-from grader.usecases.report_names import INDEX, report_names, update_index
+from grader.usecases.report_names import report_names, update_index
 from grader.usecases.writing import refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
@@ -48,7 +48,7 @@ def write_reports(
     with Gradebook(book) as opened:
         names = report_names(opened)
     keys = list(names)
-    earlier = update_index(folder / INDEX, names)
+    earlier = update_index(folder, names)
     tasks = [
         executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
         for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))

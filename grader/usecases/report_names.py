@@ -43,11 +43,12 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     return names
 
 
-def update_index(index: Path, names: dict[str, str]) -> list[str]:
+def update_index(folder: Path, names: dict[str, str]) -> list[str]:
     """Record the student of each report, and return the names of earlier reports whose students have none now.
 
     Raises InputError if the report of another student would be overwritten.
     """
+    index = folder / INDEX
     try:
         before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
     except (OSError, ValueError, IndexError):
