@@ -69,7 +69,7 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     assert page.get_by_role("status").inner_text() == "1 of 5 students: lost points in box"
     page.go_back()
     assert page.get_by_role("status").inner_text() == "1 of 5 students: a grade of 5.5 to 6.6"
-    page.get_by_role("link", name="Ben Oh").first.click()
+    page.locator("#students").get_by_role("link", name="Ben Oh").click()
     page.wait_for_url("**/emil.html")
     assert "Ben Oh" not in page.url
     page.go_back()
@@ -79,6 +79,7 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     page.locator("[data-group=mistake-0] button").click()
     assert names(opened) == ["Ben Oh"]
     assert page.evaluate("document.activeElement.id") == "find"
+    assert all(request.startswith(pages.as_uri()) for request in opened.requests)
 
 
 def test_markup_of_students_stays_text(open_page: Open, tmp_path: Path) -> None:
