@@ -42,7 +42,7 @@ def test_pages_of_a_class(top: Path) -> None:
         "ben": ("6", "5", ""),
         "cleo": ("0", "11", ""),
         "dora": ("", "", ""),
-        "emil": ("3", "5", "box, tall"),
+        "emil": ("3", "5", "box and tall"),
     }
     assert sorted(page.links()) == ["anna.html", "ben.html", "cleo.html", "emil.html"]
     assert page.members("status-missing") == ["Dora Fi"]
