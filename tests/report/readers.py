@@ -221,7 +221,7 @@ def read_page(text: str) -> Any:
 
 def page_structure(text: str) -> Any:
     """Return the elements of a page, and the keys of the data for its script. A diff has as many lines as its texts."""
-    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span")]
+    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span", "code")]
 
 
 def page_text(text: str) -> str:

@@ -5,12 +5,14 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
+from grader.drawing.picture import picture_of
 from grader.grading.report import Report
 from grader.report import content
 from grader.report.details import status_of
 from grader.report.evidence import evidence
 from grader.report.order import alike, groups, in_order
 from grader.report.pages.criteria import SYMBOLS, Card, card_of, failure_card
+from grader.report.pages.robot import robot_view
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
 from grader.text import format_points, printable
@@ -43,6 +45,8 @@ def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
     order, shown = in_order(report), set[str]()
     command = content.next_command(report)
+    picture = picture_of(report)
+    robot = robot_view(picture) if picture is not None else None
     values = {
         "version": report.version,
         "title": f"{content.score_text(report)}: {printable(report.rubric.title)}",
@@ -67,9 +71,18 @@ def render_html(report: Report) -> str:
         "ignored": content.ignored_lines(report),
         "next": command,
         "left": "" if command else content.what_is_left(report),
+        "robot": robot,
+        "views": "",
+        "called": {
+            result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
+        },
         "provenance": provenance(report),
     }
-    return render_page("student.html", values, {}, "student.css", "student.js")
+    data = robot.data if robot is not None else {}
+    scripts = (
+        "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js student.js"
+    )
+    return render_page("student.html", values, data, "robot.css student.css", scripts)
 
 
 def _shares(report: Report) -> tuple[float, float]:

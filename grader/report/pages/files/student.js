@@ -6,4 +6,20 @@ for (const button of document.querySelectorAll("button.copy")) {
     navigator.clipboard.writeText(lines.join("\n")).then(() => { button.textContent = "Copied"; });
   });
 }
+
+/* A failure that has the focus or the pointer marks its link; its number turns the robot to it. */
+for (const badge of viewer ? document.querySelectorAll("[data-show]") : []) {
+  const number = Number(badge.dataset.show), { link } = pageData.callouts.find((callout) => callout.number === number);
+  const card = badge.closest("article");
+  card.addEventListener("focusin", () => viewer.choose(link));
+  card.addEventListener("pointerenter", () => { viewer.state.hover = link; viewer.schedule(); });
+  card.addEventListener("pointerleave", () => { viewer.state.hover = -1; viewer.schedule(); });
+  badge.addEventListener("click", (event) => {
+    event.preventDefault();
+    viewer.show(number);
+    viewer.canvas.scrollIntoView({ block: "nearest" });
+    viewer.canvas.focus({ preventScroll: true });
+  });
+}
+
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));
