@@ -1,15 +1,13 @@
 """grader inspect: a URDF as ROS 2 reads it."""
 
-from functools import partial
 from typing import Annotated
 
 import typer
 
-from grader.cli.options import ArgOption, FormatOption, MaxSizeOption
+from grader.cli.options import ArgOption, MaxSizeOption
 from grader.cli.output import screen, warn
 from grader.files.reading import URDF_LIMIT
-from grader.report.formats import OutputFormat
-from grader.report.screen import draw
+from grader.report.formats import InspectFormat, render_inspection
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.writing import write_stdout
 
@@ -22,7 +20,7 @@ def inspect(
     path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
     joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
-    output_format: FormatOption = OutputFormat.TERMINAL,
+    output_format: Annotated[InspectFormat, typer.Option("--format", help="Output format.")] = InspectFormat.TERMINAL,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
 ) -> int:
@@ -37,11 +35,11 @@ def inspect(
       grader inspect my_robot.urdf --relative-to base_link
 
       grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57
+
+      grader inspect my_robot.urdf --format svg > my_robot.svg
     """
-    from grader.report.inspection import inspection_json, inspection_terminal
     from grader.usecases.inspect import inspect as read
 
     inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
-    is_json = output_format is OutputFormat.JSON
-    write_stdout(inspection_json(inspection) if is_json else draw(partial(inspection_terminal, inspection), screen()))
+    write_stdout(render_inspection(inspection, output_format, screen()))
     return ExitCode.FAILED if inspection.reading.verdict == "rejected" else ExitCode.PASSED

@@ -2,6 +2,7 @@
 
 import io
 import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,6 +16,9 @@ def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
     by: ByOption = "",
+    pictures: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
+    ] = None,
 ) -> int:
     """Grade what needs manual grading, one item at a time.
 
@@ -26,10 +30,12 @@ def review(
       grader review --gradebook lab6.db
 
       grader review --gradebook lab6.db --criterion answer-floating-link
+
+      grader review --gradebook lab6.db --pictures pictures
     """
-    from grader.usecases.manual_marks import review as review_all
+    from grader.usecases.review import review as review_all
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    write_stdout(review_all(gradebook, criterion, by, TERMINAL))
+    write_stdout(review_all(gradebook, criterion, by, pictures, TERMINAL))
     return 0

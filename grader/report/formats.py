@@ -1,16 +1,18 @@
 """The formats of a report: the one registry from which options, completion, files and documentation take them."""
 
 import os
+from collections.abc import Callable
 from enum import StrEnum
 from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from grader.report.screen import Screen, draw
 from grader.text import without_commands
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
+    from grader.report.inspection import Inspection
     from grader.report.locations import Base
 
 Need = Literal["", "console", "base", "identity"]
@@ -38,6 +40,7 @@ class Format(StrEnum):
     CLASSROOM50 = "classroom50", "classroom50.json", "classroom50:render_classroom50", "identity"
     HTML = "html", "html", "pages.student:render_html"
     CODECLIMATE = "codeclimate", "codeclimate.json", "codeclimate:render_codeclimate", "base"
+    SVG = "svg", "svg", "svg:render_svg"
 
     def __new__(cls, name: str, ending: str = "", function: str = "", needs: Need = "") -> Self:
         """Return a member with its row; the defaults are for a look-up by name alone."""
@@ -47,8 +50,26 @@ class Format(StrEnum):
         return member
 
 
+class InspectFormat(StrEnum):
+    """A format of an inspection: its name and `module:function` in this package; with the need `console` it prints."""
+
+    function: str
+    needs: Need
+
+    TERMINAL = "terminal", "inspection:inspection_terminal", "console"
+    JSON = "json", "inspection:inspection_json"
+    SVG = "svg", "svg:inspection_svg"
+
+    def __new__(cls, name: str, function: str = "", needs: Need = "") -> Self:
+        """Return a member with its row."""
+        member = str.__new__(cls, name)
+        member._value_ = name
+        member.function, member.needs = function, needs
+        return member
+
+
 class OutputFormat(StrEnum):
-    """The formats of an inspection, of a class, and of the changes between two runs."""
+    """The formats of a class, and of the changes between two runs."""
 
     TERMINAL = "terminal"
     JSON = "json"
@@ -67,12 +88,25 @@ def render(
     `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal` shows
     everything only if `verbose`. Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
-    module, _, name = kind.function.partition(":")
-    function = getattr(import_module(f"grader.report.{module}"), name)
+    function = _function(kind)
     if kind.needs == "console":
         return draw(partial(function, report, verbose=verbose), screen)
     text: str = function(report, *needed(kind, base))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
+
+
+def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
+    """Return an inspection in a format, for a screen or a file."""
+    function = _function(kind)
+    if kind.needs == "console":
+        return draw(partial(function, inspection), screen)
+    return without_commands(function(inspection))
+
+
+def _function(kind: Format | InspectFormat) -> Callable[..., Any]:
+    module, _, name = kind.function.partition(":")
+    function: Callable[..., Any] = getattr(import_module(f"grader.report.{module}"), name)
+    return function
 
 
 def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:

@@ -37,9 +37,9 @@ def write_reports(
     except OSError as error:
         raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
     with Gradebook(book) as opened:
-        keys = [str(row[0]) for row in opened.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")]
-    names = file_names(keys)
-    _update_index(folder / INDEX, names)
+        names = report_names(opened)
+    keys = list(names)
+    update_index(folder / INDEX, names)
     tasks = [
         executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
         for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))
@@ -73,6 +73,11 @@ def report_of(grades: Grades, grade: StudentGrade) -> Report:
     return replace(report, notes=(*report.notes, note))
 
 
+def report_names(book: Gradebook) -> dict[str, str]:
+    """Return the file name without ending of each student who has a result, by key."""
+    return file_names([str(row[0]) for row in book.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")])
+
+
 def file_names(keys: Sequence[str]) -> dict[str, str]:
     """Return a file name without ending for each key: valid on every system, and unique without regard to case.
 
@@ -90,7 +95,7 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     return names
 
 
-def _update_index(index: Path, names: dict[str, str]) -> None:
+def update_index(index: Path, names: dict[str, str]) -> None:
     """Record the student of each report. Raises InputError if the report of another student would be overwritten."""
     try:
         before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}

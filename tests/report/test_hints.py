@@ -19,7 +19,7 @@ AGAIN = f"Fixed by the same edit as {AXLE[0]}."
 MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
 
 
-@pytest.mark.parametrize("kind", [kind for kind in Format if kind is not Format.JSON])
+@pytest.mark.parametrize("kind", [kind for kind in READERS if kind is not Format.JSON])
 def test_every_format_shows_a_hint_once(kind: Format) -> None:
     """In full at the costliest failure, then by its name; in place of the feedback."""
     report = hinted()

@@ -1,0 +1,189 @@
+"""The edges and the outline of a shape in a view, as exact lines and arcs; metres in the view's frame."""
+
+from collections.abc import Iterator
+from itertools import product
+from math import cos, hypot, pi, sin, tau
+from typing import NamedTuple
+
+from grader.drawing.views import VIEWER
+from grader.robot.model import Box, Cylinder, Sphere
+from grader.robot.shapes import Shape
+from grader.robot.transforms import Transform, Vector, cross, minus, unit
+
+_EDGE_ON = 1e-9  # a face whose normal leans less to the viewer is seen from its edge
+_ALIGNED = (1.0, 0.0, 0.0)
+
+
+class Line(NamedTuple):
+    """The straight edge from one point to another."""
+
+    start: Vector
+    end: Vector
+
+    def at(self, share: float) -> Vector:
+        """Return the point at a share of the length, from 0 to 1."""
+        (a, b, c), (d, e, f) = self.start, self.end
+        return (a + share * (d - a), b + share * (e - b), c + share * (f - c))
+
+    def cut(self, start: float, end: float) -> "Line":
+        """Return the part between two shares of the length."""
+        return Line(self.at(start), self.at(end))
+
+
+class Arc(NamedTuple):
+    """A part of a circle: centre + cos(angle) major + sin(angle) minor, from `start` to `end` in radians.
+
+    In the view the two radii are the semi-axes of the ellipse: `major` is across the line of sight.
+    """
+
+    centre: Vector
+    major: Vector
+    minor: Vector
+    start: float
+    end: float
+
+    def at(self, share: float) -> Vector:
+        """Return the point at a share of the angle, from 0 to 1."""
+        angle = self.start + share * (self.end - self.start)
+        c, s = cos(angle), sin(angle)
+        (x, y, z), (a, b, d), (e, f, g) = self.centre, self.major, self.minor
+        return (x + c * a + s * e, y + c * b + s * f, z + c * d + s * g)
+
+    def cut(self, start: float, end: float) -> "Arc":
+        """Return the part between two shares of the angle."""
+        whole = self.end - self.start
+        return self._replace(start=self.start + start * whole, end=self.start + end * whole)
+
+
+Curve = Line | Arc
+
+
+class Edge(NamedTuple):
+    """An edge of a shape. `faces_viewer` is false where the shape itself hides it."""
+
+    curve: Curve
+    faces_viewer: bool
+
+
+def edges(shape: Shape, pose: Transform) -> list[Edge]:
+    """Return the edges of a shape with T_view_shape, and the lines along which its curved surface turns away."""
+    match shape:
+        case Box(size=size):
+            return [*_box_edges(_columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)), pose)]
+        case Cylinder(radius=radius, length=length):
+            return [*_cylinder_edges(_Tube.of(radius, length, pose))]
+        case Sphere(radius=radius):
+            return [Edge(_ball(radius, pose), faces_viewer=True)]
+
+
+def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
+    """Return the closed outline of a shape with T_view_shape: curves, each from the end of the one before."""
+    match shape:
+        case Box(size=size):
+            halves = _columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0))
+            corners = _hull([_corner(pose.translation, halves, signs) for signs in product((-1.0, 1.0), repeat=3)])
+            return tuple(Line(a, b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True))
+        case Cylinder(radius=radius, length=length):
+            tube = _Tube.of(radius, length, pose)
+            near, far = tube.rim(tube.near, 0.0, -pi), tube.rim(tube.far, pi, 0.0)
+            return (near, Line(near.at(1.0), far.at(0.0)), far, Line(far.at(1.0), near.at(0.0)))
+        case Sphere(radius=radius):
+            return (_ball(radius, pose),)
+
+
+class _Tube(NamedTuple):
+    """A cylinder in a view: the centres of its caps, `near` the one that faces the viewer, and the radii of their rims.
+
+    `major` is across the line of sight, and `minor` points to the viewer, where the axis does not.
+    """
+
+    near: Vector
+    far: Vector
+    major: Vector
+    minor: Vector
+    shows_cap: bool
+
+    @classmethod
+    def of(cls, radius: float, length: float, pose: Transform) -> "_Tube":
+        axis = pose.rotate(VIEWER)
+        if axis[2] < 0.0:
+            axis = (-axis[0], -axis[1], -axis[2])
+        across = unit(cross(axis, VIEWER)) if hypot(axis[0], axis[1]) > _EDGE_ON else _ALIGNED
+        across = across or _ALIGNED
+        up = cross(across, axis)
+        near = _moved(pose.translation, axis, length / 2.0)
+        far = _moved(pose.translation, axis, -length / 2.0)
+        return cls(near, far, _scaled(across, radius), _scaled(up, radius), shows_cap=axis[2] > _EDGE_ON)
+
+    def rim(self, centre: Vector, start: float, end: float) -> Arc:
+        return Arc(centre, self.major, self.minor, start, end)
+
+
+def _cylinder_edges(tube: _Tube) -> Iterator[Edge]:
+    is_end_on = hypot(*minus(tube.near, tube.far)[:2]) <= _EDGE_ON
+    if tube.shows_cap:
+        yield Edge(tube.rim(tube.near, 0.0, tau), faces_viewer=True)
+    else:
+        yield Edge(tube.rim(tube.near, 0.0, pi), faces_viewer=True)
+    if not is_end_on:
+        yield Edge(tube.rim(tube.far, 0.0, pi), faces_viewer=True)
+        for sign in (1.0, -1.0):
+            side = Line(_moved(tube.near, tube.major, sign), _moved(tube.far, tube.major, sign))
+            yield Edge(side, faces_viewer=True)
+        if tube.shows_cap:
+            yield Edge(tube.rim(tube.far, pi, tau), faces_viewer=False)
+
+
+def _box_edges(halves: tuple[Vector, Vector, Vector], pose: Transform) -> Iterator[Edge]:
+    to_viewer = pose.rotation[6:9]  # of each axis of the box
+    for axis, first, second in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        if not any(halves[axis][:2]):
+            continue
+        for signs in product((-1.0, 1.0), repeat=2):
+            middle = _moved(_moved(pose.translation, halves[first], signs[0]), halves[second], signs[1])
+            line = Line(_moved(middle, halves[axis], -1.0), _moved(middle, halves[axis], 1.0))
+            leans = max(signs[0] * to_viewer[first], signs[1] * to_viewer[second])
+            yield Edge(line, faces_viewer=leans > _EDGE_ON)
+
+
+def _ball(radius: float, pose: Transform) -> Arc:
+    return Arc(pose.translation, (radius, 0.0, 0.0), (0.0, radius, 0.0), 0.0, tau)
+
+
+def _columns(pose: Transform, sizes: Vector) -> tuple[Vector, Vector, Vector]:
+    """Return the vectors from a centre along the axes of a shape."""
+    a, b, c, d, e, f, g, h, i = pose.rotation
+    x, y, z = sizes
+    return (a * x, d * x, g * x), (b * y, e * y, h * y), (c * z, f * z, i * z)
+
+
+def _corner(centre: Vector, halves: tuple[Vector, Vector, Vector], signs: tuple[float, ...]) -> Vector:
+    for half, sign in zip(halves, signs, strict=True):
+        centre = _moved(centre, half, sign)
+    return centre
+
+
+def _hull(points: list[Vector]) -> list[Vector]:
+    """Return the corners of the convex hull in the view, counter-clockwise (Andrew's monotone chain)."""
+    ordered = sorted(points)
+    chains = []
+    for run in (ordered, ordered[::-1]):
+        chain: list[Vector] = []
+        for point in run:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 1e-15:
+                chain.pop()
+            chain.append(point)
+        chains.append(chain[:-1])
+    return chains[0] + chains[1] or points[:1]
+
+
+def _turn(a: Vector, b: Vector, c: Vector) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _moved(point: Vector, along: Vector, share: float) -> Vector:
+    return (point[0] + share * along[0], point[1] + share * along[1], point[2] + share * along[2])
+
+
+def _scaled(vector: Vector, factor: float) -> Vector:
+    return (vector[0] * factor, vector[1] * factor, vector[2] * factor)

@@ -1,0 +1,95 @@
+"""Places for labels: near what they label, and none over another."""
+
+from collections.abc import Iterable, Iterator
+from math import cos, hypot, sin, tau
+from typing import NamedTuple
+
+from grader.drawing.sheet import Cell, Place
+
+_RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what is labelled
+_DIRECTIONS = 16
+_STEP = 4.0  # pixels between the points at which a leader line is compared with rectangles
+
+
+class Rectangle(NamedTuple):
+    """A rectangle on the sheet, in pixels."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    @classmethod
+    def around(cls, places: Iterable[Place], margin: float) -> "Rectangle":
+        """Return the rectangle around places, with a margin."""
+        xs, ys = zip(*places, strict=True)
+        return cls(min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin)
+
+    def overlaps(self, other: "Rectangle") -> bool:
+        """Return whether two rectangles have an area in common."""
+        return (
+            self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
+        )
+
+    def contains(self, place: Place) -> bool:
+        """Return whether a place is inside."""
+        return self.left < place[0] < self.right and self.top < place[1] < self.bottom
+
+
+class Labels:
+    """The labels of one cell. `taken` are the rectangles of labels, `marks` those of signs that labels rather leave free."""
+
+    def __init__(self, cell: Cell) -> None:
+        self._room = Rectangle(cell.left, cell.top, cell.left + cell.width, cell.top + cell.height)
+        self._taken: list[Rectangle] = []
+        self._marks: list[Rectangle] = []
+
+    def mark(self, places: Iterable[Place], margin: float = 2.0) -> None:
+        """Record a sign that labels should leave free."""
+        self._marks.append(Rectangle.around(places, margin))
+
+    def take(self, place: Place, width: float, height: float) -> bool:
+        """Put a label with its centre at a place, and return whether it is free."""
+        box = Rectangle.around([place], 0.0)
+        box = Rectangle(box.left - width / 2, box.top - height / 2, box.right + width / 2, box.bottom + height / 2)
+        if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
+            return False
+        self._taken.append(box)
+        return True
+
+    def put_near(self, place: Place, size: float) -> Place:
+        """Put a square label near a place and return its centre.
+
+        It overlaps no other label; of the free places it has the nearest one at which it and its leader line cover fewest signs.
+        """
+        best = min(
+            (found for found in self._candidates(place, size) if found[0] < 1e6),
+            default=None,
+            key=lambda found: found[0],
+        )
+        centre = best[1] if best is not None else place
+        self._taken.append(Rectangle.around([centre], size / 2.0))
+        return centre
+
+    def _candidates(self, place: Place, size: float) -> Iterator[tuple[float, Place]]:
+        for ring in _RINGS:
+            for number in range(_DIRECTIONS):
+                angle = tau * (number + 2) / _DIRECTIONS  # up and to the right first
+                centre = place[0] + ring * cos(angle), place[1] - ring * sin(angle)
+                box = Rectangle.around([centre], size / 2.0 + 1.0)
+                if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
+                    continue
+                yield ring + self._cost(place, centre, box), centre
+
+    def _cost(self, place: Place, centre: Place, box: Rectangle) -> float:
+        covered = sum(30.0 for mark in self._marks if box.overlaps(mark))
+        steps = max(1, round(hypot(centre[0] - place[0], centre[1] - place[1]) / _STEP))
+        line = [
+            (place[0] + (centre[0] - place[0]) * step / steps, place[1] + (centre[1] - place[1]) * step / steps)
+            for step in range(2, steps)
+        ]
+        return covered + sum(40.0 for other in self._taken if any(map(other.contains, line)))
+
+    def _is_outside(self, box: Rectangle) -> bool:
+        room = self._room
+        return box.left < room.left or box.right > room.right or box.top < room.top or box.bottom > room.bottom

@@ -1,0 +1,121 @@
+"""A scene in one view: bodies from back to front, and their edges where they are seen and where they are hidden."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import hypot
+from typing import NamedTuple
+
+from grader.drawing.covering import Piece
+from grader.drawing.curves import Curve, Line, edges
+from grader.drawing.order import Seen, overlapping, painted
+from grader.drawing.scene import Body, Rgba, Scene
+from grader.drawing.views import View
+
+_TRANSPARENT = 0.05  # a body with less alpha hides nothing
+_SAME = 1e-6  # metres
+_SHORT = 1e-5  # metres: shorter pieces are left out
+
+
+class Stroke(NamedTuple):
+    """A piece of an edge, and the colour on which it is seen: that of its body, or of the one in front of it."""
+
+    curve: Curve
+    rgba: Rgba
+
+
+class Projection(NamedTuple):
+    """What is seen of a scene in one view. `bodies` are from back to front; `hidden` strokes are behind or inside of bodies."""
+
+    view: View
+    bodies: tuple[Seen, ...]
+    visible: tuple[Stroke, ...]
+    hidden: tuple[Stroke, ...]
+
+
+def projection(scene: Scene, view: View) -> Projection:
+    """Return what is seen of a scene in a view."""
+    seen = seen_in(scene, scene.bodies, view)
+    pairs = overlapping(seen) or []
+    behind: dict[int, list[Seen]] = {}
+    for one, other in pairs:
+        behind.setdefault(one, []).append(seen[other])
+        behind.setdefault(other, []).append(seen[one])
+    visible: list[Stroke] = []
+    hidden: list[Stroke] = []
+    for index, body in enumerate(seen):
+        others = [other for other in behind.get(index, ()) if _may_hide(other, body)]
+        _add_strokes(body, others, visible, hidden)
+    shown = {_key(stroke.curve): stroke for stroke in visible}
+    unshown = {_key(stroke.curve): stroke for stroke in hidden if _key(stroke.curve) not in shown}
+    return Projection(
+        view, tuple(seen[index] for index in painted(seen, pairs)), tuple(shown.values()), tuple(unshown.values())
+    )
+
+
+def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
+    """Return bodies of a scene as they are seen in a view."""
+    return [Seen.of(body, view.T_view_frame @ scene.pose(body)) for body in bodies]
+
+
+def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidden: list[Stroke]) -> None:
+    """Add the edges of a body: the pieces that other bodies cover are hidden, and those that it hides itself."""
+    own = seen.body.rgba
+    for curve, faces_viewer in edges(seen.body.shape, seen.pose):
+        covered = [(piece, other) for other in others for piece in other.cover.pieces(curve)]
+        if not faces_viewer:
+            front = max((other for _, other in covered), key=_front, default=None)
+            hidden += _strokes(curve, [(0.0, 1.0)], front.body.rgba if front is not None else own)
+            continue
+        rest = 0.0
+        for start, end, rgba in _merged(covered):
+            visible += _strokes(curve, [(rest, start)], own)
+            hidden += _strokes(curve, [(start, end)], rgba)
+            rest = end
+        visible += _strokes(curve, [(rest, 1.0)], own)
+
+
+def _may_hide(one: Seen, other: Seen) -> bool:
+    return one.body.rgba[3] >= _TRANSPARENT and one.extents[2][1] > other.extents[2][0] + _SAME
+
+
+def _front(seen: Seen) -> float:
+    return seen.extents[2][1]
+
+
+def _merged(covered: list[tuple[Piece, Seen]]) -> Iterator[tuple[float, float, Rgba]]:
+    """Yield the union of covered pieces in ascending order, each with the colour of the body in front."""
+    start, end, front = 0.0, -1.0, None
+    for (one, other), seen in sorted(covered, key=lambda pair: pair[0]):
+        if front is not None and one <= end:
+            end, front = max(end, other), max(front, seen, key=_front)
+            continue
+        if front is not None:
+            yield start, end, front.body.rgba
+        start, end, front = one, other, seen
+    if front is not None:
+        yield start, end, front.body.rgba
+
+
+def _strokes(curve: Curve, pieces: list[Piece], rgba: Rgba) -> Iterator[Stroke]:
+    for start, end in pieces:
+        piece = curve.cut(start, end) if (start, end) != (0.0, 1.0) else curve
+        if not isinstance(piece, Line) and hypot(*piece.minor[:2]) <= _SAME:
+            piece = Line(piece.at(0.0), piece.at(1.0))  # an arc that is seen from its edge
+        if end > start and _length(piece) > _SHORT:
+            yield Stroke(piece, rgba)
+
+
+def _length(curve: Curve) -> float:
+    if isinstance(curve, Line):
+        return hypot(curve.end[0] - curve.start[0], curve.end[1] - curve.start[1])
+    return abs(curve.end - curve.start) * hypot(*curve.major[:2])
+
+
+def _key(curve: Curve) -> tuple[object, ...]:
+    """Return what is equal for curves that look the same."""
+    if isinstance(curve, Line):
+        return tuple(sorted((_rounded(curve.start), _rounded(curve.end))))
+    return (_rounded(curve.centre), _rounded(curve.at(0.0)), _rounded(curve.at(0.5)), _rounded(curve.at(1.0)))
+
+
+def _rounded(point: Sequence[float]) -> tuple[float, float]:
+    return round(point[0] / 1e-5) * 1e-5 + 0.0, round(point[1] / 1e-5) * 1e-5 + 0.0

@@ -1,0 +1,130 @@
+"""The sheet of a drawing: the three views at one scale, side by side as in third-angle projection.
+
+The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points down.
+"""
+
+from collections.abc import Iterable, Iterator
+from math import floor, log10
+from typing import NamedTuple
+
+from grader.drawing.picture import Picture
+from grader.drawing.scene import Body, Scene
+from grader.drawing.views import FRONT, SIDE, TOP, View
+from grader.robot.shapes import extent
+from grader.robot.transforms import Vector
+
+Place = tuple[float, float]
+
+WIDTH = 600.0
+MARGIN = 40.0  # around the robot in each view, for labels
+TITLE = 18.0
+KEY_WIDTH = 226.0
+KEY_HEIGHT = 150.0
+_MAX_HEIGHT = 460.0  # of the robot in the views above each other
+_MAX_BAR = 90.0
+_SMALLEST = 0.02  # metres
+_MAX_FRAMES = 12
+_FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
+_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
+
+
+class Cell(NamedTuple):
+    """A view on a sheet: its rectangle, where the frame's origin is, and pixels per metre."""
+
+    view: View
+    left: float
+    top: float
+    width: float
+    height: float
+    origin: Place
+    scale: float
+
+    def place(self, point: Vector) -> Place:
+        """Return where a point of the frame is on the sheet."""
+        return self.on_sheet(self.view.T_view_frame.apply(point))
+
+    def on_sheet(self, point: Vector) -> Place:
+        """Return where a point of the view is on the sheet."""
+        return self.origin[0] + self.scale * point[0], self.origin[1] - self.scale * point[1]
+
+    def direction(self, direction: Vector) -> Vector:
+        """Return a direction of the frame on the sheet, with y down; the third number is its part to the viewer."""
+        x, y, z = self.view.T_view_frame.rotate(direction)
+        return (x, -y, z)
+
+
+class Sheet(NamedTuple):
+    """The cells of the three views, where the key is, the height that they need, and pixels per metre."""
+
+    cells: tuple[Cell, ...]
+    key: Place
+    height: float
+    scale: float
+
+    @property
+    def bar(self) -> tuple[float, str]:
+        """The length of the scale bar in pixels, and what it means: 1, 2 or 5 times a power of ten."""
+        longest = _MAX_BAR / self.scale
+        power = 10.0 ** floor(log10(longest))
+        length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
+        size, name = next((pair for pair in _UNITS if length >= pair[0] * 0.999), _UNITS[-1])
+        return length * self.scale, f"{length / size:g} {name}"
+
+
+def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
+    """Return the sheet for a picture, whose cells begin at `top`."""
+    low, high = _bounds(picture)
+    x, y, z = (max(most - least, _SMALLEST) for least, most in zip(low, high, strict=True))
+    room = WIDTH - 4.0 * MARGIN
+    scale = min(room / (x + y), (WIDTH - KEY_WIDTH - 2.0 * MARGIN) / x, _MAX_HEIGHT / (y + z))
+    right = max(y * scale + 2.0 * MARGIN, KEY_WIDTH)
+    columns = ((0.0, WIDTH - right), (WIDTH - right, right))
+    rows = (max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT), z * scale + 2.0 * MARGIN + TITLE)
+    middle = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0
+    cells = []
+    for view, column, row in ((TOP, 0, 0), (SIDE, 0, 1), (FRONT, 1, 1)):
+        left, width = columns[column]
+        above = top + sum(rows[:row])
+        u, v, _ = view.T_view_frame.apply(middle)
+        origin = left + width / 2.0 - scale * u, above + (TITLE + rows[row]) / 2.0 + scale * v
+        cells.append(Cell(view, left, above, width, rows[row], origin, scale))
+    return Sheet(tuple(cells), (columns[1][0], top), top + sum(rows), scale)
+
+
+def _bounds(picture: Picture) -> tuple[Vector, Vector]:
+    """Return the least and the largest coordinates of what a picture shows, in the frame."""
+    points = [*_extremes(picture)] or [(0.0, 0.0, 0.0)]
+    low, high = ([pick(point[axis] for point in points) for axis in range(3)] for pick in (min, max))
+    size = max(most - least for least, most in zip(low, high, strict=True))
+    for scene in (picture.scene, picture.reference):
+        ground = scene.ground if scene is not None else None
+        if ground is not None and low[2] - _FAR * size <= ground.translation[2] <= high[2] + _FAR * size:
+            low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _extremes(picture: Picture) -> Iterator[Vector]:
+    yield from _corners(picture.scene, picture.scene.bodies)
+    if picture.reference is not None:
+        yield from _corners(picture.reference, picture.outlines)
+        yield from (picture.reference.poses[link].translation for link in picture.frames)
+    yield from (picture.scene.poses[link].translation for link in framed_links(picture))
+
+
+def _corners(scene: Scene, bodies: Iterable[Body]) -> Iterator[Vector]:
+    """Yield the least and the largest coordinates of each body."""
+    for body in bodies:
+        (a, b), (c, d), (e, f) = (extent(body.shape, scene.pose(body), axis) for axis in _AXES)
+        yield from ((a, c, e), (b, d, f))
+
+
+def framed_links(picture: Picture) -> list[str]:
+    """Return the links whose frames are shown: those that show something or are called out; of very many only the latter."""
+    scene = picture.scene
+    called = [callout.link for callout in picture.callouts]
+    root = scene.robot.root_of(scene.frame)
+    links = dict.fromkeys([scene.frame, root, *called, *picture.frames, *(body.link for body in scene.bodies)])
+    if len(links) > _MAX_FRAMES:
+        links = dict.fromkeys([scene.frame, *called[:_MAX_FRAMES]])
+    return [link for link in links if link in scene.poses]

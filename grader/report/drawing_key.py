@@ -1,0 +1,103 @@
+"""The words of a drawing: the key of its signs with the scale bar, and the criteria that it calls out."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+from grader.drawing.picture import Callout, Picture
+from grader.drawing.sheet import WIDTH, Place, Sheet
+from grader.report.content import points_of
+from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
+from grader.report.svg_elements import circle, put, segments
+from grader.report.svg_text import put_lines
+from grader.text import counted_points, enumerated, printable
+
+_ROW = 18.0
+_SIGN = 34.0  # pixels left of the text of a row
+_LEFT = 14.0
+_INDENT = 26.0
+_NOWHERE = "not in the picture"
+_Draw = Callable[[Signs, Place], None]
+
+
+def put_key(group: Any, sheet: Sheet, picture: Picture) -> None:
+    """Add the scale bar, and each sign that the drawing has with its meaning."""
+    left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
+    signs = Signs()
+    length, words = sheet.bar
+    ends = (((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))
+    signs.line("ground", segments([((left, top), (left + length, top)), *ends]))
+    signs.text("text", (left + length + 8.0, top + 4.0), words)
+    for row, (draw, meaning) in enumerate(_meanings(picture), 1):
+        place = left, top + 6.0 + row * _ROW
+        draw(signs, place)
+        signs.text("faint", (left + _SIGN, place[1] + 4.0), meaning)
+    signs.put(group)
+
+
+def _meanings(picture: Picture) -> Iterator[tuple[_Draw, str]]:
+    """Yield the signs of a drawing with their meanings."""
+    scene, reference = picture.scene, picture.reference
+    if any(callout.point is not None for callout in picture.callouts):
+        yield lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1), "points lost: see below"
+    grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
+    is_elsewhere = grounds[0] is not None and grounds[1] is not None and is_lifted(grounds[0], grounds[1])
+    if picture.outlines or picture.frames or is_elsewhere:
+        yield partial(_draw_line, "reference"), "reference solution"
+    if any(wheel.travel is not None for wheel in scene.wheels):
+        yield (
+            lambda signs, at: signs.line("arrow", wheel_sign((at[0] - 3.0, at[1]), (1.0, 0.0, 0.0))),
+            "positive turn drives this way",
+        )
+    if any(wheel.travel is None for wheel in scene.wheels):
+        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "turned, it does not roll"
+    yield _draw_axes, "frame of a link: x, y, z"
+    if len(scene.bodies) > 1:
+        yield partial(_draw_line, "hidden"), "hidden edge"
+
+
+def _draw_line(look: str, signs: Signs, at: Place) -> None:
+    signs.line(look, segments([(at, (at[0] + 26.0, at[1]))]))
+
+
+def _draw_axes(signs: Signs, at: Place) -> None:
+    x, y = at[0] + 6.0, at[1] + 5.0
+    signs.line("axis-x", segments([((x, y), (x + 14.0, y))]))
+    signs.line("axis-z", segments([((x, y), (x, y - 14.0))]))
+    signs.line("axis-y", circle((x, y), 2.5))
+
+
+def put_legend(root: Any, top: float, picture: Picture) -> float:
+    """Add the criteria that are called out and what is not shown, below `top`; return where they end, in pixels."""
+    if not picture.callouts and not picture.scene.missing:
+        return top
+    put(root, "path", "rule", {"d": segments([((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0))])})
+    badges, strong, plain = Signs(), put(root, "g", "strong"), put(root, "g", "text")
+    left, width, y = _LEFT + _INDENT, WIDTH - 2.0 * _LEFT - _INDENT, top + 28.0
+    for callout in picture.callouts:
+        add_badge(badges, (_LEFT + 9.0, y - 4.0), callout.number)
+        y = put_lines(strong, left, y, width, heading(callout))
+        for result in callout.results:
+            criterion = result.criterion
+            words = f"{criterion.id} ({counted_points(criterion.points)}): {result.outcome.message}"
+            y = put_lines(plain, left, y, width, words)
+        y += 6.0
+    for sentence in picture.scene.missing:
+        y = put_lines(plain, left, y, width, sentence)
+    badges.put(root)
+    return y + 2.0
+
+
+def heading(callout: Callout) -> str:
+    """Return the link of a callout, the points that its criteria cost, and whether it has no place in the picture."""
+    words = f"{callout.link or 'The robot'}: {points_of(callout.results)} lost"
+    return words if callout.point is not None else f"{words} ({_NOWHERE})"
+
+
+def description(picture: Picture) -> str:
+    """Return in words what a picture calls out and what it does not show."""
+    called = [
+        f"{callout.number}: {heading(callout)}, {enumerated([result.criterion.id for result in callout.results])}."
+        for callout in picture.callouts
+    ]
+    return printable(" ".join((*called, *picture.scene.missing)))

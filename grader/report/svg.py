@@ -1,0 +1,52 @@
+"""A report as a picture: SVG with the three views of the graded robot, and the criteria that failed where they did."""
+
+from lxml import etree
+
+from grader.drawing.picture import Picture, picture_of
+from grader.drawing.scene import scene_of
+from grader.drawing.sheet import WIDTH
+from grader.grading.report import Report
+from grader.report.content import score_text, summary
+from grader.report.drawing import drawing_element, empty_element
+from grader.report.inspection import Inspection
+from grader.report.svg_elements import DARK_RULES, SVG, put
+from grader.report.svg_text import LINE, put_lines, wrapped
+
+_STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
+_LEFT, _TITLE = 14.0, 28.0  # pixels
+_WIDTH = WIDTH - 2.0 * _LEFT
+
+
+def render_svg(report: Report) -> str:
+    """Return the drawing of the graded robot as a file; without a robot it says why in a line."""
+    submission = report.submission
+    reason = "No picture: no robot could be read from the submission."
+    if submission.has_urdf and submission.robot is not None and submission.robot.links:
+        reason = "No picture: no link of the robot has a place."
+    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), reason)
+
+
+def inspection_svg(inspection: Inspection) -> str:
+    """Return the drawing of an inspected robot as a file, with its joints at the given positions."""
+    robot = inspection.robot
+    picture = None
+    if robot is not None and inspection.relative_to is not None:
+        picture = Picture(scene_of(robot, inspection.relative_to), None, (), (), ())
+    name = robot.robot.name if robot is not None else inspection.path
+    positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
+    words = f"{inspection.path}{f'; {positions}' if positions else ''}"
+    return _file(picture, name or inspection.path, words, "No picture: no robot could be read from the file.")
+
+
+def _file(picture: Picture | None, title: str, words: str, reason: str) -> str:
+    lines = wrapped(words, _WIDTH) + ([] if picture is not None else ["", *wrapped(reason, _WIDTH)])
+    top = _TITLE + LINE * len(lines) + 8.0
+    root = drawing_element(picture, title, top) if picture is not None else empty_element(title, reason, top)
+    put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
+    faint = put(root, "g", "faint")
+    for number, line in enumerate(lines, 1):
+        put(faint, "text", "", {"x": _LEFT, "y": _TITLE + LINE * number}, line)
+    style = etree.Element(f"{{{SVG}}}style")
+    style.text = _STYLE
+    root.insert(1, style)
+    return etree.tostring(root, encoding="unicode") + "\n"

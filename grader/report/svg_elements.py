@@ -1,0 +1,150 @@
+"""SVG elements: their looks in light and dark mode, curves as path data, text that is only text.
+
+The looks for light mode and print are presentation attributes, which need no style sheet; a style sheet changes the colours of
+classes in dark mode.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import atan2, degrees, hypot, isfinite, tau
+from typing import Any
+
+from lxml import etree
+
+from grader.drawing.curves import Arc, Curve, Line
+from grader.drawing.scene import Rgba
+from grader.drawing.sheet import Cell, Place
+from grader.text import printable
+
+SVG = "http://www.w3.org/2000/svg"
+_LINE = {"fill": "none", "stroke-linecap": "round", "stroke-linejoin": "round"}
+_AXIS = {**_LINE, "stroke-width": "1.8"}
+_INK, _PAPER = "#1c1f23", "#ffffff"
+_DARK_INK, _DARK_PAPER = "#e8eaed", "#16191d"
+# The looks of each class: presentation attributes, and the colours that dark mode changes. No sign is told by its hue alone.
+LOOKS: Mapping[str, tuple[Mapping[str, str], Mapping[str, str]]] = {
+    "paper": ({"fill": _PAPER}, {"fill": _DARK_PAPER}),
+    "rule": ({**_LINE, "stroke": "#c9ced6"}, {"stroke": "#3a4048"}),
+    "edge": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {"stroke": _DARK_INK}),
+    "edge-on-light": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {}),
+    "edge-on-dark": ({**_LINE, "stroke": _DARK_INK, "stroke-width": "1.3"}, {}),
+    "hidden": ({**_LINE, "stroke": _INK, "stroke-opacity": "0.5"}, {"stroke": _DARK_INK}),
+    "ground": ({**_LINE, "stroke": "#6b7280", "stroke-width": "1.5"}, {"stroke": "#9aa3af"}),
+    "halo": (
+        {**_LINE, "stroke": _PAPER, "stroke-width": "5", "stroke-opacity": "0.75"},
+        {"stroke": _DARK_PAPER},
+    ),
+    "reference": (
+        {**_LINE, "stroke": "#a3157f", "stroke-width": "1.8", "stroke-dasharray": "6 3.5"},
+        {"stroke": "#ff8fd8"},
+    ),
+    "axis-x": ({**_AXIS, "stroke": "#d01f2e"}, {"stroke": "#ff7b72"}),
+    "axis-y": ({**_AXIS, "stroke": "#00805c"}, {"stroke": "#3ddc97"}),
+    "axis-z": ({**_AXIS, "stroke": "#0a5fd0"}, {"stroke": "#79b8ff"}),
+    "dot-x": ({"fill": "#d01f2e"}, {"fill": "#ff7b72"}),
+    "dot-y": ({"fill": "#00805c"}, {"fill": "#3ddc97"}),
+    "dot-z": ({"fill": "#0a5fd0"}, {"fill": "#79b8ff"}),
+    "arrow": ({**_LINE, "stroke": _INK, "stroke-width": "2.6"}, {"stroke": "#ffffff"}),
+    "leader": ({**_LINE, "stroke": "#b3261e", "stroke-width": "1.2"}, {"stroke": "#ff8a80"}),
+    "badge": ({"fill": "#b3261e"}, {"fill": "#ff8a80"}),
+    "number": ({"fill": _PAPER, "font-weight": "700", "text-anchor": "middle"}, {"fill": _DARK_PAPER}),
+    "text": ({"fill": _INK}, {"fill": _DARK_INK}),
+    "strong": ({"fill": _INK, "font-weight": "700"}, {"fill": _DARK_INK}),
+    "title": ({"fill": _INK, "font-size": "17", "font-weight": "700"}, {"fill": _DARK_INK}),
+    "faint": ({"fill": "#4b5563"}, {"fill": "#b6bdc7"}),
+    "letter": (
+        {
+            "fill": _INK,
+            "font-size": "11",
+            "text-anchor": "middle",
+            "stroke": _PAPER,
+            "stroke-width": "2.5",
+            "paint-order": "stroke",
+        },
+        {"fill": _DARK_INK, "stroke": _DARK_PAPER},
+    ),
+}
+DARK_RULES = "".join(
+    f".drawing .{name}{{{';'.join(f'{key}:{value}' for key, value in dark.items())}}}"
+    for name, (_, dark) in LOOKS.items()
+    if dark
+)
+
+
+def put(parent: Any, tag: str, look: str = "", attributes: Mapping[str, object] = {}, text: str = "") -> Any:
+    """Add an element with the looks of a class, and return it. Its text is printable, whatever a student wrote."""
+    looks = {"class": look, **LOOKS[look][0]} if look else {}
+    values = {name: number(value) if isinstance(value, float) else str(value) for name, value in attributes.items()}
+    element = etree.SubElement(parent, f"{{{SVG}}}{tag}", {**looks, **values})
+    if text:
+        element.text = printable(text)
+    return element
+
+
+def number(value: float) -> str:
+    """Return a length in pixels with two decimals."""
+    return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
+
+
+def colour(rgba: Rgba) -> dict[str, str]:
+    """Return the attributes that fill a shape with a colour; a channel that is no number is 0."""
+    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
+    channels = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
+    return {"fill": f"#{channels}", **({"fill-opacity": number(alpha)} if alpha < 1.0 else {})}
+
+
+def edge_look(rgba: Rgba) -> str:
+    """Return the class of edges that are seen on a colour: dark on light ones, light on dark ones."""
+    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
+    if alpha < 0.5:
+        return "edge"
+    luminance = (
+        0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2
+    )  # as WCAG 2.2 defines it, with a plain gamma
+    return "edge-on-light" if luminance > 0.18 else "edge-on-dark"
+
+
+def path_data(cell: Cell, curves: Iterable[Curve], *, closed: bool = False) -> str:
+    """Return curves of a view as path data on the sheet; a new piece begins wherever one does not continue the one before."""
+    parts: list[str] = []
+    last: str | None = None
+    for curve in curves:
+        start, end = _place(cell, curve.at(0.0)), _place(cell, curve.at(1.0))
+        if start != last:
+            parts.append(f"M{start}")
+        if isinstance(curve, Line):
+            if start != end:
+                parts.append(f"L{end}")
+        else:
+            parts += _arc(cell, curve)
+        last = end
+    return "".join(parts) + ("Z" if closed else "")
+
+
+def _arc(cell: Cell, arc: Arc) -> list[str]:
+    """Return an elliptical arc in commands of at most half a turn; a line if it is seen from its edge."""
+    rx, ry = cell.scale * hypot(*arc.major[:2]), cell.scale * hypot(*arc.minor[:2])
+    if number(rx) == "0" or number(ry) == "0":
+        return [f"L{_place(cell, arc.at(share))}" for share in (0.5, 1.0)]
+    tilt = degrees(atan2(-arc.major[1], arc.major[0]))
+    turn = (arc.major[0] * arc.minor[1] - arc.major[1] * arc.minor[0]) * (arc.end - arc.start)
+    sweep = 0 if turn > 0.0 else 1  # y points down on the sheet
+    radii = f"{number(rx)} {number(ry)} {number(tilt)}"
+    halves = 2 if abs(arc.end - arc.start) > tau / 2.0 - 1e-6 else 1
+    shares = [number_ / halves for number_ in range(1, halves + 1)]
+    return [f"A{radii} 0 {sweep} {_place(cell, arc.at(share))}" for share in shares]
+
+
+def _place(cell: Cell, point: Sequence[float]) -> str:
+    x, y = cell.on_sheet((point[0], point[1], 0.0))
+    return f"{number(x)} {number(y)}"
+
+
+def segments(lines: Iterable[tuple[Place, Place]]) -> str:
+    """Return straight lines on the sheet as path data."""
+    return "".join(f"M{number(a)} {number(b)}L{number(c)} {number(d)}" for (a, b), (c, d) in lines)
+
+
+def circle(centre: Place, radius: float) -> str:
+    """Return a circle on the sheet as path data."""
+    half = f"{number(radius)} {number(radius)} 0 1 1"
+    return f"M{number(centre[0] - radius)} {number(centre[1])}a{half} {number(2 * radius)} 0a{half} {number(-2 * radius)} 0"

@@ -1,0 +1,53 @@
+"""Lines of text in SVG, whose width only the viewer's font decides: it is estimated by a wide one."""
+
+from typing import Any
+from unicodedata import east_asian_width
+
+from grader.report.svg_elements import put
+from grader.text import printable
+
+SIZE = 12.0  # pixels
+LINE = 15.0  # from one line to the next
+_NARROW, _WIDE = frozenset(" .,:;'|!ijlt()[]fr-"), frozenset("mwMW@%")
+_MAX_LINES = 3
+
+
+def put_lines(group: Any, left: float, top: float, width: float, text: str, most: int = _MAX_LINES) -> float:
+    """Add a text in lines, the first of which is on `top`; return where the next one is."""
+    lines = wrapped(text, width, most)
+    paragraph = put(group, "text")
+    for number, line in enumerate(lines):
+        put(paragraph, "tspan", "", {"x": left, "y": top + number * LINE}, line)
+    return top + len(lines) * LINE
+
+
+def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
+    """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
+    lines = [""]
+    for word in printable(text).split(" "):
+        line = f"{lines[-1]} {word}" if lines[-1] else word
+        lines = [*lines[:-1], line] if text_width(line) <= width else [*lines, word]
+    lines = [cut(line, width) for line in lines if line]
+    return lines if len(lines) <= most else [*lines[: most - 1], cut(f"{lines[most - 1]} ....", width)]
+
+
+def cut(text: str, width: float) -> str:
+    """Return a text; of a wider one the beginning, with "..."."""
+    if text_width(text) <= width:
+        return text
+    while text and text_width(text) > width - SIZE:
+        text = text[:-1]
+    return f"{text}..."
+
+
+def text_width(text: str) -> float:
+    """Return about how wide a text is in DejaVu Sans, which is wider than most fonts."""
+    return SIZE * sum(map(_letter_width, text))
+
+
+def _letter_width(letter: str) -> float:
+    if letter in _NARROW:
+        return 0.38
+    if east_asian_width(letter) in "WF" or letter in _WIDE:
+        return 1.0
+    return 0.72 if letter.isupper() else 0.62
