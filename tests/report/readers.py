@@ -225,10 +225,12 @@ def page_structure(text: str) -> Any:
 
 
 def page_text(text: str) -> str:
-    """Return the text that a page shows."""
+    """Return the text that a page shows, with backticks around what it shows as code in sentences."""
     root: Any = html.document_fromstring(text)
     for element in root.xpath("//script | //style"):
         element.text = ""
+    for element in root.xpath("//*[contains(@class, 'sentence')]//code"):
+        element.text = f"`{element.text}`"
     return str(root.text_content())
 
 

@@ -27,7 +27,7 @@ def test_page_shows_hints_with_their_lines() -> None:
     """A hint has its message and the lines of its diff, the old ones and the new ones."""
     page = read(render_html(hinted()))
     card = page.get_element_by_id("right-wheel-forward")
-    assert 'Change `rpy="1.57 0 0"`' in card.find_class("hint")[0].text_content()
+    assert 'Change rpy="1.57 0 0" to' in card.find_class("hint")[0].text_content()
     assert [line.text.strip() for line in card.iter("del")] == ['-      <origin xyz="-0.15 -0.2 0" rpy="1.57 0 0" />']
 
 

@@ -4,15 +4,23 @@ from collections.abc import Iterator, Mapping
 from math import degrees, isfinite, pi
 from typing import Any, NamedTuple
 
+from lxml import etree
+from markupsafe import Markup
+
 from grader.drawing.picture import Callout, Picture
 from grader.drawing.scene import Scene
+from grader.report.drawing import drawing_element
 from grader.report.pages.model import picture_data
+from grader.report.svg_elements import DARK_RULES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform
 from grader.text import counted, quoted
 
+STYLE = "robot.css"
+SCRIPTS = "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js"
+RULES = f"@media screen and (prefers-color-scheme: dark) {{{DARK_RULES}}}"  # of the views
 _HALF_TURN = 180.0
 _MAX_SLIDE = 1.0  # metres, of a joint without limits
 _STILL = "stays at 0 here"
@@ -59,6 +67,12 @@ class RobotView(NamedTuple):
     has_reference: bool
     has_wheels: bool
     callouts: tuple[Callout, ...]
+
+
+def views(picture: Picture) -> Markup:
+    """Return the three views as an element of a page."""
+    element = drawing_element(picture, legend=False)
+    return Markup(etree.tostring(element, encoding="unicode"))  # noqa: S704  an element tree, whose text is escaped
 
 
 def robot_view(picture: Picture) -> RobotView:

@@ -8,11 +8,11 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.details import status_of
+from grader.report.details import group_status, status_of
 from grader.report.evidence import evidence
 from grader.report.order import alike, groups, in_order
 from grader.report.pages.criteria import SYMBOLS, Card, card_of, failure_card
-from grader.report.pages.robot import robot_view
+from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
 from grader.text import format_points, printable
@@ -34,11 +34,7 @@ class Rows(NamedTuple):
     title: str
     points: str
     rows: tuple[Row, ...]
-
-    @property
-    def is_fine(self) -> bool:
-        """Return whether all criteria passed."""
-        return all(row.status == "passed" for row in self.rows)
+    status: str
 
 
 def render_html(report: Report) -> str:
@@ -72,17 +68,14 @@ def render_html(report: Report) -> str:
         "next": command,
         "left": "" if command else content.what_is_left(report),
         "robot": robot,
-        "views": "",
+        "views": views(picture) if picture is not None else "",
         "called": {
             result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
         },
         "provenance": provenance(report),
     }
     data = robot.data if robot is not None else {}
-    scripts = (
-        "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js student.js"
-    )
-    return render_page("student.html", values, data, "robot.css student.css", scripts)
+    return render_page("student.html", values, data, f"{STYLE} student.css", f"{SCRIPTS} student.js", rules=RULES)
 
 
 def _shares(report: Report) -> tuple[float, float]:
@@ -119,6 +112,7 @@ def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
                     )
                     for result in group.results
                 ),
+                group_status(group),
             )
             for group in some
         ]

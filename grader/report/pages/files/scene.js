@@ -1,6 +1,6 @@
 "use strict";
 /* What is drawn of the robots at the positions of their joints: solids, the ground, arrows of wheels, frames. */
-const AXES = [[[0.84, 0.24, 0.1], "x"], [[0, 0.58, 0.36], "y"], [[0.1, 0.42, 0.86], "z"]];
+const AXES = [[[0.85, 0.16, 0.2], "x"], [[0, 0.54, 0.39], "y"], [[0.08, 0.41, 0.85], "z"]];
 const HIDDEN = 0.02; // a colour with less alpha shows edges only
 
 const alpha = ([r, g, b], a) => [r, g, b, a];
@@ -36,8 +36,8 @@ function makeScene(data) {
       const own = name === "submission" ? link : data.same[link], failed = name === "submission" && called.has(link);
       return {
         kind, size, spokes, link: ghost ? -1 : own, pose: compose(poses[link], placed(origin)),
-        rgba: ghost ? alpha(colours.link, 0.3) : rgba[3] < HIDDEN ? null : rgba,
-        edge: ghost ? alpha(colours.link, 0.8) : failed ? alpha(colours.failed, 1) : alpha(colours.ink, 0.55),
+        rgba: ghost ? alpha(colours.reference, 0.28) : rgba[3] < HIDDEN ? null : rgba,
+        edge: ghost ? alpha(colours.reference, 0.9) : failed ? alpha(colours.failed, 1) : alpha(colours.ink, 0.55),
         beneath: failed ? alpha(colours.failed, 0.55) : null,
         through: own >= 0 && (own === state.link || own === state.hover) ? alpha(colours.focus, 1) : null,
       };
@@ -53,11 +53,11 @@ function makeScene(data) {
       const long = wheel.travel ? Math.max(1.5 * wheel.reach, 0.22 * radius) : 1.2 * wheel.reach;
       const start = at.map((value, k) => value + lift * up[k] + ahead * way[k]);
       const side = [up[1] * way[2] - up[2] * way[1], up[2] * way[0] - up[0] * way[2], up[0] * way[1] - up[1] * way[0]];
-      const colour = wheel.right ? colours.link : colours.failed;
+      const ghost = name === "reference" && state.mode === "both", colour = ghost ? colours.reference : wheel.right ? colours.link : colours.failed;
       return {
         kind: wheel.travel ? "arrow" : "cross", size: [long, long, 1], link: -1,
         pose: [way[0], side[0], up[0], way[1], side[1], up[1], way[2], side[2], up[2], ...start],
-        rgba: alpha(colour, name === "reference" && state.mode === "both" ? 0.25 : 0.9), edge: alpha(colour, 1),
+        rgba: alpha(colour, ghost ? 0.25 : 0.9), edge: alpha(colour, 1),
       };
     });
   }
@@ -74,7 +74,7 @@ function makeScene(data) {
     if (!ground) return [];
     const found = arrows(name, poses[name], ground, state, colours);
     if (name === "submission" || state.mode !== "both") found.push(grid(ground, state.drift, alpha(colours.faint, 0.4), alpha(colours.line, 0.28)));
-    else if (distance(ground.slice(9), (poses.submission[robots.submission.root] || IDENTITY).slice(9)) > 0.001) found.push(grid(ground, state.drift, alpha(colours.link, 0.35), null));
+    else if (distance(ground.slice(9), (poses.submission[robots.submission.root] || IDENTITY).slice(9)) > 0.001) found.push(grid(ground, state.drift, alpha(colours.reference, 0.3), null));
     return found;
   }
 

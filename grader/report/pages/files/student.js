@@ -12,8 +12,13 @@ for (const badge of viewer ? document.querySelectorAll("[data-show]") : []) {
   const number = Number(badge.dataset.show), { link } = pageData.callouts.find((callout) => callout.number === number);
   const card = badge.closest("article");
   card.addEventListener("focusin", () => viewer.choose(link));
-  card.addEventListener("pointerenter", () => { viewer.state.hover = link; viewer.schedule(); });
-  card.addEventListener("pointerleave", () => { viewer.state.hover = -1; viewer.schedule(); });
+  const mark = (on) => {
+    viewer.state.hover = on ? link : -1;
+    viewer.schedule();
+    for (const title of document.querySelectorAll(".views title")) title.parentElement.classList.toggle("lit", on && title.textContent === pageData.robot.links[link]);
+  };
+  card.addEventListener("pointerenter", () => mark(true));
+  card.addEventListener("pointerleave", () => mark(false));
   badge.addEventListener("click", (event) => {
     event.preventDefault();
     viewer.show(number);

@@ -17,7 +17,7 @@ function makeViewer(data, section) {
   function readColours() {
     const style = getComputedStyle(section), hex = (name) => style.getPropertyValue(`--${name}`).trim().replace(/^#(.)(.)(.)$/, "#$1$1$2$2$3$3");
     const colour = (name) => [1, 3, 5].map((k) => parseInt(hex(name).slice(k, k + 2), 16) / 255);
-    colours = Object.fromEntries(["sheet", "line", "ink", "faint", "failed", "focus", "link"].map((name) => [name, colour(name)]));
+    colours = Object.fromEntries(["sheet", "line", "ink", "faint", "failed", "focus", "link", "reference"].map((name) => [name, colour(name)]));
   }
 
   function draw() {
