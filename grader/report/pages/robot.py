@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from grader.drawing.picture import Callout, Picture
 from grader.drawing.scene import Scene
+from grader.errors import MissingElement, NotDecided
 from grader.report.drawing import drawing_element
 from grader.report.pages.model import picture_data
 from grader.report.svg_elements import DARK_RULES
@@ -154,9 +155,18 @@ def _rows(scene: Scene) -> Iterator[LinkRow]:
         yield LinkRow(
             name,
             ", ".join(shown.get(name, [])),
-            _pose_words(pose) if pose is not None else "no place in the picture",
+            _pose_words(pose) if pose is not None else _why_none(scene, name),
             f"{joint.name} ({joint.type}) from {joint.parent}" if joint is not None else "",
         )
+
+
+def _why_none(scene: Scene, link: str) -> str:
+    """Return why a link has no place in the picture."""
+    try:
+        scene.robot.pose(link, relative_to=scene.frame)
+    except (MissingElement, NotDecided) as reason:
+        return str(reason)
+    return "too far away"
 
 
 def _shape_words(shape: Shape) -> str:

@@ -15,7 +15,7 @@ function makeCamera(centre, radius) {
     const [ca, sa, ce, se] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth), Math.cos(camera.elevation), Math.sin(camera.elevation)];
     return { right: [-sa, ca, 0], up: [-ca * se, -sa * se, ce], toward: [ca * ce, sa * ce, se] };
   };
-  camera.distance = () => (radius * 0.86) / Math.sin(FIELD / 2) / camera.zoom;
+  camera.distance = () => (radius * 0.95) / Math.sin(FIELD / 2) / camera.zoom;
   camera.shift = (right, up, height) => {
     const { right: r, up: u } = camera.basis(), metres = (2 * camera.distance() * Math.tan(FIELD / 2)) / height;
     camera.target = camera.target.map((value, k) => value - metres * (right * r[k] - up * u[k]));
