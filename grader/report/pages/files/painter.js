@@ -1,14 +1,19 @@
 "use strict";
 /* Draws solids with WebGL: opaque ones, then edges, then transparent ones from back to front, then what is seen through everything. */
 const VERTEX = `
-attribute vec3 position; attribute vec3 normal;
-uniform mat4 view; uniform mat4 model; uniform vec3 size;
+attribute vec3 position; attribute vec3 normal; attribute float side;
+uniform mat4 view; uniform mat4 model; uniform vec3 size; uniform vec2 pixel;
 varying vec3 at; varying vec3 out_normal;
 void main() {
   at = position;
-  vec3 turned = mat3(model) * (normal / size);
-  out_normal = length(normal) > 0.0 ? normalize(turned) : vec3(0.0);
+  out_normal = side == 0.0 ? normalize(mat3(model) * (normal / size)) : vec3(0.0);
   gl_Position = view * (model * vec4(position * size, 1.0));
+  if (side != 0.0) {
+    vec4 other = view * (model * vec4(normal * size, 1.0));
+    vec2 way = (other.xy / other.w - gl_Position.xy / gl_Position.w) / pixel;
+    vec2 across = length(way) > 0.0 ? normalize(vec2(-way.y, way.x)) : vec2(0.0);
+    gl_Position.xy += across * side * pixel * gl_Position.w;
+  }
 }`;
 const FRAGMENT = `
 precision mediump float;
@@ -27,6 +32,8 @@ void main() {
   gl_FragColor = vec4(colour * shade, rgba.a);
 }`;
 
+const WIDTH = 1.3; // pixels of a line
+
 function makePainter(canvas) {
   const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: false });
   if (!gl) return null;
@@ -40,8 +47,8 @@ function makePainter(canvas) {
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return null;
   gl.useProgram(program);
-  const place = Object.fromEntries(["view", "model", "size", "rgba", "spokes", "toward"].map((name) => [name, gl.getUniformLocation(program, name)]));
-  const slots = ["position", "normal"].map((name) => gl.getAttribLocation(program, name));
+  const place = Object.fromEntries(["view", "model", "size", "rgba", "spokes", "toward", "pixel"].map((name) => [name, gl.getUniformLocation(program, name)]));
+  const slots = ["position", "normal", "side"].map((name) => gl.getAttribLocation(program, name));
   slots.forEach((slot) => gl.enableVertexAttribArray(slot));
   const make = { box: boxSolid, cylinder: cylinderSolid, sphere: sphereSolid, arrow: arrowSolid, cross: crossSolid, grid: gridSolid };
   for (const [name, solid] of Object.entries(make)) {
@@ -49,7 +56,7 @@ function makePainter(canvas) {
       const buffer = gl.createBuffer();
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
-      return [part, { buffer, count: numbers.length / 6 }];
+      return [part, { buffer, count: numbers.length / 7 }];
     }));
   }
   gl.enable(gl.BLEND);
@@ -60,23 +67,24 @@ function makePainter(canvas) {
     const { buffer, count } = solids[item.kind][part];
     const [a, b, c, d, e, f, g, h, i, x, y, z] = item.pose;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    slots.forEach((slot, k) => gl.vertexAttribPointer(slot, 3, gl.FLOAT, false, 24, 12 * k));
+    slots.forEach((slot, k) => gl.vertexAttribPointer(slot, k < 2 ? 3 : 1, gl.FLOAT, false, 28, 12 * k));
     gl.uniformMatrix4fv(place.model, false, [a, d, g, 0, b, e, h, 0, c, f, i, 0, x, y, z, 1]);
     gl.uniform3fv(place.size, item.size.map((value) => Math.max(value, 1e-9)));
     gl.uniform4fv(place.rgba, rgba);
     gl.uniform1f(place.spokes, spokes ? 1 : 0);
-    gl.drawArrays(part === "edges" ? gl.LINES : gl.TRIANGLES, 0, count);
+    gl.drawArrays(gl.TRIANGLES, 0, count);
   }
 
   /* An item has kind, pose and size; rgba is the colour of its faces, `edge` of its edges. Seen through everything are edges with the
      colour `beneath`, edges and faces with the colour `through`, and faces with the colour `onTop`. */
-  return function paint(items, camera, background) {
+  return function paint(items, camera, background, ratio) {
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...background, 1);
     gl.depthMask(true);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(place.view, false, camera.matrix);
     gl.uniform3fv(place.toward, camera.toward);
+    gl.uniform2f(place.pixel, (WIDTH * ratio) / canvas.width, (WIDTH * ratio) / canvas.height);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     const far = (item) => item.pose.slice(9).reduce((sum, value, k) => sum + (value - camera.eye[k]) ** 2, 0);

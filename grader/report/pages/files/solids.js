@@ -1,14 +1,18 @@
 "use strict";
-/* Solids of size 1 as triangles with normals, and their edges as lines: each vertex is x, y, z and the normal. */
+/* Solids of size 1 as triangles: each vertex has x, y, z, the normal, and 0. Edges are two triangles for each line: each vertex has
+   one end, the other end, and on which side of the line it is, 1 or -1. The shader gives them their width. */
 const SIDES = 40;
 const ring = (count) => Array.from({ length: count + 1 }, (_, k) => [Math.cos((2 * Math.PI * k) / count), Math.sin((2 * Math.PI * k) / count)]);
 
 function quad(a, b, c, d, normal) {
-  return [a, b, c, a, c, d].flatMap((point) => [...point, ...normal]);
+  return [a, b, c, a, c, d].flatMap((point) => [...point, ...normal, 0]);
 }
 
 function line(...points) {
-  return points.slice(1).flatMap((point, k) => [...points[k], 0, 0, 0, ...point, 0, 0, 0]);
+  return points.slice(1).flatMap((end, k) => {
+    const start = points[k], [a, b, c, d] = [[...start, ...end, 1], [...start, ...end, -1], [...end, ...start, 1], [...end, ...start, -1]];
+    return [...a, ...b, ...c, ...a, ...c, ...d];
+  });
 }
 
 function boxSolid() {
@@ -33,10 +37,10 @@ function cylinderSolid() {
   for (let k = 0; k < SIDES; k += 1) {
     const [[x, y], [u, v]] = [round[k], round[k + 1]];
     for (const [p, q, r] of [[[x, y, -h], [u, v, -h], [u, v, h]], [[x, y, -h], [u, v, h], [x, y, h]]]) {
-      faces.push(...[p, q, r].flatMap((point) => [...point, point[0], point[1], 0]));
+      faces.push(...[p, q, r].flatMap((point) => [...point, point[0], point[1], 0, 0]));
     }
     for (const z of [-h, h]) {
-      faces.push(...[[0, 0, z], [x, y, z], [u, v, z]].flatMap((point) => [...point, 0, 0, 2 * z]));
+      faces.push(...[[0, 0, z], [x, y, z], [u, v, z]].flatMap((point) => [...point, 0, 0, 2 * z, 0]));
       edges.push(...line([x, y, z], [u, v, z]));
     }
   }
@@ -49,7 +53,7 @@ function sphereSolid() {
   for (let k = 0; k < half; k += 1) {
     for (let m = 0; m < SIDES; m += 1) {
       const [a, b, c, d] = [at(k, m), at(k, m + 1), at(k + 1, m + 1), at(k + 1, m)];
-      faces.push(...[a, b, c, a, c, d].flatMap((point) => [...point, ...point]));
+      faces.push(...[a, b, c, a, c, d].flatMap((point) => [...point, ...point, 0]));
     }
   }
   for (const [one, other] of [[0, 1], [1, 2], [2, 0]]) {
@@ -62,7 +66,7 @@ function sphereSolid() {
 function arrowSolid() {
   const up = [0, 0, 1];
   const faces = quad([0, -0.12, 0], [0.55, -0.12, 0], [0.55, 0.12, 0], [0, 0.12, 0], up);
-  faces.push(...[[0.55, -0.34, 0], [1, 0, 0], [0.55, 0.34, 0]].flatMap((point) => [...point, ...up]));
+  faces.push(...[[0.55, -0.34, 0], [1, 0, 0], [0.55, 0.34, 0]].flatMap((point) => [...point, ...up, 0]));
   const outline = [[0, -0.12, 0], [0.55, -0.12, 0], [0.55, -0.34, 0], [1, 0, 0], [0.55, 0.34, 0], [0.55, 0.12, 0], [0, 0.12, 0]];
   return { faces, edges: line(...outline, outline[0]) };
 }

@@ -29,7 +29,7 @@ function makeViewer(data, section) {
     seen = camera.seen(width / height);
     state.poses = drawn.poses.submission;
     pickable = drawn.found.filter((item) => item.link >= 0);
-    painter(drawn.found, seen, colours.sheet);
+    painter(drawn.found, seen, colours.sheet, ratio);
     label(state, drawn, seen);
   }
 
