@@ -10,7 +10,7 @@ from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.report.review import who
 from grader.text import printable, printable_path
-from grader.usecases.class_reports import INDEX, file_names, report_names, update_index
+from grader.usecases.report_names import file_names, report_names, update_index
 from grader.usecases.writing import save_bytes
 
 PicturesOfItems = dict[QueuedCriterion, list[str]]
@@ -27,7 +27,7 @@ def write_pictures(
     names = report_names(book)
     folders = file_names([criterion.id for criterion in session.criteria])
     _make(folder)
-    update_index(folder / INDEX, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
+    update_index(folder, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
     lines: PicturesOfItems = {}
     for position, queued in enumerate(session.queue):
         session.go(position)
