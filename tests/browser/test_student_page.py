@@ -116,14 +116,16 @@ def test_submission_reference_and_both(fresh: Any) -> None:
 
 def test_failure_leads_to_its_link(fresh: Any) -> None:
     """The number of a failure turns the robot to its link and marks it; the focus alone marks it."""
-    card = fresh.locator("#right-wheel-forward")
+    card = fresh.locator("#criterion-right-wheel-forward")
     card.locator("pre.source").focus()
     assert fresh.locator("#links option:checked").inner_text() == "right_wheel"
     azimuth = fresh.evaluate("() => viewer.camera.azimuth")
-    fresh.locator("#lidar-frame .pin").click()
+    fresh.locator("#criterion-lidar-frame .pin").click()
     assert fresh.locator("#links option:checked").inner_text() == "lidar"
     assert fresh.evaluate("() => viewer.camera.azimuth") != azimuth
-    assert fresh.locator(".labels .chosen").inner_text() == fresh.locator("#lidar-frame .pin").inner_text()[-1]
+    assert (
+        fresh.locator(".labels .chosen").inner_text() == fresh.locator("#criterion-lidar-frame .pin").inner_text()[-1]
+    )
     card.hover()
     assert fresh.locator(".views .lit title").first.text_content() == "right_wheel"
 
@@ -188,7 +190,7 @@ def test_page_works_without_scripts(open_page: Open, tmp_path: Path) -> None:
     """Without JavaScript there is no 3-D, and all else is there."""
     file = write(tmp_path, "grade", SAMPLES["lidar-buried"].path)
     page = open_page(file, java_script_enabled=False).page
-    assert page.locator("#lidar-frame").is_visible()
+    assert page.locator("#criterion-lidar-frame").is_visible()
     assert page.locator(".views svg").is_visible()
     assert not page.locator("canvas").is_visible()
 

@@ -35,8 +35,8 @@ def inspection_html(inspection: Inspection) -> str:
         "robot": view,
         "views": views(picture) if picture is not None else "",
     }
-    data = view.data if view is not None else {}
-    return render_page("inspection.html", values, data, f"{STYLE} student.css", SCRIPTS, rules=RULES)
+    data, scripts = (view.data, SCRIPTS) if view is not None else ({}, "")
+    return render_page("inspection.html", values, data, f"{STYLE} student.css", scripts, rules=RULES)
 
 
 def _problems(inspection: Inspection) -> list[tuple[str, str, SourceLines | None]]:

@@ -74,8 +74,8 @@ def render_html(report: Report) -> str:
         },
         "provenance": provenance(report),
     }
-    data = robot.data if robot is not None else {}
-    return render_page("student.html", values, data, f"{STYLE} student.css", f"{SCRIPTS} student.js", rules=RULES)
+    data, scripts = (robot.data, f"{SCRIPTS} failures.js student.js") if robot is not None else ({}, "student.js")
+    return render_page("student.html", values, data, f"{STYLE} student.css", scripts, rules=RULES)
 
 
 def _shares(report: Report) -> tuple[float, float]:

@@ -96,11 +96,8 @@ function addControls(viewer, section, robot) {
 
 const robotSection = document.getElementById("robot");
 const pageData = JSON.parse(document.getElementById("data").textContent);
-let viewer = null;
-if (robotSection && pageData.robot) {
-  robotSection.querySelector("[data-part=space]").hidden = false;
-  viewer = makeViewer(pageData, robotSection);
-  robotSection.querySelector("[data-part=stage]").hidden = !viewer;
-  robotSection.querySelector("[data-part=no-webgl]").hidden = Boolean(viewer);
-  if (viewer) addControls(viewer, robotSection, pageData.robot);
-}
+robotSection.querySelector("[data-part=space]").hidden = false;
+const viewer = makeViewer(pageData, robotSection);
+robotSection.querySelector("[data-part=stage]").hidden = !viewer;
+robotSection.querySelector("[data-part=no-webgl]").hidden = Boolean(viewer);
+if (viewer) addControls(viewer, robotSection, pageData.robot);
