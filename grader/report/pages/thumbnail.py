@@ -26,17 +26,22 @@ def thumbnail(report: Report, criteria: Collection[str]) -> str:
 
 
 def _about(picture: Picture, criteria: Collection[str]) -> Picture:
-    """Return a picture with only those differences from the reference that some criteria are about."""
+    """Return a picture with only those differences from the reference that some criteria are about.
+
+    A frame is shown only where neither a shape nor an arrow shows the difference.
+    """
     callouts = tuple(
         callout for callout in picture.callouts if any(result.criterion.id in criteria for result in callout.results)
     )
     links = {callout.link for callout in callouts}
-    has_wheels = any(wheel.link in links for wheel in picture.scene.wheels)
+    wheels = links.intersection(wheel.link for wheel in picture.scene.wheels)
+    outlines = tuple(body for body in picture.outlines if body.link in links)
+    seen = wheels.union(body.link for body in outlines)
     return replace(
         picture,
-        scene=picture.scene if has_wheels else replace(picture.scene, wheels=()),
-        outlines=tuple(body for body in picture.outlines if body.link in links),
-        frames=tuple(link for link in picture.frames if link in links),
+        scene=picture.scene if wheels else replace(picture.scene, wheels=()),
+        outlines=outlines,
+        frames=tuple(link for link in picture.frames if link in links - seen),
         callouts=callouts,
     )
 
