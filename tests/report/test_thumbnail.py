@@ -21,7 +21,7 @@ def drawn(sample: str, *criteria: str) -> tuple[str, list[str]]:
     ("sample", "criteria", "view", "signs"),
     [
         ("lidar-buried", ("lidar-frame", "lidar-on-top"), "side (from -y)", ["ground", "reference"]),
-        ("lidar-buried", ("base-green",), "side (from -y)", ["ground"]),
+        ("colour-0-255", ("base-green",), "side (from -y)", ["ground"]),
         ("axis-negated", ("left-wheel-forward",), "top (from +z)", ["arrow"]),
         (
             "lidar-offset-in-visual",
@@ -38,6 +38,9 @@ def test_a_thumbnail_shows_one_mistake(sample: str, criteria: tuple[str, ...], v
     assert found == signs
 
 
-def test_a_robot_that_cannot_be_read_has_none() -> None:
-    """There is nothing to draw."""
-    assert thumbnail(SAMPLES["pictures-only"].grade(), ()) == ""
+@pytest.mark.parametrize(
+    ("sample", "criterion"), [("pictures-only", "lidar-frame"), ("setup-syntax-error", "setup-installs-urdf")]
+)
+def test_some_have_none(sample: str, criterion: str) -> None:
+    """Without a robot, or if the edit is about the package, there is nothing to see."""
+    assert thumbnail(SAMPLES[sample].grade(), (criterion,)) == ""

@@ -16,11 +16,14 @@ _SAME_WAY = 0.9  # cosine
 
 
 def thumbnail(report: Report, criteria: Collection[str]) -> str:
-    """Return a picture of a graded robot as SVG, with what some criteria are about; empty if it can no longer be read."""
+    """Return a picture of a graded robot as SVG, with what some criteria are about.
+
+    It is empty if none of them is about a link, or if the robot can no longer be read.
+    """
     picture = picture_of(report)
-    if picture is None:
+    shown = _about(picture, criteria) if picture is not None else None
+    if shown is None or not any(callout.link for callout in shown.callouts):
         return ""
-    shown = _about(picture, criteria)
     element = thumbnail_element(shown, TOP if _drives_elsewhere(shown) else SIDE)
     return str(etree.tostring(element, encoding="unicode"))
 
