@@ -11,7 +11,6 @@ from grader.drawing.scene import Body, Rgba, Scene
 from grader.drawing.views import View
 
 _TRANSPARENT = 0.05  # a body with less alpha hides nothing
-_SAME = 1e-6  # metres
 _SHORT = 1e-5  # metres: shorter pieces are left out
 
 
@@ -100,8 +99,6 @@ def _merged(covered: list[tuple[Piece, Seen]]) -> Iterator[tuple[float, float, R
 def _strokes(curve: Curve, pieces: list[Piece], rgba: Rgba) -> Iterator[Stroke]:
     for start, end in pieces:
         piece = curve.cut(start, end) if (start, end) != (0.0, 1.0) else curve
-        if not isinstance(piece, Line) and hypot(*piece.minor[:2]) <= _SAME:
-            piece = Line(piece.at(0.0), piece.at(1.0))  # an arc that is seen from its edge
         if end > start and _length(piece) > _SHORT:
             yield Stroke(piece, rgba)
 
