@@ -9,8 +9,9 @@ from grader.cli.options import DueOption, GradebookOption
 from grader.cli.output import warn
 from grader.usecases.writing import write_stdout
 
-Target = Literal["csv", "canvas", "moodle", "json"]
+Target = Literal["csv", "canvas", "moodle", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
+_OUTPUT = "The file to write, default: standard output; for html the folder."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
@@ -20,9 +21,7 @@ def export(
     target: Annotated[Target, typer.Argument(metavar="|".join(get_args(Target)), help="The format of the grades.")],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
-    output: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The file to write; default: standard output.")
-    ] = None,
+    output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
     due: DueOption = None,
     column: Annotated[str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")] = "",
@@ -30,24 +29,29 @@ def export(
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
 ) -> int:
-    """Export the current grades for a spreadsheet, Canvas or Moodle.
+    """Export the current grades for a spreadsheet, an LMS or a browser.
 
     A grade is the sum of automatic points and manual marks, minus the late penalty. For Canvas and Moodle, give the file that the LMS
     exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import
     overwrites no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row.
+
+    With html, the folder gets a page for each student, and index.html about the class, for the people who grade.
 
     Examples:
 
       grader export csv --gradebook lab6.db --output grades.csv
 
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
+
+      grader export html --gradebook lab6.db --output pages
     """
+    from grader.cli.progress import progress_display
     from grader.usecases.export import ExportRequest
     from grader.usecases.export import export as export_grades
 
     request = ExportRequest(
         target, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
     )
-    data, code = export_grades(request, warn)
+    data, code = export_grades(request, progress_display, warn)
     write_stdout(data)
     return code

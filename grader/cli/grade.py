@@ -38,7 +38,7 @@ def grade(
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
     answers: Annotated[
-        bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
+        bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, html, json).")
     ] = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.documents.collection import Document, DocumentCollection
+from grader.documents.collection import DocumentCollection
 from grader.documents.converter import PICTURE
+from grader.documents.document import Document
 from grader.documents.headings import Heading, Pattern, has_words, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
 from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal

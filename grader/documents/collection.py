@@ -5,15 +5,15 @@ import re
 import subprocess
 import sys
 import time
-from bisect import bisect_right
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from math import ceil
 from tempfile import TemporaryFile
-from typing import NamedTuple
+from types import ModuleType
 
-from grader.documents import converter
+from grader.documents import converter, embedded_pictures
+from grader.documents.document import CONVERTED, Document, Unread, made_of
 from grader.documents.headings import Heading, Pattern, find_headings
 from grader.documents.labels import stem
 from grader.errors import InputError
@@ -21,52 +21,14 @@ from grader.files.tree import File, Tree
 
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 NOTICE_SECONDS = 1.0  # of reading in all, before it is said what is being read
-MAX_LINES = 2000  # of one document
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
-_CONVERTED = (".docx", ".pdf")
 _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
     r"|grader \d\S*, \S+: "
 )
-
-
-class Document(NamedTuple):
-    """The first lines of a document. `pages` has the index of the first line of each page, and is empty where that is not known.
-
-    `limit` says what was not read of a document that is too long.
-    """
-
-    file: File
-    lines: list[str]
-    pages: tuple[int, ...] = ()
-    limit: str = ""
-
-    def page(self, line: int) -> int | None:
-        """Return the page of a line, counted from 1, if it is known."""
-        return bisect_right(self.pages, line) or None
-
-    def has_picture(self, heading: Heading | None = None) -> bool:
-        """Return whether there is a picture, below a heading or, in a PDF, on one of its pages."""
-        if heading is None:
-            return converter.PICTURE in self.lines
-        start, end = heading.start, heading.end
-        if self.file.suffix == ".pdf":
-            first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
-            start, end = self.pages[first - 1], (*self.pages, len(self.lines))[last]
-        return converter.PICTURE in self.lines[start:end]
-
-
-class Unread(NamedTuple):
-    """A document that was not read, or not to its end, and why; the path is empty where several are meant."""
-
-    path: str
-    reason: str
-
-    def __str__(self) -> str:
-        return self.reason
 
 
 class DocumentCollection:
@@ -98,9 +60,7 @@ class DocumentCollection:
         files = self.tree.files.values()
         chosen = [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:
-            if file.path not in self._read_files:
-                self._read_files[file.path] = self._read(file)
-            document = self._read_files[file.path]
+            document = self.document(file)
             if isinstance(document, Unread):
                 unread.append(document)
             elif document is not None:
@@ -112,20 +72,29 @@ class DocumentCollection:
             unread.append(Unread("", rest))
         return read, unread
 
-    def _read(self, file: File) -> Document | Unread | None:
+    def document(self, file: File) -> Document | Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""
+        if file.path not in self._read_files:
+            self._read_files[file.path] = self._read(file)
+        return self._read_files[file.path]
+
+    def _read(self, file: File) -> Document | Unread | None:
         try:
             text = self._text(file)
         except InputError as error:
             return Unread(file.path, str(error))
         if _OTHER.match(text):
             return None
-        return _document(file, text)
+        return made_of(file, text)
 
     def _text(self, file: File) -> str:
         match file.suffix:
-            case suffix if suffix in _CONVERTED:
-                return self._convert(file)
+            case suffix if suffix in CONVERTED:
+                self._converted += 1
+                if self._converted > _MAX_CONVERTED:
+                    limit = f"at most {_MAX_CONVERTED} Word and PDF files are"
+                    raise InputError(f"{file.path} was not read: {limit}; needs manual grading")
+                return self._convert(file).decode("utf-8", "replace")
             case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
                 raise InputError(f"{file.path} has a format that is not supported: open it yourself")
             case _:
@@ -137,12 +106,12 @@ class DocumentCollection:
         except UnicodeDecodeError:
             return data.decode("cp1252", "replace")
 
-    def _convert(self, file: File) -> str:
-        """Return the text of a Word or PDF file, converted by a separate process within the remaining time."""
-        self._converted += 1
-        if self._converted > _MAX_CONVERTED:
-            limit = f"at most {_MAX_CONVERTED} Word and PDF files are"
-            raise InputError(f"{file.path} was not read: {limit}; needs manual grading")
+    def pictures(self, file: File) -> list[tuple[int, bytes]]:
+        """Return the pictures in a Word or PDF file, each with the number of its mark in the text. Raises InputError."""
+        return list(embedded_pictures.unpacked(self._convert(file, embedded_pictures)))
+
+    def _convert(self, file: File, script: ModuleType = converter) -> bytes:
+        """Return the text or the pictures of a Word or PDF file, from a separate process within the remaining time."""
         budget = f"the Word and PDF files take longer than {MAX_SECONDS:g} s in all"
         late = InputError(f"{file.path} was not read: {budget}; needs manual grading")
         if self._seconds <= 0:
@@ -152,14 +121,14 @@ class DocumentCollection:
         command = [
             sys.executable,
             "-P",
-            converter.__file__,
+            str(script.__file__),
             file.suffix[1:],
             str(ceil(self._seconds)),
             str(os.getpid()),
         ]
         began = time.monotonic()
         try:  # an interruption ends the process as well
-            code, text = self._run(command, data, file.path)
+            code, output = self._run(command, data, file.path)
         except subprocess.TimeoutExpired:
             raise late from None
         except OSError:
@@ -172,7 +141,7 @@ class DocumentCollection:
             raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
         if code:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
-        return text.decode("utf-8", "replace")
+        return output
 
     def _run(self, command: list[str], data: bytes, path: str) -> tuple[int, bytes]:
         """Return the exit code and the output of a converter, and show the path of its file if the user has to wait."""
@@ -199,18 +168,3 @@ class DocumentCollection:
 
 def _show_nothing(path: str) -> None:
     """Show no progress."""
-
-
-def _document(file: File, text: str) -> Document:
-    # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
-    text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
-    lines = text.split("\n", MAX_LINES)
-    limit = f"line {MAX_LINES}" if len(lines) > MAX_LINES else ""
-    del lines[MAX_LINES:]
-    if file.suffix not in _CONVERTED or not (file.suffix == ".pdf" or converter.PAGE_BREAK in text):
-        return Document(file, lines, (), limit)
-    # The converter begins every page but the first with a line that is a page break.
-    breaks = [index for index, line in enumerate(lines) if line == converter.PAGE_BREAK]
-    if len(breaks) >= converter.MAX_PAGES:
-        limit = f"page {converter.MAX_PAGES}"
-    return Document(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)

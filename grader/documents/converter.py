@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -19,6 +19,7 @@ MISSING = 3  # exit code where the package that reads the format is not installe
 MAX_PAGES = 100
 PAGE_BREAK = "\f"  # a line of its own before every page but the first
 PICTURE = "\ufffc"  # a line of its own after the text that a picture is below, or at the end of its page
+MARKS = ("drawing", "pict")  # elements of Word that contain pictures
 _MAX_TEXT = 1024 * 1024
 _MAX_MEMORY = 1024 * 1024 * 1024
 _MAX_UNPACKED = 64 * 1024 * 1024
@@ -26,20 +27,19 @@ _PR_SET_PDEATHSIG = 1
 _POLL_INTERVAL = 0.2  # seconds between two checks whether the parent is alive
 
 
-def main() -> int:
+def main(readers: Mapping[str, Callable[[bytes], bytes]] | None = None) -> int:
     """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent."""
     kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     end_with_parent(parent, seconds)
     _limit(seconds)
-    readers: dict[str, Callable[[bytes], str]] = {"docx": _docx, "pdf": _pdf}
     data = sys.stdin.buffer.read()
     try:
-        text = readers[kind](data)
+        output = (readers or {"docx": _docx, "pdf": _pdf})[kind](data)
     except ImportError:
         return MISSING
     except Exception:  # noqa: BLE001  a damaged file can raise anything
         return 1
-    sys.stdout.buffer.write(text[:_MAX_TEXT].encode("utf-8", "replace"))
+    sys.stdout.buffer.write(output)
     return 0
 
 
@@ -90,7 +90,8 @@ def _limit(seconds: int) -> None:
                 resource.setrlimit(limit, values)
 
 
-def _docx(data: bytes) -> str:
+def opened(data: bytes) -> Any:
+    """Return a Word document. Raises ValueError if it unpacks to more than one."""
     import zipfile
 
     import docx
@@ -98,7 +99,11 @@ def _docx(data: bytes) -> str:
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
             raise ValueError("it unpacks to more than a text document")
-    document = docx.Document(io.BytesIO(data))
+    return docx.Document(io.BytesIO(data))
+
+
+def _docx(data: bytes) -> bytes:
+    document = opened(data)
     lists = _Lists(document)
     lines: list[str] = []
     for block in document.iter_inner_content():  # paragraphs and tables in their order
@@ -108,7 +113,11 @@ def _docx(data: bytes) -> str:
         else:
             shown = [_markdown(block, _without_marks(block.text), lists)]
         lines += [*before, *shown, *after]
-    return "\n".join(lines)
+    return _encoded("\n".join(lines))
+
+
+def _encoded(text: str) -> bytes:
+    return text[:_MAX_TEXT].encode("utf-8", "replace")
 
 
 def _element(block: Any) -> Any:
@@ -125,7 +134,7 @@ def _marks(element: Any) -> tuple[list[str], list[str]]:
         match str(child.tag).rpartition("}")[2]:
             case "lastRenderedPageBreak":
                 (after if has_text else before).append(PAGE_BREAK)
-            case "drawing" | "pict":
+            case name if name in MARKS:
                 after.append(PICTURE)
             case "t":
                 has_text = has_text or bool(child.text)
@@ -200,7 +209,7 @@ class _Lists:
         return _Level(f"{key}/{number}" if again else key, int(again[0] if again else start or 1), text)
 
 
-def _pdf(data: bytes) -> str:
+def _pdf(data: bytes) -> bytes:
     import pypdf
 
     pages = pypdf.PdfReader(io.BytesIO(data)).pages
@@ -212,7 +221,7 @@ def _pdf(data: bytes) -> str:
         texts.append(text)
     if len(pages) > MAX_PAGES:
         texts.append("")
-    return f"\n{PAGE_BREAK}\n".join(texts)
+    return _encoded(f"\n{PAGE_BREAK}\n".join(texts))
 
 
 if __name__ == "__main__":

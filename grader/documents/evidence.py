@@ -6,7 +6,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.documents.collection import Document, DocumentCollection
+from grader.documents.collection import DocumentCollection
+from grader.documents.document import Document
 from grader.documents.headings import Heading
 from grader.documents.image_size import image_size
 from grader.documents.labels import Label, matches, read_label, stem
@@ -109,15 +110,22 @@ def _may_match(wanted: Label, proof: Proof) -> bool:
     return is_word and any(closest(word, wanted.words) for word in proof.label.words if len(word) > 3)
 
 
-def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
-    """Yield the headings of documents with the first of the labels that any has, and whether each is certain."""
+def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
+    """Return the headings of documents with the first of these labels that any has."""
+    return [(document, head) for document, head, _ in _headed(documents, [read_label(name) for name in names])]
+
+
+def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
-    for label in wanted:
-        found = [(document, head) for document, head in heads if _is_about(label, head)]
-        if found:
-            yield from ((_below(document, head), _is_certain(label, document, head)) for document, head in found)
-            return
+    found = ([(document, head, label) for document, head in heads if _is_about(label, head)] for label in wanted)
+    return next(filter(None, found), [])
+
+
+def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
+    """Yield the headings of documents with the first of the labels that any has, and whether each is certain."""
+    for document, head, label in _headed(documents, wanted):
+        yield _below(document, head), _is_certain(label, document, head)
 
 
 def _whole_documents(documents: DocumentCollection) -> Iterator[File]:

@@ -62,7 +62,7 @@ def picture_of(report: Report) -> Picture | None:
     frame, reference_frame = _frames(report.rubric, robot, solution)
     if frame is None:
         return None
-    wheels = [*_wheels(report.rubric, robot)] or None
+    wheels = [*_wheels(report.rubric, robot)]
     scene = scene_of(robot, frame, wheels)
     reference = scene_of(solution, reference_frame, wheels) if solution is not None and reference_frame else None
     lost = [result for result in report.results if _is_marked(result)]

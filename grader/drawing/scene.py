@@ -1,8 +1,8 @@
 """The content of a picture of a robot: shapes in their colours, frames, and the way its wheels drive."""
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
-from math import isfinite
+from dataclasses import dataclass, replace
+from math import inf, isfinite
 from typing import NamedTuple
 
 from grader.checks.motion import travel_of
@@ -11,7 +11,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint, Mesh, Sphere, Visual
-from grader.robot.shapes import Shape, UnknownShape, is_empty
+from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
 from grader.robot.transforms import Transform, Vector
 from grader.text import counted, enumerated, quoted
 
@@ -21,6 +21,7 @@ MAX_BODIES = 2000
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
+_LEVEL = 0.005  # metres: shapes whose bottoms differ by less stand on the same ground
 _UP: Vector = (0.0, 0.0, 1.0)
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
@@ -72,37 +73,43 @@ class Scene:
         return self.poses.get(self.robot.root_of(self.frame))
 
 
-def scene_of(robot: Configuration, frame: str, wheels: Collection[str] | None = None) -> Scene:
+def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
     """Return what a picture of a robot shows in the frame of one of its links.
 
-    `wheels` are the links that are meant to roll; without them those that show a cylinder or a sphere and turn without limit.
+    `wheels` are links that are meant to roll; others count as wheels if they do and stand on the ground.
     """
-    poses = dict(_poses(robot, frame))
+    poses, unplaced = _poses(robot, frame)
     shown, meshes, unshown = _bodies(robot, poses)
-    turning = _rolling(robot) if wheels is None else wheels
-    found = tuple(wheel for link in turning if link in poses for wheel in _wheel(robot, link, frame))
-    rest = [link.name for link in robot.robot.links if link.name not in poses and link.visuals]
-    reasons = (
-        (rest, "no chain of joints gives them a place"),
-        (meshes, "mesh files are not opened"),
-        (unshown, "their shapes have no size or place that can be drawn"),
-    )
-    missing = tuple(
-        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}; {why}" for names, why in reasons if names
-    )
+    drawn = tuple(shown[:MAX_BODIES])
+    scene = Scene(robot, frame, poses, drawn, (), ())
+    reasons = {
+        **unplaced,
+        "mesh files are not opened": meshes,
+        "the size or place of a shape is zero, too large or not known": unshown,
+    }
+    missing = [
+        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in reasons.items() if names
+    ]
     if len(shown) > MAX_BODIES:
-        missing += (f"Not shown: {counted(len(shown) - MAX_BODIES, 'more shape')}",)
-    return Scene(robot, frame, poses, tuple(shown[:MAX_BODIES]), found, missing)
+        missing.append(f"Not shown: {counted(len(shown) - MAX_BODIES, 'more shape')}")
+    return replace(scene, wheels=(*_wheels(scene, wheels),), missing=tuple(missing))
 
 
-def _poses(robot: Configuration, frame: str) -> Iterator[tuple[str, Transform]]:
+def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict[str, list[str]]]:
+    """Return the poses of the links that have one, and the other links that show something, by the reason."""
+    poses: dict[str, Transform] = {}
+    unplaced: dict[str, list[str]] = {}
     for link in robot.robot.links:
         try:
             pose = robot.pose(link.name, relative_to=frame)
-        except _NOT_KNOWN:
-            continue
-        if _is_drawable(pose.translation):
-            yield link.name, pose
+            reason = "" if _is_drawable(pose.translation) else "it is too far away"
+        except _NOT_KNOWN as error:
+            reason = str(error)
+        if not reason:
+            poses[link.name] = pose
+        elif link.visuals:
+            unplaced.setdefault(reason, []).append(link.name)
+    return poses, unplaced
 
 
 def _bodies(robot: Configuration, poses: Mapping[str, Transform]) -> tuple[list[Body], list[str], list[str]]:
@@ -146,10 +153,21 @@ def _is_drawable(values: Vector) -> bool:
     return all(isfinite(value) and abs(value) <= _MAX_COORDINATE for value in values)
 
 
-def _rolling(robot: Configuration) -> list[str]:
-    """Return the links that turn without limit and show a cylinder or a sphere."""
-    turning = [joint.child for joint in robot.parent_joints.values() if joint.type == "continuous"]
-    return [link for link in turning if isinstance(_main_shape(robot, link), Cylinder | Sphere)]
+def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
+    """Yield the links that are meant to roll, and those that turn without limit, show a round shape on the ground, and roll."""
+    robot = scene.robot
+    bottoms: dict[str, float] = {}
+    for body in scene.bodies:
+        bottom, _ = extent(body.shape, scene.pose(body), _UP)
+        bottoms[body.link] = min(bottom, bottoms.get(body.link, inf))
+    ground = min(bottoms.values(), default=0.0) + _LEVEL
+    for joint in robot.parent_joints.values():
+        link = joint.child
+        if link not in meant and joint.type == "continuous" and bottoms.get(link, inf) <= ground:
+            is_round = isinstance(_main_shape(robot, link), Cylinder | Sphere)
+            yield from (wheel for wheel in _wheel(scene, link) if is_round and wheel.travel is not None)
+    for link in meant:
+        yield from _wheel(scene, link)
 
 
 def _main_shape(robot: Configuration, link: str) -> object:
@@ -159,14 +177,14 @@ def _main_shape(robot: Configuration, link: str) -> object:
         return None
 
 
-def _wheel(robot: Configuration, link: str, frame: str) -> Iterator[Wheel]:
+def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
     """Yield a link as a wheel, if a joint turns it and its shape and place are known."""
+    robot, frame = scene.robot, scene.frame
     try:
         joint: Joint = robot.moving_joint(link)
-        if joint.type not in ("continuous", "revolute"):
+        if joint.type not in ("continuous", "revolute") or link not in scene.poses:
             return
-        T_frame_link = robot.pose(link, relative_to=frame)
-        centre = placed_by(T_frame_link, main_visual(robot, link).origin).translation
+        centre = placed_by(scene.poses[link], main_visual(robot, link).origin).translation
         axis = robot.pose(joint.child, relative_to=frame).rotate(robot.axis(joint))
         travel, _ = travel_of(robot, link, joint, frame, _UP)
     except _NOT_KNOWN:

@@ -1,45 +1,33 @@
 """A class as JSON, schema grader/class/v1."""
 
-from collections.abc import Sequence
 from typing import Any
 
 from grader import __version__
 from grader.classroom.gradebook.fixes import CommonFix
-from grader.classroom.gradebook.grades import AttentionList, Grades
-from grader.classroom.gradebook.identical import IdenticalWork
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.grading.rubric import Rubric
+from grader.classroom.gradebook.summary import ClassSummary
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
-def render_class_json(
-    rubric: Rubric,
-    statistics: ClassStatistics,
-    fixes: Sequence[CommonFix],
-    grades: Grades,
-    looks: AttentionList,
-    identical: Sequence[IdenticalWork],
-    run: dict[str, int] | None,
-    evidence_only: int,
-) -> str:
-    """Return the statistics and all current grades; `run` counts what a batch has just done.
-
-    `evidence_only` counts the submissions with pictures or documents, but without a URDF.
-    """
+def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int] | None) -> str:
+    """Return the statistics and all current grades; `run` counts what a batch has just done."""
+    rubric = summary.rubric
     return to_json(
         {
             "schema": "grader/class/v1",
             "grader": {"version": __version__},
             "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
             **({"run": run} if run is not None else {}),
-            "statistics": _statistics(statistics),
-            "fixes": list(map(_fix, fixes)),
+            "statistics": _statistics(summary.statistics),
+            "fixes": list(map(_fix, summary.fixes)),
             "identical": [
-                {"students": list(work.students), "same_file": list(map(list, work.same_file))} for work in identical
+                {"students": list(work.students), "same_file": list(map(list, work.same_file))}
+                for work in summary.identical
             ],
-            "needs_a_look": looks.total,
-            "evidence_without_urdf": evidence_only,
+            "needs_a_look": summary.attention.total,
+            "evidence_without_urdf": summary.evidence_only,
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )

@@ -13,15 +13,15 @@ from lxml import etree
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
 from grader.drawing.projection import Projection, Stroke, projection
-from grader.drawing.sheet import WIDTH, Cell, sheet_of, single_cell
-from grader.drawing.views import SIDE
+from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
+from grader.drawing.views import SIDE, View
 from grader.report.drawing_key import description, put_key, put_legend
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_THUMBNAIL = (160.0, 100.0)  # pixels
-_MARGIN = 6.0
+_THUMBNAIL = (240.0, 150.0)  # pixels
+_MARGIN = 16.0
 _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
@@ -47,14 +47,17 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
-def thumbnail_element(picture: Picture) -> Any:
-    """Return a small picture of a robot: the side view without labels."""
-    root = _root("The robot from its side", "")
-    cell = single_cell(picture, SIDE, *_THUMBNAIL, _MARGIN)
-    _put_bodies(root, cell, projection(picture.scene, SIDE))
-    signs = Signs()
-    add_outlines(signs, cell, replace(picture, frames=()), Labels(cell))
-    signs.put(root)
+def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
+    """Return a small picture of a robot: one view, where the reference differs, and the way the wheels drive."""
+    root = _root(f"The robot in the {view.title} view", description(picture))
+    cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
+    labels, below, above, group = Labels(cell), Signs(), Signs(), put(root, "g")
+    add_ground(below, cell, picture, labels)
+    below.put(group)
+    _put_bodies(group, cell, projection(picture.scene, view))
+    add_outlines(above, cell, replace(picture, frames=()), labels)
+    add_wheels(above, cell, picture, labels)
+    above.put(group)
     return _sized(root, *_THUMBNAIL)
 
 
@@ -93,7 +96,7 @@ def _put_view(group: Any, cell: Cell, picture: Picture) -> bool:
     shown = projection(picture.scene, cell.view)
     _put_bodies(group, cell, shown)
     add_outlines(above, cell, picture, labels)
-    add_frames(above, cell, picture, labels)
+    add_frames(above, cell, picture, labels, framed_links(picture))
     add_wheels(above, cell, picture, labels)
     add_callouts(above, cell, picture, labels)
     above.put(group)

@@ -1,13 +1,13 @@
 """The signs of a drawing: ground, frames with axes, the way wheels drive, the reference's outlines, numbers where criteria failed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import hypot
 from typing import Any
 
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
 from grader.drawing.projection import seen_in
-from grader.drawing.sheet import Cell, Place, framed_links
+from grader.drawing.sheet import Cell, Place
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
@@ -106,10 +106,10 @@ def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> 
                 _add_letter(signs, labels, start, tip, name)
 
 
-def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
     """Add the frames of links with their axes and letters, each that looks the same once."""
     shown: set[object] = set()
-    for link in framed_links(picture):
+    for link in links:
         pose = picture.scene.poses[link]
         look = _look_of(cell, pose)
         if look not in shown:

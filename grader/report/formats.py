@@ -38,6 +38,7 @@ class Format(StrEnum):
     GITHUB = "github", "github.txt", "github:render_github", "base"
     GRADESCOPE = "gradescope", "gradescope.json", "gradescope:render_gradescope"
     CLASSROOM50 = "classroom50", "classroom50.json", "classroom50:render_classroom50", "identity"
+    HTML = "html", "html", "pages.student:render_html"
     CODECLIMATE = "codeclimate", "codeclimate.json", "codeclimate:render_codeclimate", "base"
     SVG = "svg", "svg", "svg:render_svg"
 
@@ -58,6 +59,7 @@ class InspectFormat(StrEnum):
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
     SVG = "svg", "svg:inspection_svg"
+    HTML = "html", "pages.inspection:inspection_html"
 
     def __new__(cls, name: str, function: str = "", needs: Need = "") -> Self:
         """Return a member with its row."""

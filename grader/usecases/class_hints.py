@@ -6,9 +6,10 @@ from contextlib import AbstractContextManager
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.hints import remove_old_hints
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import remove_old_hints, rubrics_of
 from grader.classroom.run.batch import Progress
-from grader.classroom.run.hint_search import Group, HintSearch
+from grader.classroom.run.hint_search import Group, HintSearch, same_content, same_robot
 from grader.classroom.run.pool import Processes, processors
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
@@ -24,6 +25,18 @@ class HintOptions(NamedTuple):
     jobs: int | None = None
     timeout: float = 60.0
     max_size: int = URDF_LIMIT
+
+
+def search_class_hints(
+    book: Gradebook, options: HintOptions, progress: ProgressDisplay, warn: Warn, *, reports: bool, statistics: bool
+) -> None:
+    """Search the hints that the reports of students show, and those that the statistics of the class count."""
+    searched = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if reports else []
+    if searched:
+        search_hints(book, searched, same_content, options, progress, warn)
+    newest = Grades(book).newest_rubric()
+    if statistics and newest.sha256 not in {rubric.sha256 for rubric in searched}:
+        search_hints(book, [newest], same_robot, options, progress, warn)
 
 
 def search_hints(

@@ -1,9 +1,5 @@
-"""Write a report for each student of a class, from the gradebook, each in a separate file."""
+"""Write a report for each student of a class, from the gradebook, and the class's page beside reports in HTML."""
 
-import hashlib
-import re
-import unicodedata
-from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -13,40 +9,58 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
 from grader.errors import InputError
 from grader.grading.report import Report
 from grader.report.formats import Format, render
-from grader.text import format_points
-from grader.usecases.writing import save
+from grader.text import counted, enumerated, format_points, printable, printable_path
+from grader.usecases import Warn
+from grader.usecases.class_page import write_class_page
+from grader.usecases.report_names import report_names, update_index
+from grader.usecases.writing import refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
-_UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
-_RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")  # device names of Windows
-_DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
-INDEX = "index.csv"  # the student of each report
-_MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it stays below the 255 of a file system
+_MAX_NAMED = 3
+REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
+
+
+def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
+    """Raise InputError for a folder that reports cannot be written to, or that the next run would take for a submission."""
+    shown = printable_path(folder)
+    refuse_symlinks(folder, submissions)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"cannot write reports to {shown}: it is not a folder")
+    for submitted in submissions:
+        if folder.resolve() == submitted or submitted in folder.resolve().parents:
+            raise InputError(
+                f"cannot write reports to {shown}: the next run would take them for a submission; "
+                "choose a folder outside of the class folder"
+            )
 
 
 def write_reports(
-    executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None = None
-) -> int:
-    """Write a report for every student who has a result and return their number. Raises InputError."""
+    executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None, warn: Warn
+) -> None:
+    """Write a report for every student who has a result; with the format HTML also the class's page. Raises InputError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
+        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
     with Gradebook(book) as opened:
-        keys = [str(row[0]) for row in opened.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")]
-    names = file_names(keys)
-    _update_index(folder / INDEX, names)
+        names = report_names(opened)
+    keys = list(names)
+    earlier = update_index(folder, names)
     tasks = [
         executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
         for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))
     ]
     for task in tasks:
         task.result()
-    return len(keys)
+    if Format.HTML in formats:
+        write_class_page(executor, book, folder, names, due)
+    warn(f"{counted(len(keys), 'report')} written to {printable_path(folder)}")
+    if earlier:
+        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
+        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
 def _write_some(
@@ -71,45 +85,3 @@ def report_of(grades: Grades, grade: StudentGrade) -> Report:
     if grade.late.points:
         note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
     return replace(report, notes=(*report.notes, note))
-
-
-def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """Return a file name without ending for each key: valid on every system, and unique without regard to case.
-
-    A key that is not a valid name, or that ends like one with a digest, gets its digest appended.
-    """
-    plain = {key: _plain(key) for key in keys}
-    counts = Counter(map(_folded, plain.values()))
-    names = {}
-    for key, name in plain.items():
-        is_valid = name == key and counts[_folded(name)] == 1 and not _DIGEST.search(name)
-        digest = "" if is_valid else f"-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"
-        names[key] = name + digest
-    if len(set(map(_folded, names.values()))) < len(names):
-        raise InputError("two students would share a report file; nothing was written")
-    return names
-
-
-def _update_index(index: Path, names: dict[str, str]) -> None:
-    """Record the student of each report. Raises InputError if the report of another student would be overwritten."""
-    try:
-        before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
-    except (OSError, ValueError, IndexError):
-        raise InputError(
-            f"cannot read {index}, the list of the students of the reports: remove it, or choose another folder"
-        ) from None
-    rows = {neutral(name): neutral(key) for key, name in names.items()}
-    other = next((name for name, key in rows.items() if before.get(name, key) != key), None)
-    if other is not None:
-        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: choose another folder")
-    save(index, write_table(("report", "id"), sorted({**before, **rows}.items())))
-
-
-def _folded(name: str) -> str:
-    return unicodedata.normalize("NFC", name).casefold()
-
-
-def _plain(key: str) -> str:
-    data = _UNSAFE.sub("_", unicodedata.normalize("NFC", key)).encode("utf-8", "replace")
-    name = data[:_MAX_BYTES].decode("utf-8", "ignore").strip(" .") or "_"
-    return f"_{name}" if _RESERVED.fullmatch(name) or name.startswith("-") else name

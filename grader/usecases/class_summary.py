@@ -5,23 +5,17 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.gradebook.evidence_only import count_evidence_only
-from grader.classroom.gradebook.fixes import common_fixes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.identical import identical_work
 from grader.classroom.gradebook.lateness import read_time
-from grader.classroom.gradebook.statistics import statistics
-from grader.classroom.run.hint_search import same_robot
+from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
 from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
-
-_MAX_LISTED = 20
 
 
 def read_deadline(text: str | None) -> datetime | None:
@@ -35,7 +29,7 @@ def class_statistics(
     """Return the summary of a gradebook's class with the edits that would gain points. Raises InputError."""
     with Gradebook(gradebook) as book:
         grades = Grades(book, read_deadline(due))
-        search_hints(book, [grades.newest_rubric()], same_robot, HintOptions(), progress, warn)
+        search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
         return class_summary(grades, kind, screen, with_fixes=True)
 
 
@@ -51,19 +45,14 @@ def class_summary(
 
     `with_fixes` shows the edits that would gain points, which takes a search for hints.
     """
-    rubric = grades.newest_rubric()
-    found = statistics(grades.book, rubric)
-    looks, identical = grades.needing_attention(_MAX_LISTED), identical_work(grades.book)
-    evidence_only = count_evidence_only(grades.book, rubric)
-    fixes = common_fixes(grades.book, rubric) if with_fixes else ()
+    summary = summary_of(grades, with_fixes=with_fixes)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, fixes, grades, looks, identical, run, evidence_only)
+        return render_class_json(summary, grades, run)
     from grader.report.class_summary import render_class
 
-    shown = 0 if rubric.without_urdf else evidence_only
-    return draw(partial(render_class, rubric.title, found, fixes, looks, identical, shown), screen)
+    return draw(partial(render_class, summary), screen)

@@ -22,8 +22,10 @@ from grader.grading.rubric import Criterion
 from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
 from grader.usecases import Warn
+from grader.usecases.class_hints import ProgressDisplay
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.export_pages import export_pages
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _STUDENT_COLUMNS = (
@@ -49,9 +51,12 @@ class ExportRequest:
     any_maximum: bool
 
 
-def export(request: ExportRequest, warn: Warn) -> tuple[bytes, ExitCode]:
+def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tuple[bytes, ExitCode]:
     """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_files(request)
+    if request.target == "html":
+        export_pages(request.gradebook, request.output, request.due, progress, warn)
+        return b"", ExitCode.PASSED
     with Gradebook(request.gradebook) as book:
         classes = tuple({run.source for run in book.runs()})
         if request.output is not None:

@@ -10,13 +10,12 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.hints import remove_hints, rubrics_of
+from grader.classroom.gradebook.hints import remove_hints
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings
-from grader.classroom.run.hint_search import same_content, same_robot
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import robot_hashes
 from grader.errors import InputError
@@ -27,14 +26,13 @@ from grader.report.screen import Screen
 from grader.submission.opening import open_submission
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_hints
-from grader.usecases.class_reports import write_reports
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.export import grades_csv
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_symlinks, save
 
 _MAX_LINES = 10
-_REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +98,8 @@ def grade_class(
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
         with_fixes = _search_hints(request, kind, book, progress, warn)
         if request.reports is not None:
-            with _processes(request.jobs, _REPORT_SECONDS) as executor:
-                count = write_reports(executor, request.gradebook, request.reports, request.report_formats, deadline)
-            warn(f"{counted(count, 'report')} written to {printable_path(request.reports)}")
+            with _processes(request.jobs, REPORT_SECONDS) as executor:
+                write_reports(executor, request.gradebook, request.reports, request.report_formats, deadline, warn)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
         return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes)
@@ -111,16 +108,14 @@ def grade_class(
 def _search_hints(
     request: ClassRequest, kind: OutputFormat, book: Gradebook, progress: ProgressDisplay, warn: Warn
 ) -> bool:
-    """Search the hints of reports and of the class as JSON; return whether all were searched that statistics need."""
+    """Search the hints of reports and of the class; return whether all were searched that statistics need."""
     if request.force:
         remove_hints(book)
     options = HintOptions(request.jobs, request.timeout, request.max_size)
-    has_hints = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if request.reports is not None else []
-    if has_hints:
-        search_hints(book, has_hints, same_content, options, progress, warn)
-    if kind is OutputFormat.JSON:
-        search_hints(book, [Grades(book).newest_rubric()], same_robot, options, progress, warn)
-    return kind is OutputFormat.JSON
+    is_json, reports = kind is OutputFormat.JSON, request.reports is not None
+    statistics = is_json or (reports and Format.HTML in request.report_formats)
+    search_class_hints(book, options, progress, warn, reports=reports, statistics=statistics)
+    return is_json
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
@@ -188,15 +183,10 @@ def _warn_lines(lines: Sequence[str], warn: Warn) -> None:
 def _refuse_targets(request: ClassRequest) -> None:
     """Raise InputError for files that could not be written in the end, or that the next run would take for submissions."""
     reports, csv, root = request.reports, request.csv, request.root
-    for path in filter(None, (request.gradebook, reports, csv)):
+    for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
-    if reports is not None and reports.exists() and not reports.is_dir():
-        raise InputError(f"cannot write reports to {printable_path(reports)}: it is not a folder")
-    if reports is not None and (reports.resolve() == root or root in reports.resolve().parents):
-        raise InputError(
-            f"cannot write reports to {printable_path(reports)}: the next run would take them for a submission; "
-            "choose a folder outside of the class folder"
-        )
+    if reports is not None:
+        refuse_report_folder(reports, (root,))
     if csv is not None and not csv.resolve().parent.is_dir():
         raise missing_folder(csv)
     if csv is not None:

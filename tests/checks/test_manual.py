@@ -10,7 +10,7 @@ import pytest
 
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
-from grader.documents.collection import MAX_LINES
+from grader.documents.document import MAX_LINES
 from grader.source import Location
 from tests.checks.outcomes import ask
 from tests.checks.submissions import ANSWERS, REFERENCE, URDF, Submitted, gif, jpeg, png

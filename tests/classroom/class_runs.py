@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
-from grader.usecases.class_reports import INDEX
+from grader.usecases.report_names import INDEX
 from tests.command_line import GRADER, HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT
 

@@ -280,7 +280,7 @@ def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Pat
 def test_without_a_target(graded_class: Path) -> None:
     """The choices are on one line, without the tabs around them."""
     why = refusal(grader("export", "--gradebook", graded_class / "book.db"))
-    assert "Choose from: csv, canvas, moodle, json (`grader export --help` shows the usage)" in why
+    assert "Choose from: csv, canvas, moodle, json, html (`grader export --help` shows the usage)" in why
 
 
 @pytest.mark.parametrize("name", ["book.db", "../small/book.db", "link.db", "hard.db", "book.db-wal", "book.db-shm"])

@@ -100,7 +100,7 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: GithubJob, p
         (("my_robot.urdf", "--part", "task2"), "give the folder or archive"),
         (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the expected one"),
         (("my_robot.urdf", "--save", "json=nowhere/a.json"), "cannot write nowhere/a.json"),
-        (("my_robot.urdf", "--save", "html=a.html"), "--save takes FORMAT=FILE"),
+        (("my_robot.urdf", "--save", "pdf=a.pdf"), "--save takes FORMAT=FILE"),
         (("my_robot.urdf", "--fail-under", "many"), "--fail-under takes points"),
     ],
 )

@@ -12,12 +12,12 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, pending_criterion
+from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, queued_result
 from tests.classroom.gradebooks import ENVIRONMENT, grader
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
-HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
+HELP = "points and a comment, s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
 
 
 @pytest.fixture
@@ -188,11 +188,11 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     del graded_class
     with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
         standings = Grades(one)
-        found = pending_criterion(standings, QueuedCriterion("anna", "essay"))
+        found = queued_result(standings, QueuedCriterion("anna", "essay"))
         assert found is not None
         shown, seen = found.newest, []
         for points in (1, 2):
-            theirs = mark(other, found.grade, found.result.criterion, Decimal(points), "", "")
+            theirs = mark(other, found.grade, found.result.criterion, Decimal(points), "", "").before
             assert (theirs.points if theirs is not None else 0) == points - 1
             with pytest.raises(NewerMarkError) as caught:
                 mark(one, found.grade, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
@@ -221,3 +221,28 @@ def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
     os.close(own)
     os.close(theirs)
     assert marks(top) == [("anna", "essay", 3.0, "good")]
+
+
+def test_back_and_undo(top: Path) -> None:
+    """An item that this review has marked is shown with its mark; undo opens it again, with a new entry."""
+    done = review(top, "b\n3 good\nb\nu\nu\n2\nq\n")
+    assert done.stderr == (
+        "grader: this is the first item\ngrader: the mark is undone\ngrader: nothing to undo: this review has marked nothing\n"
+    )
+    positions = [line.split(":")[0] for line in done.stdout.splitlines() if " of 4  " in line]
+    assert positions == [
+        "1 of 4  Anna Ek (anna)", "2 of 4  Ben Oh (emil)", "1 of 4  Anna Ek (anna)", "1 of 4  Anna Ek (anna)",
+        "2 of 4  Ben Oh (emil)",
+    ]  # fmt: skip
+    _, marked, unmarked = done.stdout.split("1 of 4  ")[1:][0], *done.stdout.split("1 of 4  ")[2:]
+    assert "\nMarked: 3 points by Kim at 20" in marked
+    assert "Marked:" not in unmarked
+    assert done.stdout.endswith("1 marked, 3 left\n")
+    assert [row[1:] for row in marks(top)] == [("essay", 3.0, "good"), ("essay", None, ""), ("essay", 2.0, "")]
+
+
+def test_undo_of_a_replacement(top: Path) -> None:
+    """The mark before it counts again."""
+    done = review(top, "3 good\nback\n1 bad\nundo\ns\nq\n")
+    assert done.stderr.startswith("grader: undone; the mark before it counts again: 3 points by Kim at 20")
+    assert [row[2] for row in marks(top)] == [3, 1, 3]

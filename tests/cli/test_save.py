@@ -43,7 +43,7 @@ def test_one_file_holds_one_report(tmp_path: Path, kind: str, other: str) -> Non
     assert not (tmp_path / "a").exists()
 
 
-@pytest.mark.parametrize("text", ["html=a", "json", "json=", "json=-", "=a", "JSON=a", " json=a", "json:a", ""])
+@pytest.mark.parametrize("text", ["pdf=a", "json", "json=", "json=-", "=a", "JSON=a", " json=a", "json:a", ""])
 def test_an_invalid_option_is_refused(text: str) -> None:
     """One line lists the formats."""
     done = saved(text)

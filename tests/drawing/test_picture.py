@@ -95,8 +95,16 @@ def test_what_cannot_be_drawn_is_named() -> None:
     assert reading.robot is not None
     scene = scene_of(Configuration(reading.robot), "a")
     assert scene.bodies == ()
-    assert [sentence.partition(";")[0] for sentence in scene.missing] == [
-        "Not shown: 'c'",
-        "Not shown: 'a'",
-        "Not shown: 'b'",
-    ]
+    assert scene.missing == (
+        "Not shown: 'c': no chain of joints leads from 'a' to 'c'",
+        "Not shown: 'a': mesh files are not opened",
+        "Not shown: 'b': the size or place of a shape is zero, too large or not known",
+    )
+
+
+def test_only_round_links_on_the_ground_are_wheels() -> None:
+    """A part of an arm that turns without limit is no wheel; in a rubric without wheels, those of a rover still are."""
+    assert picture("arm-joint-continuous", "arm").scene.wheels == ()
+    rover = read_urdf((ROOT / "submissions/axis-negated/my_robot.urdf").read_bytes(), "r.urdf").robot
+    assert rover is not None
+    assert {wheel.link for wheel in scene_of(Configuration(rover), "base_link").wheels} == {"left_wheel", "right_wheel"}

@@ -210,6 +210,30 @@ def _values(value: Any) -> Iterator[str]:
             yield from _values(item)
 
 
+@lru_cache(maxsize=1)
+def read_page(text: str) -> Any:
+    """Return the root of an HTML page. It has the elements of its template only, and no event handler or style of its own."""
+    root: Any = html.document_fromstring(text)
+    for element in root.iter():
+        assert not any(name.startswith("on") or name in ("style", "src", "srcset") for name in element.attrib)
+    return root
+
+
+def page_structure(text: str) -> Any:
+    """Return the elements of a page, and the keys of the data for its script. A diff has as many lines as its texts."""
+    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span", "code")]
+
+
+def page_text(text: str) -> str:
+    """Return the text that a page shows, with backticks around what it shows as code in sentences."""
+    root: Any = html.document_fromstring(text)
+    for element in root.xpath("//script | //style"):
+        element.text = ""
+    for element in root.xpath("//*[contains(@class, 'sentence')]//code"):
+        element.text = f"`{element.text}`"
+    return str(root.text_content())
+
+
 def gradescope_text(text: str) -> str:
     data = json.loads(text)
     return "\n".join(
@@ -244,6 +268,7 @@ READERS: Mapping[Format, FormatReader] = {
         {"rubric": _PERSON},
     ),
     Format.MARKDOWN: FormatReader(read_markdown, markdown_structure, markdown_text),
+    Format.HTML: FormatReader(read_page, page_structure, page_text),
     Format.JSON: FormatReader(read_report, json_structure, json_text),
     Format.JUNIT: FormatReader(read_junit, junit_structure, junit_text),
     Format.SARIF: FormatReader(read_sarif, json_structure, sarif_text),

@@ -50,20 +50,28 @@ def _numbers(value: object) -> tuple[float, ...]:
 
 
 def grouped(failures: Mapping[Failure, int]) -> list[tuple[Failure, int]]:
-    """Return each cause once, by its most frequent failure, with the number of failures; the most frequent first.
+    """Return each cause once, by its most frequent failure, with the number of failures; the most frequent first."""
+    counts: Counter[Failure] = Counter()
+    for failure, group in groups_of(failures).items():
+        counts[group] += failures[failure]
+    return sorted(counts.items(), key=lambda item: (-item[1], item[0]))
+
+
+def groups_of(failures: Mapping[Failure, int]) -> dict[Failure, Failure]:
+    """Return the cause of each failure, given as the most frequent failure that has it.
 
     A measured failure belongs to the first group whose values are within the tolerance; any other to those with the same words.
     """
-    counts: Counter[Failure] = Counter()
+    found: dict[Failure, Failure] = {}
     cells: dict[tuple[object, ...], list[Failure]] = {}
-    for failure, count in sorted(failures.items(), key=lambda item: (-item[1], item[0])):
+    for failure, _ in sorted(failures.items(), key=lambda item: (-item[1], item[0])):
         first, *others = _cells(failure)
         near = (group for cell in (first, *others) for group in cells.get(cell, ()))
         group = next((group for group in near if _is_same(failure, group)), None)
         if group is None:
             cells.setdefault(first, []).append(failure)
-        counts[group or failure] += count
-    return sorted(counts.items(), key=lambda item: (-item[1], item[0]))
+        found[failure] = group or failure
+    return found
 
 
 def _cells(failure: Failure) -> Iterable[tuple[object, ...]]:

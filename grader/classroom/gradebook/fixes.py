@@ -19,35 +19,41 @@ _MAX_FIXES = 20
 
 @dataclass(frozen=True, slots=True)
 class CommonFix:
-    """A change that several students need, and their number.
+    """A change that several students need, by their keys.
 
     `criteria` pass with it and `points` are gained, mostly. `example` are the edits of one student, without the names of their files.
     """
 
     action: str
-    count: int
+    students: tuple[str, ...]
     criteria: tuple[str, ...]
     points: Decimal
     example: tuple[Edit, ...]
 
+    @property
+    def count(self) -> int:
+        """The number of students."""
+        return len(self.students)
+
 
 def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     """Return the changes that most students need, the most frequent first, as far as hints have been searched."""
-    counts: dict[str, Counter[tuple[str, ...]]] = {}
+    needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
     examples: dict[tuple[str, tuple[str, ...]], tuple[Mistaken, StoredHint, tuple[StoredHint, ...]]] = {}
     for submission, example, hints in _with_hints(book, rubric):
         given = _given(book, rubric, submission)
         for stored in hints:
             action, gained = stored.hint.action, tuple(stored.hint.gains)
             if action and not given.issuperset(gained):
-                counts.setdefault(action, Counter())[gained] += 1
+                needed.setdefault(action, {}).setdefault(submission.key, gained)
                 examples.setdefault((action, gained), (example, stored, hints))
     fixes = []
-    for action, kinds in counts.items():
+    for action, gains in needed.items():
+        kinds = Counter(gains.values())
         gained = min(kinds, key=lambda names: (-kinds[names], names))
         example, stored, hints = examples[action, gained]
         edits = tuple(_nameless(edit, example, rubric) for edit in stored.own_edits(hints))
-        fixes.append(CommonFix(action, kinds.total(), gained, sum(stored.hint.gains.values(), Decimal(0)), edits))
+        fixes.append(CommonFix(action, tuple(gains), gained, sum(stored.hint.gains.values(), Decimal(0)), edits))
     return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
 
 

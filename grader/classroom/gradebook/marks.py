@@ -29,6 +29,13 @@ class Mark(NamedTuple):
     at: str
 
 
+class AddedMark(NamedTuple):
+    """The id of a new mark, and the mark that was the newest before it, if there was one."""
+
+    id: int
+    before: Mark | None
+
+
 class NewerMarkError(Exception):
     """Somebody has marked the criterion since it was shown."""
 
@@ -45,12 +52,17 @@ class QueuedCriterion(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class PendingCriterion:
-    """A student's criterion that needs manual grading; `newest` is the id of its newest mark, 0 if it has none."""
+class QueuedResult:
+    """A queued criterion in its current state, with its newest mark, also one that takes an earlier one back."""
 
     grade: StudentGrade
     result: Result
-    newest: int = 0
+    mark: Mark | None = None
+
+    @property
+    def newest(self) -> int:
+        """The id of the newest mark, 0 if there is none."""
+        return self.mark.id if self.mark is not None else 0
 
 
 def read_points(text: str, criterion: Criterion) -> Decimal | None:
@@ -87,19 +99,29 @@ def mark(
     why: str,
     *,
     shown: int | None = None,
-) -> Mark | None:
-    """Add a mark to a student's newest result; return the mark that was the newest before, if there was one.
+    author: str = "",
+) -> AddedMark:
+    """Add a mark to a student's newest result.
 
     `points` are None to take the newest mark back; `by` is the name that reports show, `why` the comment. `shown` is the id of the
     newest mark that the person has seen, 0 for none: if there is a newer one, nothing is written and NewerMarkError holds it.
-    Raises InputError for a student who has submitted nothing.
+    `author` is for the audit, where it is not `by`. Raises InputError for a student who has submitted nothing.
     """
     if grade.result is None:
         raise InputError(f"{grade.student.key} has submitted nothing that could be marked")
     units = None if points is None else int(points * UNITS_PER_POINT)
     at = datetime.now(UTC).isoformat(timespec="seconds")
     name = storable(by)
-    row = (grade.id, criterion.id, units, storable(why), name or storable(account()), name, at, grade.result)
+    row = (
+        grade.id,
+        criterion.id,
+        units,
+        storable(why),
+        storable(author) or name or storable(account()),
+        name,
+        at,
+        grade.result,
+    )
     with book.input_errors():
         book.connection.execute("PRAGMA synchronous = FULL")  # a manual mark must survive a power cut
     with book.transaction():
@@ -107,8 +129,8 @@ def mark(
         if before is not None and shown is not None and before.id != shown:
             raise NewerMarkError(before)
         columns = "student, criterion, points, comment, author, grader_name, at, result"
-        book.connection.execute(f"INSERT INTO mark ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?, ?)", row)
-    return before
+        added = book.connection.execute(f"INSERT INTO mark ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?, ?)", row)
+    return AddedMark(int(added.lastrowid or 0), before)
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
@@ -149,12 +171,19 @@ def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCrit
     ]
 
 
-def pending_criterion(grades: Grades, queued: QueuedCriterion) -> PendingCriterion | None:
-    """Return a queued criterion in its current state; None if somebody has marked it meanwhile."""
+def queued_result(grades: Grades, queued: QueuedCriterion) -> QueuedResult | None:
+    """Return a queued criterion in its current state; None if it is no longer graded."""
     grade = grades.find(queued.key)
     # Before the report, so that no later mark counts as shown.
     newest = newest_mark(grades.book, grade.id, queued.criterion)
     for result in grades.report(grade).results:
-        if result.criterion.id == queued.criterion and result.is_open:
-            return PendingCriterion(grade, result, newest.id if newest is not None else 0)
+        if result.criterion.id == queued.criterion:
+            return QueuedResult(grade, result, newest)
     return None
+
+
+def reusable_comments(book: Gradebook, criterion: str, most: int) -> list[str]:
+    """Return the comments that marks of a criterion have, without repetitions, the most frequent first."""
+    query = "SELECT comment FROM manual_mark WHERE criterion = ? AND comment <> '' GROUP BY comment"
+    rows = book.rows(f"{query} ORDER BY count(*) DESC, min(id) LIMIT ?", criterion, most)
+    return [str(comment) for (comment,) in rows]

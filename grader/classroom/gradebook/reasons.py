@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from collections.abc import Iterator, Mapping
 from itertools import chain
 
 from grader.checks.manual import MANUAL_CHECKS
@@ -25,12 +26,17 @@ def failure_counts(book: Gradebook, rubric: Rubric) -> Counter[Failure]:
     unmarked = book.rows(f"SELECT failures, count(*), 0 {GRADED} AND marks = 0 GROUP BY failures", rubric.sha256)
     marked = book.rows(f"SELECT failures, 1, id {GRADED} AND marks", rubric.sha256)
     for failures, count, student in chain(unmarked, marked):
-        marks = manual_units(book, student)
-        for failure in map(Failure.from_json, json.loads(failures)):
-            criterion = rubric.criteria[failure.position]
-            if marks.get(criterion.id) != int(criterion.points * UNITS_PER_POINT):
-                found[failure] += count
+        for failure in failures_in(failures, rubric, manual_units(book, student)):
+            found[failure] += count
     return found
+
+
+def failures_in(failures: str, rubric: Rubric, marks: Mapping[str, int]) -> Iterator[Failure]:
+    """Yield the failures of a submission that are stored as JSON, except where a manual mark gives all points."""
+    for failure in map(Failure.from_json, json.loads(failures)):
+        criterion = rubric.criteria[failure.position]
+        if marks.get(criterion.id) != int(criterion.points * UNITS_PER_POINT):
+            yield failure
 
 
 def undecided_reasons(book: Gradebook, rubric: Rubric) -> tuple[tuple[str, int], ...]:

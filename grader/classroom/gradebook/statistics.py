@@ -43,6 +43,11 @@ class CriterionStatistics:
     share: float | None
     discrimination: float | None
 
+    @property
+    def of(self) -> int:
+        """The number of students for whom it was graded, or needs manual grading."""
+        return self.decided + self.pending + self.errored
+
 
 @dataclass(frozen=True, slots=True)
 class CommonFailure:
@@ -96,7 +101,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     scores: Counter[int] = Counter()
     for pattern in patterns:
         if pattern.counts:
-            scores[round(pattern.score * most / pattern.decided)] += pattern.students
+            scores[pattern.grade(most)] += pattern.students
     values, decided = sorted(scores.items()), scores.total()
     graded = sum(pattern.students for pattern in patterns)
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
@@ -173,5 +178,10 @@ def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
 def _bins(values: list[tuple[int, int]], most: int) -> tuple[int, ...]:
     bins = [0] * _BINS
     for score, count in values:
-        bins[max(0, min(_BINS - 1, score * _BINS // (most or 1)))] += count
+        bins[tenth_of(score, most)] += count
     return tuple(bins)
+
+
+def tenth_of(score: int, most: int) -> int:
+    """Return in which tenth of the maximum a grade is, from 0 to 9."""
+    return max(0, min(_BINS - 1, score * _BINS // (most or 1)))

@@ -36,15 +36,16 @@ class SubmissionSources:
 
     def source(self, path: str) -> Source | None:
         """Return the text of one file; None if it cannot be read or has changed."""
-        return self._submission.source(path) if self._submission is not None else None
+        return self.submission.source(path) if self.submission is not None else None
 
     @property
     def urdf(self) -> Urdf:
         """The URDF; absent if it cannot be read or has changed."""
-        return self._submission.urdf if self._submission is not None else Absent()
+        return self.submission.urdf if self.submission is not None else Absent()
 
     @cached_property
-    def _submission(self) -> Submission | None:
+    def submission(self) -> Submission | None:
+        """The submission; None if it cannot be read or has changed since it was graded."""
         root, paths, names, key, stored = self._files
         if not stored or fingerprint(root, paths, time.time_ns()) != stored:
             return None

@@ -82,7 +82,7 @@ def test_every_mark_is_kept(book: Gradebook) -> None:
     assert taken_back is not None
     assert taken_back.points is None
     picture = next(criterion for criterion in grades.newest_rubric().criteria if criterion.id == "picture")
-    assert mark(book, emil, picture, Decimal(1), "Kim", "") == taken_back
+    assert mark(book, emil, picture, Decimal(1), "Kim", "").before == taken_back
     assert grades.find("emil").score == Decimal(5)
 
 

@@ -39,7 +39,7 @@ def batch(path: Path, out: Path, *arguments: str, jobs: int = 2) -> dict[str, by
 
 def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
     """Return the reports in a folder by the key of their students."""
-    from grader.usecases.class_reports import file_names
+    from grader.usecases.report_names import file_names
 
     names = file_names([str(key) for (key,) in rows(book, "SELECT key FROM grade WHERE result IS NOT NULL")])
     found = contents(reports)

@@ -1,0 +1,173 @@
+"""A review: one person goes through what needs manual grading. Every mark is in the gradebook at once."""
+
+from decimal import Decimal
+from typing import NamedTuple
+
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import (
+    Mark,
+    NewerMarkError,
+    QueuedResult,
+    account,
+    criterion_of,
+    manual_grading_queue,
+    mark,
+    queued_result,
+    reusable_comments,
+)
+from grader.classroom.gradebook.student_grade import SubmissionSources
+from grader.documents.pictures import NotShown, Picture
+from grader.grading.pictures import files_of, pictures_of
+
+MAX_COMMENTS = 9  # one key each
+_CHANGED = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
+
+
+class _Given(NamedTuple):
+    """A mark of this review: the position of its item in the queue, and the mark that was the newest before."""
+
+    position: int
+    before: Mark | None
+
+
+class ReviewSession:
+    """The queue of a review, and the place in it. What this review has marked stays in it; what others mark meanwhile is passed over.
+
+    `item` is the current item, None at the end of the queue. `by` is the name that reports show.
+    """
+
+    def __init__(self, grades: Grades, criterion: str = "", by: str = "") -> None:
+        self.criteria = grades.newest_rubric().criteria
+        if criterion:
+            criterion_of(grades.newest_rubric(), criterion)
+        self._grades, self._criterion, self._by = grades, criterion, by
+        self.queue = tuple(manual_grading_queue(grades, criterion))
+        self._given: list[_Given] = []
+        self._own: dict[int, int] = {}  # the newest mark of this review, by the position of its item
+        self._comments: dict[str, list[str]] = {}  # of each criterion, in the order of their keys
+        self.item: QueuedResult | None = None
+        self.start()
+
+    @property
+    def marked(self) -> int:
+        """The number of items that this review has marked."""
+        return len(self._own)
+
+    @property
+    def left(self) -> int:
+        """The number of items that need manual grading."""
+        return len(manual_grading_queue(self._grades, self._criterion))
+
+    @property
+    def is_own(self) -> bool:
+        """Return whether this review has marked the current item."""
+        return self.position in self._own
+
+    @property
+    def can_undo(self) -> bool:
+        """Return whether a mark of this review can be undone."""
+        return bool(self._given)
+
+    def start(self) -> None:
+        """Go to the first item that is not marked by others, or to the end."""
+        self.position = -1
+        self.next()
+
+    def go(self, position: int) -> None:
+        """Go to a position in the queue, whatever has been done there; beyond it to the end."""
+        inside = 0 <= position < len(self.queue)
+        self.item = queued_result(self._grades, self.queue[position]) if inside else None
+        self.position = position if inside else len(self.queue)
+
+    def next(self) -> None:
+        """Go to the next item that is not marked by others, or to the end."""
+        for position in range(self.position + 1, len(self.queue)):
+            if self._is_shown(position):
+                return
+        self.go(len(self.queue))
+
+    def back(self) -> bool:
+        """Go to the previous item that is not marked by others; return whether there is one."""
+        start = self.position
+        if any(self._is_shown(position) for position in range(start - 1, -1, -1)):
+            return True
+        self.go(start)
+        return False
+
+    def _is_shown(self, position: int) -> bool:
+        """Go to an item and return whether it is open, or marked by this review."""
+        self.go(position)
+        return self.item is not None and (self.item.result.is_open or self.is_own)
+
+    def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
+        """Mark the current item. The mark that it has already, if it is this one, is not repeated.
+
+        `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
+        one, and InputError.
+        """
+        item = self.item
+        assert item is not None
+        shown = item.newest if shown is None else shown
+        same = item.mark is not None and (item.mark.points, item.mark.comment) == (points, comment)
+        if same and self._own.get(self.position) == shown:
+            return
+        criterion = item.result.criterion
+        added = mark(self._grades.book, item.grade, criterion, points, self._by, comment, shown=shown)
+        self._given.append(_Given(self.position, added.before))
+        self._own[self.position] = added.id
+
+    def undo(self) -> Mark | None:
+        """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
+
+        A new entry brings the mark before it back, or takes the mark back. Raises NewerMarkError if somebody has marked the item
+        since, and InputError; IndexError if there is nothing to undo.
+        """
+        here = [index for index, given in enumerate(self._given) if given.position == self.position]
+        index = here[-1] if here else len(self._given) - 1
+        given = self._given[index]
+        self.go(given.position)
+        item = self.item
+        assert item is not None
+        before = given.before or Mark(0, None, self._by, "", "")
+        try:
+            added = mark(
+                self._grades.book, item.grade, item.result.criterion, before.points, before.by, before.comment,
+                shown=self._own[given.position], author=self._by or account(),
+            )  # fmt: skip
+        except NewerMarkError:
+            self._forget(given.position)
+            raise
+        del self._given[index]
+        self._own[given.position] = added.id
+        if all(other.position != given.position for other in self._given):
+            self._forget(given.position)
+        self.go(given.position)
+        return given.before
+
+    def _forget(self, position: int) -> None:
+        """Leave an item to others: what this review has marked there can no longer be undone."""
+        self._given = [given for given in self._given if given.position != position]
+        del self._own[position]
+
+    def pictures(self) -> tuple[Picture | NotShown, ...]:
+        """Return the pictures of the current item, and what is not shown. The submission is opened again, and must be unchanged."""
+        item = self.item
+        if item is None or not files_of(item.result):
+            return ()
+        submission = SubmissionSources(item.grade.files, self._grades.rubric(item.grade.rubric)).submission
+        if submission is None:
+            return (NotShown("pictures", _CHANGED),)
+        return pictures_of(item.result, submission)
+
+    def comments(self) -> list[str]:
+        """Return comments that were given before for the criterion of the current item, the most frequent first.
+
+        A comment keeps its place during the review, because its key is its place.
+        """
+        criterion = self.queue[self.position].criterion
+        found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS)
+        before = self._comments.get(criterion, [])
+        new = iter([comment for comment in found if comment not in before])
+        places = [comment if comment in found else next(new, "") for comment in before]
+        self._comments[criterion] = [*filter(None, places), *new]
+        return self._comments[criterion]

@@ -1,0 +1,119 @@
+"""Pictures that a browser shows safely. Their bytes decide what they are, never their names."""
+
+import re
+from typing import NamedTuple
+
+from grader.documents.image_size import image_size
+from grader.errors import FileError, InputError
+from grader.files.tree import File
+
+MAX_BYTES = 20 * 1024 * 1024
+MAX_PIXELS = 100_000_000  # a browser needs 4 bytes of memory for each
+_DIB_SIZES = frozenset(
+    {12, 40, 52, 56, 64, 108, 124}
+)  # of the second header of a BMP file, which begins with "BM" only
+
+
+class ImageType(NamedTuple):
+    """A format that every browser shows: its name, its media type, and the ending of its files."""
+
+    name: str
+    media_type: str
+    ending: str
+
+
+_PNG, _JPEG, _GIF, _WEBP, _BMP = (
+    ImageType("PNG", "image/png", "png"),
+    ImageType("JPEG", "image/jpeg", "jpg"),
+    ImageType("GIF", "image/gif", "gif"),
+    ImageType("WebP", "image/webp", "webp"),
+    ImageType("BMP", "image/bmp", "bmp"),
+)
+_SIGNATURES = (
+    (re.compile(rb"\x89PNG\r\n\x1a\n"), _PNG),
+    (re.compile(rb"\xff\xd8\xff"), _JPEG),
+    (re.compile(rb"GIF8[79]a"), _GIF),
+    (re.compile(rb"RIFF.{4}WEBPVP8[ LX]", re.DOTALL), _WEBP),
+    (re.compile(rb"BM", re.DOTALL), _BMP),
+)
+_NOT_SHOWN = (
+    (
+        re.compile(rb"\s*(?:<\?xml.*?)?(?:<!.*?>\s*)*<svg[\s>]", re.DOTALL | re.IGNORECASE),
+        "SVG, which can contain scripts",
+    ),
+    (re.compile(rb"\s*<(?:!doctype html|html|head|body|script)", re.IGNORECASE), "HTML, which can contain scripts"),
+    (
+        re.compile(rb".{4}ftyp(?:heic|heix|heim|heis|hevc|hevx|mif1|msf1)", re.DOTALL),
+        "HEIC, which browsers do not show",
+    ),
+    (re.compile(rb"II\*\0|MM\0\*"), "TIFF, which browsers do not show"),
+    (re.compile(rb".{4}ftyp|\x1aE\xdf\xa3|RIFF.{4}AVI ", re.DOTALL), "a video"),
+    (re.compile(rb"%PDF-"), "a PDF"),
+)
+_START = 1024  # bytes in which a format that is not shown is recognised
+
+
+class Picture(NamedTuple):
+    """A picture of a submission: where it is, its type, width and height in pixels, and its bytes."""
+
+    where: str
+    kind: ImageType
+    width: int
+    height: int
+    data: bytes
+
+    @property
+    def words(self) -> str:
+        """Where it is, with its dimensions."""
+        return f"{self.where} ({self.width} x {self.height} pixels)"
+
+
+class NotShown(NamedTuple):
+    """A file or document of which no picture is shown, and why."""
+
+    where: str
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.reason}"
+
+
+def image_type(data: bytes) -> ImageType | None:
+    """Return the format of a picture, by its signature; None for everything that is not shown."""
+    kind = next((kind for signature, kind in _SIGNATURES if signature.match(data)), None)
+    if kind is _BMP and int.from_bytes(data[14:18], "little") not in _DIB_SIZES:
+        return None
+    return kind
+
+
+def read_picture(file: File) -> Picture | NotShown:
+    """Return the picture in a file, or why it is not shown."""
+    if file.size > MAX_BYTES:
+        return NotShown(file.path, _too_large(file.size))
+    try:
+        data = file.read(MAX_BYTES)
+    except InputError as error:
+        return NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
+    return verified(data, file.path)
+
+
+def verified(data: bytes, where: str) -> Picture | NotShown:
+    """Return a picture whose format and size are known from its bytes, or why it is not shown."""
+    kind = image_type(data)
+    if kind is None:
+        what = next((words for signature, words in _NOT_SHOWN if signature.match(data[:_START])), "")
+        reason = f"its content is {what}" if what else "it is not a PNG, JPEG, GIF, WebP or BMP picture"
+        return NotShown(where, f"{reason}: open it yourself, with care")
+    size = image_size(data)
+    if size is None:
+        return NotShown(where, f"its {kind.name} header is damaged: open it yourself")
+    if len(data) > MAX_BYTES:
+        return NotShown(where, _too_large(len(data)))
+    if size[0] * size[1] > MAX_PIXELS:
+        limit = f"more than {MAX_PIXELS // 1_000_000} megapixels, the limit"
+        return NotShown(where, f"it has {size[0]} x {size[1]} pixels, {limit}: open it yourself, with care")
+    return Picture(where, kind, *size, data)
+
+
+def _too_large(size: int) -> str:
+    return f"it is larger than {MAX_BYTES >> 20} MiB, the limit for a picture ({size / 1e6:.0f} MB): open it yourself"

@@ -1,0 +1,96 @@
+"""The pictures that a person needs for a criterion: those of its evidence, and those in a written answer."""
+
+from collections.abc import Iterable, Iterator
+
+from grader.checks.manual import evidence_shown
+from grader.documents.collection import DocumentCollection
+from grader.documents.document import CONVERTED, Document
+from grader.documents.evidence import headed
+from grader.documents.headings import Heading
+from grader.documents.pictures import NotShown, Picture, read_picture, verified
+from grader.errors import InputError
+from grader.files.tree import File
+from grader.grading.report import Result
+from grader.submission.submission import Submission
+
+_MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
+
+
+def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotShown, ...]:
+    """Return the pictures of a criterion that needs manual grading, and the files of which none is shown.
+
+    A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned.
+    """
+    return tuple(_limited(found for path in files_of(result) for found in _at(path, result, submission)))
+
+
+def files_of(result: Result) -> tuple[str, ...]:
+    """Return the paths of the files whose pictures belong to a criterion."""
+    outcome = result.outcome
+    if isinstance(outcome.measured, tuple):
+        return tuple(map(str, outcome.measured))
+    if outcome.location is None or "[picture]" not in str(outcome.measured):
+        return ()
+    return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
+
+
+def _at(path: str, result: Result, submission: Submission) -> Iterator[Picture | NotShown]:
+    file = submission.everything.files.get(path) or submission.tree.files.get(path)
+    if file is None:
+        yield NotShown(path, "it is no longer in the submission")
+    elif file.suffix not in CONVERTED:
+        yield read_picture(file)
+    elif submission.readable_documents is None:
+        yield NotShown(path, "documents of this submission are not read: open it yourself")
+    else:
+        yield from _in_document(file, result, submission.readable_documents)
+
+
+def _in_document(file: File, result: Result, documents: DocumentCollection) -> Iterator[Picture | NotShown]:
+    document = documents.document(file)
+    if not isinstance(document, Document):
+        yield NotShown(file.path, document.reason if document is not None else "it has no answers")
+        return
+    numbers = {number for start, end in _spans(document, result, documents) for number in document.pictures(start, end)}
+    try:
+        found = [found for found in documents.pictures(file) if found[0] in numbers] if numbers else []
+    except InputError as error:
+        yield NotShown(file.path, str(error))
+        return
+    for number, data in found:
+        yield verified(data, document.picture_words(number))
+    if numbers != {number for number, _ in found} or not numbers:
+        reason = "it has pictures that cannot be extracted" if numbers else "no picture was found in it"
+        yield NotShown(file.path, f"{reason}: open it yourself")
+
+
+def _spans(document: Document, result: Result, documents: DocumentCollection) -> list[tuple[int, int]]:
+    """Return the lines below which pictures belong to a criterion, as the first one and the one after the last."""
+    criterion, outcome = result.criterion, result.outcome
+    if isinstance(outcome.measured, str) and outcome.location is not None:
+        start = outcome.location.line - 1
+        return [(start, start + len(outcome.measured.splitlines()))]
+    heads: list[tuple[Document, Heading]] = []
+    if criterion.check.function is evidence_shown:
+        heads = headed(documents, criterion.arguments["names"])
+    spans = [(head.start, _last(document, head)) for other, head in heads if other is document]
+    return spans or [(0, len(document.lines))]
+
+
+def _last(document: Document, head: Heading) -> int:
+    """Return the end of what is below a heading without empty lines, which may be on the next page."""
+    end = head.end
+    while end > head.start + 1 and not document.lines[end - 1].strip():
+        end -= 1
+    return end
+
+
+def _limited(found: Iterable[Picture | NotShown]) -> Iterator[Picture | NotShown]:
+    """Yield what was found up to the limits for one criterion; then say that there is more."""
+    left = _MAX_BYTES
+    for count, one in enumerate(found):
+        left -= len(one.data) if isinstance(one, Picture) else 0
+        if count >= _MAX_PICTURES or left < 0:
+            yield NotShown("more pictures", f"only the first {count} are shown: open the others yourself")
+            return
+        yield one

@@ -1,0 +1,151 @@
+"""What is said of a class in every format for people: its counts, grades, criteria, edits and identical work."""
+
+from collections.abc import Iterator, Sequence
+from decimal import ROUND_FLOOR, Decimal
+from textwrap import dedent
+
+from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.identical import IdenticalWork
+from grader.classroom.gradebook.statistics import ClassStatistics
+from grader.classroom.gradebook.summary import ClassSummary
+from grader.source import Edit
+from grader.text import counted, counted_points, enumerated, format_points, printable
+
+VERDICTS = {
+    "graded": "graded",
+    "unreadable": "could not be graded",
+    "errored": "errored",
+    "missing": "without a submission",
+}
+CRITERIA_NOTE = (
+    "share: mean share of the points earned; discrimination: correlation with the rest of the grade, from -1 to 1"
+)
+FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
+IDENTICAL_NOTE = (
+    "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students who"
+    " follow the handout and make the same mistake have the same robot."
+)
+MAX_LISTED = 10  # mistakes, and edits
+MAX_GROUPS = 20  # of identical work
+_LOW_DISCRIMINATION = 0.2
+_MAX_NAMED = 12
+_TOTALS = ("earned", "lost", "need manual grading")
+_MAX_EDITS, _MAX_LINES, _MAX_CRITERIA = 4, 6, 4
+_MAX_WIDTH = 200  # characters of a line of a student's file
+
+
+def counts_line(statistics: ClassStatistics) -> str:
+    """Return how many students were graded, and how many were not."""
+    counts = [(statistics.verdicts.get(verdict, 0), words) for verdict, words in VERDICTS.items()]
+    return ", ".join(f"{count} {words}" for count, words in counts if count) or "no students"
+
+
+def earlier_line(statistics: ClassStatistics) -> str:
+    """Return how many students were graded by an earlier rubric only; empty if there are none."""
+    earlier = statistics.verdicts.get("graded", 0) - statistics.graded
+    return f"{earlier} graded by an earlier rubric only: not in these statistics" if earlier else ""
+
+
+def mark_lines(statistics: ClassStatistics) -> Iterator[str]:
+    """Yield the grades in one line, then what is not decided yet, and why."""
+    maximum, earned = format_points(statistics.out_of), statistics.points
+    if statistics.graded > statistics.undecided:
+        yield (
+            f"Grades{' on decided points,' if earned.pending else ''} out of {maximum}: mean {_mean(statistics)}, "
+            f"standard deviation {statistics.deviation:.1f}, lowest {_grade(statistics.lowest, statistics)}, "
+            f"median {_grade(statistics.median, statistics)}, highest {_grade(statistics.highest, statistics)}"
+        )
+    if statistics.undecided:
+        verb = "is" if statistics.undecided == 1 else "are"
+        yield f"{counted(statistics.undecided, 'submission')} {verb} undecided for the most part: not in these grades"
+    if not earned.pending:
+        return
+    shares = [f"{points / statistics.graded:.1f} {what}" for points, what in zip(earned, _TOTALS, strict=True)]
+    verb = "needs" if statistics.pending == 1 else "need"
+    yield f"Points on average: {', '.join(shares)}; {counted(statistics.pending, 'submission')} {verb} manual grading"
+    if statistics.reasons:
+        (reason, count), *others = statistics.reasons
+        more = f"; {sum(number for _, number in others)} for other reasons" if others else ""
+        yield printable(f"Could not be decided: {counted(count, 'submission')}: {reason}{more}")
+
+
+def span(statistics: ClassStatistics, tenth: int) -> str:
+    """Return the grades of a tenth of the maximum: "10 to 20"."""
+    step = statistics.out_of / len(statistics.bins)
+    return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
+
+
+def percent(share: float) -> str:
+    """Return a share in percent, not rounded up to 100 % or down to 0 %."""
+    return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
+
+
+def is_low(discrimination: float | None) -> bool:
+    """Return whether a criterion says little about a student."""
+    return discrimination is not None and discrimination < _LOW_DISCRIMINATION
+
+
+def gain(fix: CommonFix) -> str:
+    """Return which criteria pass with an edit, and the points that it gains."""
+    points = f", +{counted_points(fix.points)}" if fix.points else ""
+    verb = "passes" if len(fix.criteria) == 1 else "pass"
+    return printable(f"{enumerated(fix.criteria, _MAX_CRITERIA)} {verb}{points}")
+
+
+def edit_lines(edits: Sequence[Edit]) -> Iterator[tuple[str, str]]:
+    """Yield the lines of edits, each with its sign: removed (-), added (+), or a remark."""
+    for edit in edits[:_MAX_EDITS]:
+        if edit.renamed:
+            yield " ", f"rename {edit.path} to {edit.renamed}"
+        for sign, text in (("-", edit.old), ("+", edit.new)):
+            lines = _lines(text)
+            for line in lines[:_MAX_LINES]:
+                yield sign, line if len(line) <= _MAX_WIDTH else f"{line[: _MAX_WIDTH - 3]}..."
+            if len(lines) > _MAX_LINES:
+                yield " ", f"... {len(lines) - _MAX_LINES} more lines"
+    if len(edits) > _MAX_EDITS:
+        yield " ", f"... {counted(len(edits) - _MAX_EDITS, 'more edit')}"
+
+
+def same_file(work: IdenticalWork) -> str:
+    """Return which of the students with the same robot have the same file; empty if none have."""
+    if work.students in work.same_file:
+        return "the same file"
+    return "; ".join(f"the same file: {enumerated(keys, _MAX_NAMED)}" for keys in work.same_file)
+
+
+def identical_line(work: IdenticalWork) -> str:
+    """Return the students of one group of identical work."""
+    same = same_file(work)
+    return f"{enumerated(work.students, _MAX_NAMED)}{f' ({same})' if same else ''}"
+
+
+def without_urdf(summary: ClassSummary) -> str:
+    """Return how many submissions have evidence, but no URDF; empty if there are none, or if the rubric says what to do."""
+    count = summary.evidence_only
+    if not count or summary.rubric.without_urdf:
+        return ""
+    have = "submission has" if count == 1 else "submissions have"
+    return (
+        f"{count} {have} pictures or documents, but no URDF: the criteria of the URDF are failed. "
+        'Set `without_urdf = "manual"` in the rubric to grade them manually, or "failed" to keep this'
+    )
+
+
+def _grade(points: Decimal, statistics: ClassStatistics) -> str:
+    """Return a grade exactly, or to two decimals if it is a share of decided points."""
+    is_share = statistics.points.pending > 0
+    return format_points(points.quantize(Decimal("0.01"), ROUND_FLOOR) if is_share else points)
+
+
+def _mean(statistics: ClassStatistics) -> str:
+    """Return the mean to one decimal, not rounded up to the maximum."""
+    words = f"{statistics.mean:.1f}"
+    is_full = Decimal(words) >= statistics.out_of > statistics.mean
+    return format(Decimal(statistics.mean).quantize(Decimal("0.1"), ROUND_FLOOR), "f") if is_full else words
+
+
+def _lines(text: str) -> list[str]:
+    """Return the lines of an edit, which begins within a line, without the indent that the others have in common."""
+    first, _, others = text.partition("\n")
+    return [line for line in (first.strip(), *dedent(others).splitlines()) if line.strip()]

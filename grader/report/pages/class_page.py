@@ -1,0 +1,150 @@
+"""The class's page: what an instructor sees of a class, with a table of students that links to their pages."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from markupsafe import Markup
+
+from grader import __version__
+from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.identical import IdenticalWork
+from grader.classroom.gradebook.members import members
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.class_words import (
+    CRITERIA_NOTE,
+    FIXES_NOTE,
+    IDENTICAL_NOTE,
+    MAX_LISTED,
+    VERDICTS,
+    earlier_line,
+    edit_lines,
+    gain,
+    is_low,
+    mark_lines,
+    percent,
+    same_file,
+    span,
+    without_urdf,
+)
+from grader.report.pages.class_rows import Group, StudentRow, groups, student_rows
+from grader.report.pages.shell import render_page
+from grader.text import counted, format_points, printable
+
+MAX_DRAWINGS = MAX_LISTED
+_ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
+
+
+def render_class_page(
+    summary: ClassSummary, grades: Grades, links: Mapping[str, str], drawings: Mapping[str, str]
+) -> str:
+    """Return the class's page.
+
+    Args:
+        summary: What is said of the class, with its edits.
+        grades: The grades of the students.
+        links: The address of each student's page, by the key; relative to this page.
+        drawings: A picture of a robot that needs an edit, by the action of the edit: SVG that the grader has drawn.
+    """
+    everybody = list(grades.all())
+    counted_in = members(grades.book, summary.rubric, summary.statistics)
+    rows = student_rows(everybody, summary, counted_in, links)
+    found = {name: group for name, group in groups(everybody, summary, counted_in) if group.keys}
+    values = {
+        "version": __version__,
+        "title": summary.rubric.title,
+        "rubric": summary.rubric,
+        "counts": [(f"status-{verdict}", words) for verdict, words in VERDICTS.items()],
+        "others": [("pending", "need manual grading"), ("late", "late")],
+        "earlier": earlier_line(summary.statistics),
+        "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
+        "reasons": summary.statistics.reasons[1:],
+        "bars": _bars(summary.statistics),
+        "out_of": format_points(summary.statistics.out_of),
+        "criteria": _criteria(summary.statistics),
+        "criteria_note": CRITERIA_NOTE,
+        "failures": summary.statistics.failures if summary.statistics.graded else (),
+        "fixes": [_fix(fix, drawings) for fix in summary.fixes[:MAX_LISTED]],
+        "fixes_note": FIXES_NOTE,
+        "identical": [_identical(work) for work in summary.identical],
+        "identical_note": IDENTICAL_NOTE,
+        "attention": summary.attention,
+        "evidence": without_urdf(summary),
+        "people": {row.key: row for row in rows},
+        "rows": rows,
+        "columns": _columns(rows),
+        "groups": found,
+    }
+    return render_page("class.html", values, _data(rows, found), "class.css", "class.js")
+
+
+def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
+    """Return what the script reads: for each group its label, its word, and the numbers of its rows."""
+    numbers = {row.key: number for number, row in enumerate(rows)}
+    return {
+        "groups": {
+            name: [printable(label), word, [numbers[key] for key in keys]]
+            for name, (label, keys, word) in found.items()
+        }
+    }
+
+
+def _columns(rows: Sequence[StudentRow]) -> list[tuple[str, str, str]]:
+    """Return the columns of the table that are not empty: the field of a row, the heading, and the class of its cells."""
+    columns = (
+        ("status", "status", ""),
+        ("score", "score", "number"),
+        ("pending", "needs manual grading", "number"),
+        ("late", "late", "number"),
+        ("total", "total after the late penalty", "number"),
+    )
+    has_names = any(row.name != row.key for row in rows)
+    names = [("key", "id", "")] if has_names else []
+    return [*names, *(column for column in columns if any(getattr(row, column[0]) for row in rows))]
+
+
+def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:
+    most = max(statistics.bins)
+    return [
+        {
+            "group": f"grade-{tenth}",
+            "span": span(statistics, tenth),
+            "count": count,
+            "height": round(100 * count / most),
+        }
+        for tenth, count in enumerate(statistics.bins if most else ())
+    ]
+
+
+def _criteria(statistics: ClassStatistics) -> list[dict[str, Any]]:
+    """Return the rows of the criteria, the hardest first."""
+    asked = [row for row in statistics.criteria if row.of] if statistics.graded else []
+    asked.sort(key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points))
+    return [_criterion(row) for row in asked]
+
+
+def _criterion(row: CriterionStatistics) -> dict[str, Any]:
+    return {
+        "row": row,
+        "group": f"criterion-{row.criterion.position}",
+        "points": format_points(row.criterion.points),
+        "share": percent(row.share) if row.share is not None else "",
+        "width": round(100 * (row.share or 0)),
+        "discrimination": f"{row.discrimination:.2f}" if row.discrimination is not None else "",
+        "is_low": is_low(row.discrimination),
+    }
+
+
+def _fix(fix: CommonFix, drawings: Mapping[str, str]) -> dict[str, Any]:
+    return {
+        "who": counted(fix.count, "student"),
+        "action": fix.action,
+        "lines": [(_ELEMENTS.get(sign, "span"), f"{sign} {line}") for sign, line in edit_lines(fix.example)],
+        "gain": gain(fix),
+        "drawing": Markup(drawings.get(fix.action, "")),  # noqa: S704  from a tree of elements
+    }
+
+
+def _identical(work: IdenticalWork) -> dict[str, Any]:
+    return {"students": work.students, "same_file": same_file(work)}

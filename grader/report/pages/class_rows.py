@@ -1,0 +1,95 @@
+"""The table of students on the class's page, and the groups of students that it can show."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.classroom.gradebook.members import Member
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.gradebook.summary import ClassSummary
+from grader.grading.rubric import Criterion
+from grader.report.class_words import VERDICTS, span
+from grader.text import counted, enumerated, format_points
+
+_MAX_LOST = 3  # criteria that are named in a row
+
+
+class StudentRow(NamedTuple):
+    """A student in the table: the cells as text, empty where there is nothing to say; `link` leads to the report."""
+
+    key: str
+    name: str
+    link: str
+    verdict: str
+    status: str
+    score: str
+    pending: str
+    late: str
+    total: str
+    lost: str
+
+
+class Group(NamedTuple):
+    """Students whom the table can show: what they have in common, their keys, and the word by which a search finds them."""
+
+    label: str
+    keys: Collection[str]
+    word: str = ""
+
+
+def student_rows(
+    grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member], links: Mapping[str, str]
+) -> list[StudentRow]:
+    """Return a row for each student, sorted by the name."""
+    rows = [_row(grade, summary, members.get(grade.student.key), links) for grade in grades]
+    return sorted(rows, key=lambda row: (row.name.casefold(), row.key))
+
+
+def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, links: Mapping[str, str]) -> StudentRow:
+    key, is_graded = grade.student.key, grade.result is not None
+    status = grade.why_attention or VERDICTS[grade.verdict]
+    about = key, grade.student.name or key, links.get(key, ""), grade.verdict, status
+    if not is_graded:
+        return StudentRow(*about, "", "", "", "", "")
+    maximum = "" if grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
+    lost = _costliest(summary, member)
+    return StudentRow(
+        *about,
+        f"{format_points(grade.score)}{maximum}",
+        format_points(grade.pending) if grade.pending else "",
+        counted(grade.late.days, "day") if grade.late.days else "",
+        format_points(grade.total) if grade.late.points else "",
+        enumerated([criterion.id for criterion in lost], _MAX_LOST),
+    )
+
+
+def _costliest(summary: ClassSummary, member: Member | None) -> list[Criterion]:
+    """Return the criteria in which a student lost points, the costliest first."""
+    lost = [summary.rubric.criteria[position] for position in (member.lost if member is not None else ())]
+    return sorted(lost, key=lambda criterion: -criterion.points)
+
+
+def groups(
+    grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member]
+) -> Iterator[tuple[str, Group]]:
+    """Yield the groups of students that the page names, each with the id by which its buttons find it."""
+    statistics = summary.statistics
+    for verdict, words in VERDICTS.items():
+        yield f"status-{verdict}", Group(words, [one.student.key for one in grades if one.verdict == verdict])
+    yield "attention", Group("need attention", [one.student.key for one in grades if one.why_attention])
+    pending = {one.student.key for one in grades if one.pending}
+    yield "pending", Group("need manual grading", [key for key in members if key in pending])
+    yield "late", Group("late", [one.student.key for one in grades if one.late.days])
+    for tenth in range(len(statistics.bins)):
+        keys = [key for key, member in members.items() if member.tenth == tenth]
+        yield f"grade-{tenth}", Group(f"a grade of {span(statistics, tenth)}", keys)
+    for row in statistics.criteria:
+        criterion = row.criterion
+        keys = [key for key, member in members.items() if criterion.position in member.lost]
+        yield f"criterion-{criterion.position}", Group(f"lost points in {criterion.id}", keys, criterion.id)
+    for number, failure in enumerate(statistics.failures):
+        keys = [key for key, member in members.items() if number in member.mistakes]
+        yield f"mistake-{number}", Group(f"{failure.criterion.id}: {failure.message}", keys)
+    for number, fix in enumerate(summary.fixes):
+        yield f"edit-{number}", Group(f"need the edit: {fix.action}", fix.students)
+    for number, work in enumerate(summary.identical):
+        yield f"same-{number}", Group("identical work", work.students)

@@ -1,0 +1,110 @@
+"""One criterion as a page shows it: what is wrong, where, what to do. All of it is text, which the template escapes."""
+
+from typing import NamedTuple
+
+from grader.grading.report import Report, Result
+from grader.report import content
+from grader.report.details import Details, location_text, result_details, status_of
+from grader.report.diff import diff_lines
+from grader.report.locations import excerpt, width_of
+from grader.report.order import Failure
+from grader.source import Location, Source
+from grader.text import printable, signed_points
+
+_AROUND = 2  # lines of the source before and after the marked one
+_MAX_WIDTH = 160  # characters of a line
+SYMBOLS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
+
+
+class SourceLines(NamedTuple):
+    """The lines of a file around a place, each with its number; the marked part of the one that is meant."""
+
+    before: tuple[tuple[int, str], ...]
+    number: int
+    start: str
+    meant: str
+    end: str
+    after: tuple[tuple[int, str], ...]
+
+
+class Change(NamedTuple):
+    """A hint: a sentence, and the lines of its diff, if it may show them."""
+
+    message: str
+    lines: tuple[str, ...]
+
+
+class Card(NamedTuple):
+    """A criterion with everything that is said of it. `cost` is empty unless it lost points; `feedback` is the rubric's advice."""
+
+    id: str
+    title: str
+    status: str
+    cost: str
+    points: str
+    details: Details
+    where: str
+    source: SourceLines | None
+    changes: tuple[Change, ...]
+    skipped: str = ""
+    feedback: str = ""
+
+
+def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
+    """Return a criterion that failed, with what is skipped because of it; feedback that is `shown` already is not repeated."""
+    result, skipped = failure
+    card = card_of(result, report)
+    cost = signed_points(-failure.lost) if failure.lost else "0"
+    feedback = card.details.feedback if card.details.feedback not in shown else ""
+    shown.add(feedback)
+    return card._replace(
+        cost=f"{cost} point{'' if failure.lost == 1 else 's'}",
+        skipped=content.skipped_text(result.criterion.id, skipped) if skipped else "",
+        feedback=feedback,
+    )
+
+
+def card_of(result: Result, report: Report) -> Card:
+    """Return a criterion, whatever its status."""
+    details = result_details(result, report)
+    criterion, where = result.criterion, details.location
+    source = report.submission.source(where.path) if where is not None else None
+    return Card(
+        criterion.id,
+        criterion.title,
+        status_of(result),
+        "",
+        content.earned_text((result,)),
+        details,
+        location_text(where) if where is not None else "",
+        source_lines(source, where) if where is not None and source is not None else None,
+        tuple(Change(hint.message, tuple(diff_lines(hint.edits, report.submission.source))) for hint in details.hints),
+    )
+
+
+def source_lines(source: Source, where: Location) -> SourceLines | None:
+    """Return the lines around a place, without the indentation that they share; None where its line is empty.
+
+    Of a very long line it returns the part around what is marked.
+    """
+    line = source.line(where.line)
+    if not line.strip():
+        return None
+    if len(line) > _MAX_WIDTH:
+        cut = excerpt(source, where, _MAX_WIDTH)
+        middle = cut.start + cut.width
+        return SourceLines((), where.line, cut.text[: cut.start], cut.text[cut.start : middle], cut.text[middle:], ())
+    around = {number: source.line(number) for number in range(max(1, where.line - _AROUND), where.line + _AROUND + 1)}
+    indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
+    start = where.column - 1
+    end = start + width_of(line, where.column)
+    shown = tuple((number, printable(text[indent:][:_MAX_WIDTH])) for number, text in around.items())
+    last = max((number for number, text in around.items() if text.strip()), default=where.line)
+    return SourceLines(
+        tuple(pair for pair in shown if pair[0] < where.line),
+        where.line,
+        line[min(indent, start) : start],
+        line[start:end],
+        line[end:],
+        tuple(pair for pair in shown if where.line < pair[0] <= last),
+    )

@@ -1,0 +1,133 @@
+"use strict";
+// The table of students: sort, search, and show a group. The state is in the address, so that "back" restores it.
+(() => {
+  const { groups } = JSON.parse(document.getElementById("data").textContent);
+  const place = document.getElementById("class");
+  if (!place) return;
+  const find = document.getElementById("find"), shown = document.getElementById("shown");
+  const rows = [...document.getElementById("students").tBodies[0].rows];
+  const tables = [...document.querySelectorAll("table.sortable")];
+  const compare = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
+  const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+  let words = null, state = new URLSearchParams(), applied = "";
+
+  function wordsOfRows() {
+    const found = rows.map((row) => [...row.cells].map((cell) => cell.textContent));
+    for (const [, word, numbers] of Object.values(groups)) {
+      if (word) for (const number of numbers) found[number].push(word);
+    }
+    return found.map((texts) => plain(texts.join(" ")));
+  }
+
+  function group() {
+    const name = state.get("show");
+    return name !== null && Object.hasOwn(groups, name) ? groups[name] : null;
+  }
+
+  function filter() {
+    words ??= wordsOfRows();
+    const wanted = plain(state.get("find") ?? "").split(/\s+/).filter(Boolean), chosen = group();
+    const members = chosen && new Set(chosen[2]);
+    let count = 0;
+    rows.forEach((row, number) => {
+      const isShown = (!members || members.has(number)) && wanted.every((word) => words[number].includes(word));
+      row.hidden = !isShown;
+      count += isShown;
+    });
+    const all = `${rows.length} student${rows.length === 1 ? "" : "s"}`;
+    shown.textContent = count === rows.length ? all : `${count} of ${all}${chosen ? `: ${chosen[0]}` : ""}`;
+    for (const button of document.querySelectorAll("button.show")) {
+      button.setAttribute("aria-pressed", String(button.dataset.shows === state.get("show")));
+    }
+  }
+
+  function sort(table) {
+    const wanted = state.get(table.id) ?? table.dataset.first, column = wanted.replace(/^-/, "");
+    const heads = [...table.tHead.rows[0].cells], index = heads.findIndex((head) => head.dataset.column === column);
+    if (index < 0 || table.dataset.sorted === wanted) return;
+    const sign = wanted.startsWith("-") ? -1 : 1, isNumber = heads[index].classList.contains("number");
+    const keys = new Map();
+    for (const row of table.tBodies[0].rows) {
+      const text = row.cells[index].textContent.trim();
+      keys.set(row, isNumber ? parseFloat(text) : text);
+    }
+    const isEmpty = (key) => key === "" || Number.isNaN(key);
+    const order = (a, b) => (isEmpty(a) || isEmpty(b) ? isEmpty(a) - isEmpty(b) : sign * (isNumber ? a - b : compare(a, b)));
+    table.tBodies[0].append(...[...keys.keys()].sort((a, b) => order(keys.get(a), keys.get(b))));
+    heads.forEach((head) => head.removeAttribute("aria-sort"));
+    heads[index].setAttribute("aria-sort", sign > 0 ? "ascending" : "descending");
+    table.dataset.sorted = wanted;
+  }
+
+  function apply() {
+    if (find.value !== (state.get("find") ?? "")) find.value = state.get("find") ?? "";
+    tables.forEach(sort);
+    const wanted = `${state.get("show") ?? ""} ${state.get("find") ?? ""}`;
+    if (wanted !== applied) filter();
+    applied = wanted;
+  }
+
+  function change(name, value, isNew) {
+    value ? state.set(name, value) : state.delete(name);
+    apply();
+    const address = `#${state.size ? state : "class"}`;
+    isNew ? (location.hash = address) : history.replaceState(null, "", address);
+  }
+
+  function read() {
+    const text = location.hash.slice(1);
+    if (text && !text.includes("=") && text !== "class") return; // a link within the page
+    state = new URLSearchParams(text === "class" ? "" : text);
+    apply();
+  }
+
+  function button(parent, name) {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.className = name;
+    made.append(...parent.childNodes);
+    parent.append(made);
+    return made;
+  }
+
+  for (const parent of document.querySelectorAll("[data-group]")) {
+    const made = button(parent, "show");
+    made.dataset.shows = parent.dataset.group;
+    made.title = "Show these students";
+    made.addEventListener("click", () => {
+      change("show", state.get("show") === made.dataset.shows ? "" : made.dataset.shows, true);
+      place.scrollIntoView();
+      find.focus({ preventScroll: true });
+    });
+  }
+  for (const table of tables) {
+    table.dataset.first = table.querySelector("[aria-sort]").dataset.column;
+    table.dataset.sorted = table.dataset.first;
+    for (const head of table.tHead.rows[0].cells) {
+      button(head, "sort").addEventListener("click", () => {
+        const column = head.dataset.column;
+        change(table.id, table.dataset.sorted === column ? `-${column}` : column, false);
+      });
+    }
+  }
+  function showAll() {
+    state.delete("show");
+    change("find", "", false);
+  }
+  find.form.hidden = false;
+  find.form.addEventListener("submit", (event) => event.preventDefault());
+  find.addEventListener("input", () => change("find", find.value, false));
+  document.getElementById("all").addEventListener("click", showAll);
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === "/" && event.target !== find) {
+      event.preventDefault();
+      find.focus();
+    } else if (event.key === "Escape") {
+      showAll();
+    }
+  });
+  addEventListener("hashchange", read);
+  read();
+  if (state.has("show")) place.scrollIntoView();
+})();

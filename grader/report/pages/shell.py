@@ -1,0 +1,93 @@
+"""What every page has in common: templates that escape all text, one file without requests, a content security policy."""
+
+import hashlib
+import json
+from base64 import b64encode
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from grader.text import printable
+
+_FILES = Path(__file__).parent / "files"  # templates, styles and scripts
+_NOTHING = "'none'"
+_UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"})
+
+
+def render_page(
+    template: str,
+    values: Mapping[str, object],
+    data: Mapping[str, Any],
+    style: str,
+    script: str,
+    sources: str = "",
+    rules: str = "",
+) -> str:
+    """Return a page as one HTML file.
+
+    Args:
+        template: The name of the template. It extends base.html and gets the `values`. Text is escaped, and made printable.
+        values: What the template shows; markup only as `Markup`.
+        data: What the script reads, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
+        style: The names of the styles besides base.css, with spaces between.
+        script: The names of the scripts, with spaces between.
+        rules: More rules of style, of our own.
+        sources: Directives for the policy of a page that is served: "img-src 'self'".
+    """
+    styles, scripts = (
+        [_file(name) for name in ("base.css", *style.split())] + [rules] * bool(rules),
+        [_file(name) for name in script.split()],
+    )
+    policy = [
+        f"default-src {_NOTHING}",
+        f"style-src {' '.join(map(_hash, styles))}",
+        f"script-src {' '.join(map(_hash, scripts)) or _NOTHING}",
+        f"base-uri {_NOTHING}",
+        f"form-action {_NOTHING}",
+        *filter(None, [sources]),
+    ]
+    shell = {
+        "policy": "; ".join(policy),
+        "styles": [Markup(text) for text in styles],  # noqa: S704  our own files
+        "scripts": [Markup(text) for text in scripts],  # noqa: S704
+        "data": _json(data),
+    }
+    return _environment().get_template(template).render(**values, **shell)
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=FileSystemLoader(_FILES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        finalize=_printable,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+
+
+def _printable(value: object) -> object:
+    """Return a text without control characters: a value that is shown has one line."""
+    return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+
+@cache
+def _file(name: str) -> str:
+    return (_FILES / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    """Return the source expression that allows one inline script or style."""
+    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _json(data: Mapping[str, Any]) -> Markup:
+    """Return JSON that cannot end the element that it is in. Raises ValueError for NaN, which is no JSON."""
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return Markup(text.translate(_UNSAFE))  # noqa: S704  no character of it is markup

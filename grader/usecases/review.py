@@ -1,0 +1,120 @@
+"""Grade what needs manual grading at a terminal, one item at a time."""
+
+from decimal import Decimal
+from functools import partial
+from pathlib import Path
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.review.session import ReviewSession
+from grader.errors import InputError
+from grader.report.review import mark_text, render_item
+from grader.report.screen import draw
+from grader.text import format_points
+from grader.usecases import Terminal
+from grader.usecases.review_pictures import write_pictures
+
+NOTHING = "nothing needs manual grading\n"
+_HELP = "points and a comment, s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+_KEEP = "k to keep that mark, r to replace it with yours: "
+
+
+def review(gradebook: Path, criterion: str, by: str, pictures: Path | None, terminal: Terminal) -> str:
+    """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary.
+
+    Pictures are written into the folder `pictures` first.
+    """
+    with Gradebook(gradebook) as book:
+        session = ReviewSession(Grades(book, answers=True), criterion, by)
+        if not session.queue:
+            return NOTHING
+        files = write_pictures(session, book, pictures, terminal.show) if pictures is not None else {}
+        while session.item is not None:
+            lines = files.get(session.queue[session.position], [])
+            page = partial(render_item, session.item, f"{session.position + 1} of {len(session.queue)}", lines)
+            terminal.show(draw(page, terminal.screen()))
+            if not _go_on(session, terminal):
+                break
+        return summary(session)
+
+
+def summary(session: ReviewSession) -> str:
+    """Return how many items were marked, and how many are left."""
+    return f"{session.marked} marked, {session.left} left\n"
+
+
+def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
+    """Ask until there is a valid answer, and follow it; return False to stop."""
+    assert session.item is not None
+    criterion = session.item.result.criterion
+    prompt = f"points, 0 to {format_points(criterion.points)} (? for help): "
+    while (line := terminal.ask(prompt)) is not None:
+        answer, _, comment = line.strip().partition(" ")
+        match answer.lower():
+            case "q" | "quit":
+                return False
+            case "s" | "skip" | "":
+                session.next()
+                return True
+            case "b" | "back":
+                if session.back():
+                    return True
+                terminal.warn("this is the first item")
+                continue
+            case "u" | "undo":
+                if _undo(session, terminal):
+                    return True
+                continue
+        try:
+            points = read_points(answer, criterion) if answer != "?" else None
+        except InputError as error:
+            terminal.warn(str(error))
+            continue
+        if points is not None:
+            return _mark(session, points, comment.strip(), terminal)
+        terminal.warn(_HELP)
+    return False
+
+
+def _undo(session: ReviewSession, terminal: Terminal) -> bool:
+    """Undo a mark of this review, and say what counts now; return whether there was one."""
+    if not session.can_undo:
+        terminal.warn("nothing to undo: this review has marked nothing")
+        return False
+    try:
+        before = session.undo()
+    except NewerMarkError as error:
+        terminal.warn(f"not undone: somebody has marked this since: {mark_text(error.mark)}")
+    else:
+        terminal.warn(
+            f"undone; the mark before it counts again: {mark_text(before)}" if before else "the mark is undone"
+        )
+    return True
+
+
+def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Terminal) -> bool:
+    """Add a mark, unless the person keeps that of somebody else, and go to the next item; return False to stop."""
+    shown = None
+    while True:
+        try:
+            session.mark(points, comment, shown)
+            break
+        except NewerMarkError as error:
+            shown = error.mark.id
+            terminal.warn(f"somebody has marked this since it was shown: {mark_text(error.mark)}")
+        answer = _ask_to_keep(terminal)
+        if not answer:
+            return False
+        if answer == "k":
+            break
+    session.next()
+    return True
+
+
+def _ask_to_keep(terminal: Terminal) -> str:
+    """Return `k` to keep the newer mark, `r` to replace it; empty to stop."""
+    while (line := terminal.ask(_KEEP)) is not None:
+        if line.strip().lower() in ("k", "keep", "r", "replace"):
+            return line.strip().lower()[0]
+    return ""

@@ -1,0 +1,66 @@
+"""Write the pictures of everything that needs manual grading as files, for a review without a browser."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.marks import QueuedCriterion, QueuedResult
+from grader.classroom.review.session import ReviewSession
+from grader.documents.pictures import NotShown, Picture
+from grader.errors import InputError
+from grader.report.review import who
+from grader.text import printable, printable_path
+from grader.usecases.report_names import file_names, report_names, update_index
+from grader.usecases.writing import save_bytes
+
+PicturesOfItems = dict[QueuedCriterion, list[str]]
+
+
+def write_pictures(
+    session: ReviewSession, book: Gradebook, folder: Path, show: Callable[[str], None]
+) -> PicturesOfItems:
+    """Write each picture as FOLDER/CRITERION/STUDENT.NUMBER.ENDING, and show which is whose; return the lines of each item.
+
+    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
+    Raises InputError.
+    """
+    names = report_names(book)
+    folders = file_names([criterion.id for criterion in session.criteria])
+    _make(folder)
+    update_index(folder, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
+    lines: PicturesOfItems = {}
+    for position, queued in enumerate(session.queue):
+        session.go(position)
+        item = session.item
+        if item is None:
+            continue
+        start = folder / folders[queued.criterion] / names[queued.key]
+        lines[queued] = [_written(found, start, number, item) for number, found in enumerate(session.pictures(), 1)]
+        for line in lines[queued]:
+            show(f"{who(item.grade.student)}, {printable(queued.criterion)}: {line}\n")
+    session.start()
+    return lines
+
+
+def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
+    """Write one picture and return the line about it; of what is not shown, only the line."""
+    if isinstance(found, NotShown):
+        return printable(str(found))
+    path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")
+    _make(path.parent)
+    _refuse_symlink(path)
+    save_bytes(path, found.data, [item.grade.files.root])
+    return f"{printable_path(path)}  {printable(found.words)}"
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
+
+
+def _refuse_symlink(path: Path) -> None:
+    for place in (path.parent, path):
+        if place.is_symlink():
+            raise InputError(f"cannot write {printable_path(path)}: {printable_path(place)} is a symlink")

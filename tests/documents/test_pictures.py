@@ -1,0 +1,98 @@
+"""The bytes of a file decide whether it is shown as a picture, and as which; everything else is named with a reason."""
+
+import struct
+
+import pytest
+
+from grader.documents import pictures
+from grader.documents.pictures import NotShown, Picture, image_type, read_picture, verified
+from grader.errors import FileError
+from grader.files.tree import File
+from tests.documents.test_image_size import HEADERS
+
+SHOWN = {name: header for name, (header, _) in HEADERS.items() if not name.startswith("TIFF")}
+SCRIPT = b"<script>alert(1)</script>"
+NOT_SHOWN = {
+    "HTML": (b"<!DOCTYPE html><html>" + SCRIPT, "its content is HTML, which can contain scripts"),
+    "a script": (SCRIPT, "its content is HTML, which can contain scripts"),
+    "SVG": (b'<svg xmlns="http://www.w3.org/2000/svg">' + SCRIPT, "its content is SVG, which can contain scripts"),
+    "SVG with a prolog": (
+        b'<?xml version="1.0"?>\n<!-- a --><!DOCTYPE svg PUBLIC "a" "b">\n<svg onload="alert(1)"/>',
+        "its content is SVG, which can contain scripts",
+    ),
+    "TIFF": (HEADERS["TIFF turned by its orientation"][0], "its content is TIFF, which browsers do not show"),
+    "HEIC": (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "its content is HEIC, which browsers do not show"),
+    "a video": (b"\0\0\0\x18ftypisom\0\0\0\0isomavc1", "its content is a video"),
+    "PDF": (b"%PDF-1.4\n", "its content is a PDF"),
+    "a shell script": (b"#!/bin/sh\nrm -rf ~\n", "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
+    "text that begins like a BMP": (b"BMW" + b" drives" * 20, "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
+    "nothing": (b"", "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
+    "a PNG without a header": (b"\x89PNG\r\n\x1a\n" + SCRIPT, "its PNG header is damaged"),
+    "a JPEG without a frame": (b"\xff\xd8\xff\xe0" + SCRIPT, "its JPEG header is damaged"),
+    "a GIF of no size": (b"GIF89a\0\0\0\0", "its GIF header is damaged"),
+}  # fmt: skip
+
+
+def png(width: int, height: int) -> bytes:
+    """Return the beginning of a PNG of this size."""
+    return b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + struct.pack(">II", width, height)
+
+
+def file_of(data: bytes, size: int | None = None) -> File:
+    """Return a file of a submission, which may state another size than it has."""
+
+    def read(limit: int, *, first: bool = False) -> bytes:
+        if len(data) > limit and not first:
+            raise FileError("screen.png", f"is larger than {limit} bytes")
+        return data[:limit]
+
+    return File("screen.png", len(data) if size is None else size, read)
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_pictures_are_shown(name: str) -> None:
+    """Every format of browsers has its own media type, and its bytes unchanged."""
+    found = read_picture(file_of(SHOWN[name]))
+    assert isinstance(found, Picture)
+    assert found.kind.name in name
+    assert found.kind.media_type == f"image/{found.kind.name.lower()}"
+    assert {found.width, found.height} == {640, 480}
+    assert (found.where, found.data) == ("screen.png", SHOWN[name])
+    assert found.words == f"screen.png ({found.width} x {found.height} pixels)"
+
+
+@pytest.mark.parametrize("name", NOT_SHOWN)
+def test_everything_else_is_not_shown(name: str) -> None:
+    """The name `screen.png` makes nothing a picture; the reason names what the content is, and what to do."""
+    data, why = NOT_SHOWN[name]
+    found = read_picture(file_of(data))
+    assert isinstance(found, NotShown)
+    assert found.where == "screen.png"
+    assert found.reason.startswith(f"{why}: open it yourself")
+
+
+@pytest.mark.parametrize(
+    ("size", "is_shown"), [((10_000, 10_000), True), ((10_000, 10_001), False), ((2**31 - 1, 1), False)]
+)
+def test_a_decompression_bomb_is_not_shown(size: tuple[int, int], is_shown: bool) -> None:
+    """A picture of more than 100 megapixels needs too much memory, however small its file is."""
+    found = verified(png(*size), "screen.png")
+    assert isinstance(found, Picture) == is_shown
+    assert is_shown or "megapixels, the limit: open it yourself, with care" in str(found)
+
+
+def test_large_files_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither one that says that it is large, nor one that is larger than it says."""
+    monkeypatch.setattr(pictures, "MAX_BYTES", 1024)
+    why = "larger than 1024 bytes"
+    assert "larger than 0 MiB, the limit for a picture" in str(read_picture(file_of(b"", 1025)))
+    assert str(read_picture(file_of(png(1, 1) + bytes(1024), 1))) == f"screen.png: is {why}"
+    assert isinstance(read_picture(file_of(png(1, 1))), Picture)
+    assert "the limit for a picture" in str(verified(png(1, 1) + bytes(1024), "picture 1 in a.docx"))
+
+
+def test_a_picture_with_markup_in_it_keeps_its_type() -> None:
+    """A GIF that is a script as well is served as a GIF, which a browser never runs."""
+    kind = image_type(b"GIF89a" + struct.pack("<HH", 10, 10) + b"/*" + SCRIPT)
+    assert kind is not None
+    assert kind.media_type == "image/gif"
