@@ -10,6 +10,7 @@ from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, cross, minus, unit
 
+Piece = tuple[float, float]  # shares of the length of a line, or of the angle of an arc
 Extents = tuple[tuple[float, float], ...]  # along x, y and z
 
 _EDGE_ON = 1e-9  # a face whose normal leans less to the viewer is seen from its edge

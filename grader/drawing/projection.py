@@ -4,8 +4,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import hypot
 from typing import NamedTuple
 
-from grader.drawing.covering import Piece
-from grader.drawing.curves import Curve, Line, edges
+from grader.drawing.covered_arcs import covered_arc
+from grader.drawing.covered_lines import covered_line
+from grader.drawing.curves import Curve, Line, Piece, edges
 from grader.drawing.order import Seen, overlapping, painted
 from grader.drawing.scene import Body, Rgba, Scene
 from grader.drawing.views import View
@@ -65,7 +66,7 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
     for curve, faces_viewer in edges(seen.body.shape, seen.pose):
         extents = curve.extents()
         near = [other for other in others if other.may_cover(extents)]
-        covered = [(piece, other) for other in near for piece in other.cover.pieces(curve)]
+        covered = [(piece, other) for other in near for piece in _covered(other, curve)]
         if not faces_viewer:
             front = max((other for _, other in covered), key=_front, default=None)
             hidden += _strokes(curve, [(0.0, 1.0)], front.body.rgba if front is not None else own)
@@ -76,6 +77,10 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
             hidden += _strokes(curve, [(start, end)], rgba)
             rest = end
         visible += _strokes(curve, [(rest, 1.0)], own)
+
+
+def _covered(seen: Seen, curve: Curve) -> Iterable[Piece]:
+    return covered_line(seen.cover, curve) if isinstance(curve, Line) else covered_arc(seen.cover, curve)
 
 
 def _front(seen: Seen) -> float:
