@@ -10,9 +10,10 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
 from grader.documents.pictures import Picture
-from grader.grading.pictures import pictures_of
+from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion
+from grader.source import Location
 from tests.checks.submissions import Submitted, gif, png
 
 STEP_8, STEP_18 = png(8, 8), png(18, 18)
@@ -163,10 +164,19 @@ def test_limits_of_one_criterion() -> None:
     assert found[-1] == "more pictures: only the first 40 are shown: open the others yourself"
 
 
-def test_other_criteria_have_none() -> None:
-    """A file that is gone is named; an outcome without files has no pictures."""
+def test_without_a_name_all_pictures_are_shown() -> None:
+    """Where no file is named for the evidence, the person sees all pictures; for another criterion none."""
+    submission = Submitted({"a.png": STEP_8, "b.gif": gif(3, 4), "answers.md": b"# Step 1\n\nNo.\n"}).submission
+    assert shown({"a.png": STEP_8, "b.gif": gif(3, 4)}, ["webcam"]) == ["a.png (8 x 8 pixels)", "b.gif (3 x 4 pixels)"]
+    criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[answered], {})
+    result = Result(criterion, Outcome("pending", "?", "No.", location=Location("answers.md", 1, 1)))
+    assert not may_have_pictures(result)
+    assert pictures_of(result, submission) == ()
+
+
+def test_a_file_that_is_gone_is_named() -> None:
+    """As after a new run that found another file."""
     submission = Submitted({"a.png": STEP_8}).submission
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["a"]})
-    assert pictures_of(Result(criterion, Outcome("pending", "?")), submission) == ()
     (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
     assert str(found) == "b.png: it is no longer in the submission"

@@ -17,7 +17,8 @@ from grader.classroom.gradebook.marks import (
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
-from grader.grading.pictures import files_of, pictures_of
+from grader.grading.pictures import may_have_pictures, pictures_of
+from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
 _CHANGED = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
@@ -149,15 +150,11 @@ class ReviewSession:
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
 
-    def pictures(self) -> tuple[Picture | NotShown, ...]:
-        """Return the pictures of the current item, and what is not shown. The submission is opened again, and must be unchanged."""
-        item = self.item
-        if item is None or not files_of(item.result):
-            return ()
-        submission = SubmissionSources(item.grade.files, self._grades.rubric(item.grade.rubric)).submission
-        if submission is None:
-            return (NotShown("pictures", _CHANGED),)
-        return pictures_of(item.result, submission)
+    @property
+    def rubric(self) -> Rubric:
+        """The rubric that the current item was graded with."""
+        assert self.item is not None
+        return self._grades.rubric(self.item.grade.rubric)
 
     def comments(self) -> list[str]:
         """Return comments that were given before for the criterion of the current item, the most frequent first.
@@ -171,3 +168,11 @@ class ReviewSession:
         places = [comment if comment in found else next(new, "") for comment in before]
         self._comments[criterion] = [*filter(None, places), *new]
         return self._comments[criterion]
+
+
+def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
+    """Return the pictures of an item, and what is not shown. The submission is opened again, and must be unchanged."""
+    if not may_have_pictures(item.result):
+        return ()
+    submission = SubmissionSources(item.grade.files, rubric).submission
+    return (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
