@@ -69,7 +69,8 @@ def _in_document(file: File, result: Result, documents: DocumentCollection) -> I
         yield NotShown(file.path, str(error))
         return
     for number, data in found:
-        yield verified(data, document.picture_words(number))
+        if data:  # not shown already
+            yield verified(data, document.picture_words(number))
     if numbers != {number for number, _ in found} or not numbers:
         reason = "it has pictures that cannot be extracted" if numbers else "no picture was found in it"
         yield NotShown(file.path, f"{reason}: open it yourself")
