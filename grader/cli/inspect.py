@@ -37,6 +37,8 @@ def inspect(
       grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57
 
       grader inspect my_robot.urdf --format svg > my_robot.svg
+
+      grader inspect my_robot.urdf --format html > my_robot.html
     """
     from grader.usecases.inspect import inspect as read
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.grading.report import Hint, Report, Result
 from grader.report.locations import calls_text
-from grader.report.order import hints_of
+from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
 from grader.text import enumerated, printable, signed_points
 
@@ -82,6 +82,14 @@ def status_of(result: Result) -> str:
     if result.manual_mark is None:
         return result.outcome.status
     return "passed" if result.points >= result.criterion.points else "failed"
+
+
+def group_status(group: Group) -> str:
+    """Return the status of a group: that of its worst criterion; what has its points by a mark or carried forward passed."""
+    open_or_lost = [result for result in group.results if result.points < result.criterion.points]
+    if any(is_failure(result) for result in open_or_lost):
+        return "failed"
+    return next((status_of(result) for result in open_or_lost), "passed")
 
 
 def sentence(message: str) -> str:

@@ -1,6 +1,6 @@
 """A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
@@ -20,11 +20,13 @@ from grader.text import printable
 
 _MAX_LISTED = 500  # links in the terminal
 _EFFECTS = {
-    "clean": ("ROS 2 loads it", "green"),
-    "degraded": ("ROS 2 loads it, but drops content of it", "yellow"),
-    "rejected": ("ROS 2 rejects it", "bold red"),
+    "clean": "ROS 2 loads it",
+    "degraded": "ROS 2 loads it, but drops content of it",
+    "rejected": "ROS 2 rejects it",
 }
-_UNDECIDED = ("xacro that cannot be determined statically", "bold red")
+_UNDECIDED = "xacro that cannot be determined statically"
+_STYLES = dict(zip((*_EFFECTS.values(), _UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
+_BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +79,10 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    effect = _EFFECTS[reading.verdict] if reading.is_decided else _UNDECIDED
-    console.print(Text.assemble((printable(inspection.path), "bold"), ": ", effect, f", {printable(name)}"))
+    words = effect(reading)
+    console.print(
+        Text.assemble((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
+    )
     if reading.problems:
         console.print()
         console.print(Text("Problems", style="bold"))
@@ -87,7 +91,9 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
         return
     console.print()
     console.print(Text("Tree", style="bold"))
-    for line in islice(_tree(robot, console), _MAX_LISTED):
+    signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
+    for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
+        line = Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim"))
         console.print(line, overflow="ignore", no_wrap=True, crop=False)
     _print_rest(console, len(robot.roots) + len(robot.holding))
     console.print()
@@ -104,21 +110,26 @@ def _print_rest(console: Console, count: int) -> None:
         console.print(Text(f"  ... and {count - _MAX_LISTED} more (--format json lists all)"))
 
 
-def _tree(robot: Configuration, console: Console) -> Iterator[Text]:
-    """Yield a line for every link, after its parent and indented more."""
+def effect(reading: Reading) -> str:
+    """Return what ROS 2 does with a URDF."""
+    return _EFFECTS[reading.verdict] if reading.is_decided else _UNDECIDED
+
+
+def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
+    """Yield every link after its parent: lines that lead to it, its name, and its parent joint in words."""
     children: dict[str, list[Joint]] = {}
     for joint in robot.parent_joints.values():
         children.setdefault(joint.parent, []).append(joint)
-    branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
-    bar = symbol(console, "\u2502  ", "|  ")
+    branch, last, bar = signs
     for root in robot.roots:
-        yield Text(f"  {printable(root)}")
+        yield "", printable(root), ""
         stack = _branches(children.get(root, []), "")
         while stack:
             joint, indent, is_last = stack.pop()
-            yield Text.assemble(
-                f"  {indent}{last if is_last else branch}{printable(joint.child)}  ",
-                (f"{printable(joint.name)}: {_joint_text(joint)}", "dim"),
+            yield (
+                f"{indent}{last if is_last else branch}",
+                printable(joint.child),
+                f"{printable(joint.name)}: {_joint_text(joint)}",
             )
             stack += _branches(children.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
 

@@ -10,10 +10,10 @@ from grader.grading.report import Result
 from grader.problems import Problem
 from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped
-from grader.report.details import status_of
+from grader.report.details import group_status, status_of
 from grader.report.entries import INDENT, Page, mark
 from grader.report.evidence import evidence, evidence_line
-from grader.report.order import Group, alike, groups, is_failure
+from grader.report.order import Group, alike, groups
 from grader.text import counted, first_lines, printable
 
 _MAX_LISTED, _MAX_KINDS = 12, 3
@@ -38,16 +38,8 @@ def show_groups(page: Page) -> None:
             if page.is_verbose:
                 _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
             else:
-                start = mark(_status(group), console) + Text(" ")
+                start = mark(group_status(group), console) + Text(" ")
                 wrapped(console, Text(f"{printable(group.title)} {content.earned_text(group.results)}"), INDENT, start)
-
-
-def _status(group: Group) -> str:
-    """Return the status of a group: that of its worst criterion; what has its points by a mark or carried forward passed."""
-    open_or_lost = [result for result in group.results if result.points < result.criterion.points]
-    if any(is_failure(result) for result in open_or_lost):
-        return "failed"
-    return next((status_of(result) for result in open_or_lost), "passed")
 
 
 def _show_criteria(group: Group, page: Page, *, has_title: bool) -> None:

@@ -49,21 +49,31 @@ class OpenPage:
         assert self.messages == []
 
 
-@pytest.fixture
-def open_page(browser: "Browser") -> Iterator[Callable[..., OpenPage]]:
-    """Return a function that opens a file or an address; each page is checked at the end of the test."""
-    opened: list[OpenPage] = []
+@pytest.fixture(scope="module")
+def open_pages(browser: "Browser") -> Callable[..., OpenPage]:
+    """Return a function that opens a file or an address. Whoever opens a page checks it."""
 
     def open_one(address: Path | str, **options: object) -> OpenPage:
         page = browser.new_page(**options)  # type: ignore[arg-type]  # viewport=..., color_scheme=...
         found = OpenPage(page)
-        opened.append(found)
         page.on("request", lambda request: found.requests.append(request.url))
         page.on("console", lambda message: found.messages.append(message.text))
         page.on("pageerror", lambda error: found.messages.append(str(error)))
         page.on("dialog", lambda dialog: found.messages.append(f"dialog: {dialog.message}"))
         page.goto(address.as_uri() if isinstance(address, Path) else address)
         return found
+
+    return open_one
+
+
+@pytest.fixture
+def open_page(open_pages: Callable[..., OpenPage]) -> Iterator[Callable[..., OpenPage]]:
+    """Return a function that opens a file or an address; each page is checked at the end of the test."""
+    opened: list[OpenPage] = []
+
+    def open_one(address: Path | str, **options: object) -> OpenPage:
+        opened.append(open_pages(address, **options))
+        return opened[-1]
 
     yield open_one
     for found in opened:

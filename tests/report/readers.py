@@ -221,14 +221,16 @@ def read_page(text: str) -> Any:
 
 def page_structure(text: str) -> Any:
     """Return the elements of a page, and the keys of the data for its script. A diff has as many lines as its texts."""
-    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span")]
+    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span", "code")]
 
 
 def page_text(text: str) -> str:
-    """Return the text that a page shows."""
+    """Return the text that a page shows, with backticks around what it shows as code in sentences."""
     root: Any = html.document_fromstring(text)
     for element in root.xpath("//script | //style"):
         element.text = ""
+    for element in root.xpath("//*[contains(@class, 'sentence')]//code"):
+        element.text = f"`{element.text}`"
     return str(root.text_content())
 
 

@@ -19,7 +19,13 @@ _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in 
 
 
 def render_page(
-    template: str, values: Mapping[str, object], data: Mapping[str, Any], style: str, script: str, sources: str = ""
+    template: str,
+    values: Mapping[str, object],
+    data: Mapping[str, Any],
+    style: str,
+    script: str,
+    sources: str = "",
+    rules: str = "",
 ) -> str:
     """Return a page as one HTML file.
 
@@ -29,9 +35,13 @@ def render_page(
         data: What the script reads, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
         style: The names of the styles besides base.css, with spaces between.
         script: The names of the scripts, with spaces between.
+        rules: More rules of style, of our own.
         sources: Directives for the policy of a page that is served: "img-src 'self'".
     """
-    styles, scripts = [_file(name) for name in ("base.css", *style.split())], [_file(name) for name in script.split()]
+    styles, scripts = (
+        [_file(name) for name in ("base.css", *style.split())] + [rules] * bool(rules),
+        [_file(name) for name in script.split()],
+    )
     policy = [
         f"default-src {_NOTHING}",
         f"style-src {' '.join(map(_hash, styles))}",

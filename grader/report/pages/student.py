@@ -5,12 +5,14 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
+from grader.drawing.picture import picture_of
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.details import status_of
+from grader.report.details import group_status, status_of
 from grader.report.evidence import evidence
 from grader.report.order import alike, groups, in_order
 from grader.report.pages.criteria import SYMBOLS, Card, card_of, failure_card
+from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
 from grader.text import format_points, printable
@@ -32,17 +34,15 @@ class Rows(NamedTuple):
     title: str
     points: str
     rows: tuple[Row, ...]
-
-    @property
-    def is_fine(self) -> bool:
-        """Return whether all criteria passed."""
-        return all(row.status == "passed" for row in self.rows)
+    status: str
 
 
 def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
     order, shown = in_order(report), set[str]()
     command = content.next_command(report)
+    picture = picture_of(report)
+    robot = robot_view(picture) if picture is not None else None
     values = {
         "version": report.version,
         "title": f"{content.score_text(report)}: {printable(report.rubric.title)}",
@@ -67,9 +67,15 @@ def render_html(report: Report) -> str:
         "ignored": content.ignored_lines(report),
         "next": command,
         "left": "" if command else content.what_is_left(report),
+        "robot": robot,
+        "views": views(picture) if picture is not None else "",
+        "called": {
+            result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
+        },
         "provenance": provenance(report),
     }
-    return render_page("student.html", values, {}, "student.css", "student.js")
+    data, scripts = (robot.data, f"{SCRIPTS} failures.js student.js") if robot is not None else ({}, "student.js")
+    return render_page("student.html", values, data, f"{STYLE} student.css", scripts, rules=RULES)
 
 
 def _shares(report: Report) -> tuple[float, float]:
@@ -106,6 +112,7 @@ def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
                     )
                     for result in group.results
                 ),
+                group_status(group),
             )
             for group in some
         ]

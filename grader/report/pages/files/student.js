@@ -6,4 +6,5 @@ for (const button of document.querySelectorAll("button.copy")) {
     navigator.clipboard.writeText(lines.join("\n")).then(() => { button.textContent = "Copied"; });
   });
 }
+
 addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));

@@ -1,0 +1,143 @@
+"""A robot as the script of a page reads it: links, joints, shapes and wheels, from which it computes all poses itself."""
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any
+
+from grader.checks.visuals import main_visual
+from grader.drawing.picture import Picture
+from grader.drawing.scene import Body, Scene, Wheel
+from grader.robot.frames import motion_of, placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Cylinder, Joint, Sphere
+from grader.robot.transforms import IDENTITY, Transform, dot, unit
+
+Data = Mapping[str, Any]
+
+_SLIDING = ("continuous", "revolute", "prismatic")  # the types with a position that a slider sets
+_DIGITS = 9
+
+
+def picture_data(picture: Picture) -> dict[str, Any]:
+    """Return what the script shows: the robot, the reference, and where criteria failed."""
+    scene, reference = picture.scene, picture.reference
+    links, others = _indices(scene), _indices(reference) if reference is not None else {}
+    return {
+        "robot": _robot(scene, reference),
+        "reference": _robot(reference) if reference is not None else None,
+        "same": [links.get(name, -1) for name in others],
+        "callouts": [
+            {
+                "number": callout.number,
+                "link": links.get(callout.link, -1),
+                "other": others.get(callout.link, -1),
+                "point": _numbers(callout.point) if callout.point is not None else None,
+            }
+            for callout in picture.callouts
+        ],
+    }
+
+
+def _indices(scene: Scene) -> dict[str, int]:
+    """Return the number of each link; of two with one name there is one."""
+    return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
+
+
+def _robot(scene: Scene, expected: Scene | None = None) -> Data:
+    links, robot = _indices(scene), scene.robot
+    joints = {id(joint): number for number, joint in enumerate(robot.robot.joints)}
+    named = {joint.name: joints[id(joint)] for joint in reversed(robot.robot.joints)}
+    parents = robot.parent_joints
+    turning = {wheel.link for wheel in scene.wheels}
+    return {
+        "links": [*links],
+        "parent": [joints[id(parents[name])] if name in parents else -1 for name in links],
+        "order": [links[name] for name in _top_down(robot, links)],
+        "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],
+        "frame": links[scene.frame],
+        "root": links[robot.root_of(scene.frame)],
+        "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],
+        "wheels": [_wheel(wheel, scene, links, expected) for wheel in scene.wheels],
+    }
+
+
+def _top_down(robot: Configuration, links: Mapping[str, int]) -> list[str]:
+    """Return the links that are in a tree, each after the one above it."""
+    depths: dict[str, int] = {}
+    for name in links:
+        above = [name]
+        while above[-1] in robot.parent_joints and above[-1] not in depths and len(above) <= len(links):
+            above.append(robot.parent_joints[above[-1]].parent)
+        if len(above) <= len(links):
+            start = depths.get(above[-1], 0)
+            depths |= {link: start + number for number, link in enumerate(reversed(above))}
+    return sorted(depths, key=lambda name: depths[name])
+
+
+def _joint(joint: Joint, robot: Configuration, links: Mapping[str, int], named: Mapping[str, int]) -> Data:
+    """Return a joint; one that no slider moves is fixed where it is."""
+    found: dict[str, Any] = {"name": joint.name, "parent": links.get(joint.parent, -1)}
+    origin = placed_by(IDENTITY, joint.origin) if joint.origin is not None else None
+    if joint.type in _SLIDING:
+        found |= {"type": joint.type, "axis": _axis(joint)}
+    else:
+        motion = motion_of(joint, robot.position(joint))
+        origin = origin @ motion if origin is not None and motion is not None else None
+    if "mimic" in joint.unresolved:
+        found["mimic"] = None
+    elif joint.mimic is not None:
+        factors = (joint.mimic.multiplier, joint.mimic.offset)
+        known = all(map(isfinite, factors))
+        found["mimic"] = [named.get(joint.mimic.joint, -1), *_numbers(factors)] if known else None
+    return found | {"origin": _pose(origin) if origin is not None else None}
+
+
+def _axis(joint: Joint) -> list[float] | bool | None:
+    """Return the unit axis; None if it cannot be read, and False if it has no direction."""
+    if joint.axis is None:
+        return None
+    direction = unit(joint.axis)
+    return _numbers(direction) if direction is not None else False
+
+
+def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]:
+    """Return link, kind, extents, pose, colour, and whether marks show that it turns."""
+    match body.shape:
+        case Box(size=size):
+            kind, extents = "box", size
+        case Cylinder(radius=radius, length=length):
+            kind, extents = "cylinder", (radius, radius, length)
+        case Sphere(radius=radius):
+            kind, extents = "sphere", (radius, radius, radius)
+    colour = [min(max(channel, 0.0), 1.0) if isfinite(channel) else 0.0 for channel in body.rgba]
+    marked = is_wheel and kind != "box"
+    return [links[body.link], kind, _numbers(extents), _pose(body.T_link_shape), _numbers(colour), int(marked)]
+
+
+def _wheel(wheel: Wheel, scene: Scene, links: Mapping[str, int], expected: Scene | None) -> Data:
+    """Return a wheel; `right` is whether it drives as the reference's."""
+    joint = scene.robot.joint(wheel.joint)
+    pairs = [other for other in expected.wheels if other.link == wheel.link] if expected is not None else []
+    wanted = pairs[0].travel if pairs else None
+    shape = main_visual(scene.robot, wheel.link).geometry
+    reach = max(shape.size) / 2 if isinstance(shape, Box) else getattr(shape, "radius", 0.1)
+    return {
+        "joint": wheel.joint,
+        "parent": links[joint.parent],
+        "centre": _numbers(wheel.centre),
+        "travel": _numbers(wheel.travel) if wheel.travel is not None else None,
+        "right": wheel.travel is not None and (wanted is None or dot(wheel.travel, wanted) > 0.7),
+        "reach": abs(reach),
+    }
+
+
+def _pose(pose: Transform) -> list[float] | None:
+    """Return x, y, z, roll, pitch, yaw; None for numbers that are too large."""
+    values = (*pose.translation, *pose.rpy)
+    return _numbers(values) if all(map(isfinite, values)) else None
+
+
+def _numbers(values: Any) -> list[float]:
+    """Return numbers as short as JSON can hold them: 1e-9 is enough for a picture."""
+    rounded = (round(value, _DIGITS) + 0.0 for value in values)
+    return [int(value) if value == int(value) else value for value in rounded]

@@ -1,0 +1,235 @@
+"""The student's page in a browser: controls move the robot, keys work, failures lead to their link, nothing runs or loads."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.report.formats import Format, InspectFormat
+from tests.browser.conftest import OpenPage
+from tests.command_line import run
+from tests.report.hostile import HTML, LINKS, XML, write_submission
+from tests.samples import SAMPLES
+
+pytestmark = pytest.mark.slow
+Open = Callable[..., OpenPage]
+PIXELS = "() => { viewer.draw(); return viewer.canvas.toDataURL(); }"
+HOSTILE = "".join(("</script><script>document.title='run'</script>", *HTML, *LINKS, *XML)) + "\"onerror='x' javascript:"
+
+
+def write(folder: Path, *arguments: object, name: str = "page.html") -> Path:
+    """Write what a command prints to a file, and return that."""
+    file = folder / name
+    file.write_bytes(run((*arguments, "--format", "html")).stdout)
+    return file
+
+
+@pytest.fixture(scope="module")
+def page(open_pages: Open, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Return the page of a robot with a wheel that turns the wrong way and a buried lidar; all tests use it as they find it."""
+    file = write(tmp_path_factory.mktemp("page"), "grade", SAMPLES["several-mistakes"].path)
+    opened = open_pages(file, viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    yield opened.page
+    opened.check()
+
+
+@pytest.fixture
+def fresh(page: Any) -> Any:
+    """Return the page with the robot as at the start."""
+    page.evaluate("() => { viewer.reset(); viewer.choose(-1); scrollTo(0, 0); }")
+    page.get_by_role("button", name="Submission", exact=True).click()
+    return page
+
+
+def pose(page: Any, link: str) -> list[float]:
+    """Return the pose of a link as the page shows it."""
+    page.evaluate("() => viewer.draw()")
+    found: list[float] = page.evaluate("link => viewer.state.poses[pageData.robot.links.indexOf(link)]", link)
+    return found
+
+
+def test_slider_turns_the_wheel(fresh: Any) -> None:
+    """The keys of a slider turn its wheel: its pose, the picture, and the number beside it."""
+    slider = fresh.get_by_label("base_left_wheel_joint")
+    before, picture = pose(fresh, "left_wheel"), fresh.evaluate(PIXELS)
+    slider.focus()
+    fresh.keyboard.press("ArrowRight")
+    after = pose(fresh, "left_wheel")
+    assert after[9:] == before[9:]
+    assert max(abs(one - other) for one, other in zip(after, before, strict=True)) > 0.01
+    assert fresh.evaluate(PIXELS) != picture
+    assert slider.locator("..").locator("output").inner_text() != "0 \u00b0"
+
+
+def test_keys_move_the_camera(fresh: Any) -> None:
+    """Arrow keys rotate, plus and minus zoom, shift moves, digits look from the front, side and top, 0 resets."""
+    canvas = fresh.locator("canvas")
+    canvas.focus()
+    seen = [fresh.evaluate(PIXELS)]
+    for key in ("ArrowLeft", "ArrowUp", "+", "Shift+ArrowUp", "1", "2", "3"):
+        fresh.keyboard.press(key)
+        seen.append(fresh.evaluate(PIXELS))
+    assert len(set(seen)) == len(seen)
+    fresh.keyboard.press("0")
+    assert fresh.evaluate(PIXELS) == seen[0]
+
+
+def test_pointer_rotates_moves_and_zooms(fresh: Any) -> None:
+    """Dragging rotates, with shift it moves, the wheel zooms; a click chooses the link under it."""
+    box = fresh.locator("canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    camera = "() => [viewer.camera.azimuth, viewer.camera.zoom, viewer.camera.target.join()]"
+    start = fresh.evaluate(camera)
+    fresh.mouse.move(x, y)
+    fresh.mouse.down()
+    fresh.mouse.move(x + 60, y, steps=2)
+    fresh.mouse.up()
+    turned = fresh.evaluate(camera)
+    assert turned[0] != start[0]
+    assert turned[1:] == start[1:]
+    fresh.keyboard.down("Shift")
+    fresh.mouse.down()
+    fresh.mouse.move(x, y, steps=2)
+    fresh.mouse.up()
+    fresh.keyboard.up("Shift")
+    assert fresh.evaluate(camera)[2] != start[2]
+    fresh.mouse.wheel(0, -200)
+    fresh.wait_for_function(f"() => ({camera})()[1] > 1")
+    fresh.evaluate("() => viewer.reset()")
+    fresh.evaluate("() => viewer.draw()")
+    fresh.mouse.click(x, y)
+    assert fresh.locator("#links option:checked").inner_text() == "base_link"
+    fresh.evaluate("() => viewer.draw()")
+    assert fresh.locator("[data-part=pose]").inner_text() == "at 0 0 0 m in base_link"
+
+
+def test_submission_reference_and_both(fresh: Any) -> None:
+    """Each shows another picture, and its button is pressed."""
+    pictures = []
+    for name in ("Submission", "Reference", "Both"):
+        fresh.get_by_role("button", name=name, exact=True).click()
+        pictures.append(fresh.evaluate(PIXELS))
+        assert fresh.locator("[data-mode][aria-pressed=true]").all_inner_texts() == [name]
+    assert len(set(pictures)) == 3
+
+
+def test_failure_leads_to_its_link(fresh: Any) -> None:
+    """The number of a failure turns the robot to its link and marks it; the focus alone marks it."""
+    card = fresh.locator("#criterion-right-wheel-forward")
+    card.locator("pre.source").focus()
+    assert fresh.locator("#links option:checked").inner_text() == "right_wheel"
+    azimuth = fresh.evaluate("() => viewer.camera.azimuth")
+    fresh.locator("#criterion-lidar-frame .pin").click()
+    assert fresh.locator("#links option:checked").inner_text() == "lidar"
+    assert fresh.evaluate("() => viewer.camera.azimuth") != azimuth
+    assert (
+        fresh.locator(".labels .chosen").inner_text() == fresh.locator("#criterion-lidar-frame .pin").inner_text()[-1]
+    )
+    card.hover()
+    assert fresh.locator(".views .lit title").first.text_content() == "right_wheel"
+
+
+def test_wheels_drive_and_stop(fresh: Any) -> None:
+    """With less motion preferred, `Drive` turns all wheels by a step; here they turn the base, because one is reversed."""
+    fresh.get_by_role("button", name="Drive").click()
+    angles = fresh.evaluate("() => [...viewer.given.values()].map(value => Math.round(value * 180 / Math.PI))")
+    assert angles == [15, 15]
+    drift = fresh.evaluate("() => viewer.state.drift")
+    assert abs(drift[0] - 1) > 1e-3  # it has turned
+    assert abs(drift[9]) < 0.01  # and not gone ahead: a wheel rolls 26 mm
+    assert fresh.evaluate("() => viewer.isDriving()") is False
+
+
+def test_nothing_is_drawn_without_a_change(fresh: Any) -> None:
+    """No loop runs while nothing changes."""
+    counted = fresh.evaluate("""async () => {
+      const real = requestAnimationFrame; let asked = 0;
+      await new Promise((done) => real(() => real(done)));
+      window.requestAnimationFrame = (step) => { asked += 1; return real(step); };
+      await new Promise((done) => real(() => real(() => real(done))));
+      const idle = asked;
+      viewer.schedule(); viewer.schedule();
+      window.requestAnimationFrame = real;
+      return [idle, asked];
+    }""")
+    assert counted == [0, 1]
+
+
+def test_dark_mode_and_print(fresh: Any) -> None:
+    """Dark mode has another background, also in 3-D; print has a white one, everything unfolded, and no controls."""
+    light = fresh.evaluate(PIXELS)
+    fresh.emulate_media(color_scheme="dark")
+    assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(13, 17, 23)"
+    assert fresh.evaluate(PIXELS) != light
+    assert fresh.pdf()[:5] == b"%PDF-"
+    fresh.emulate_media(media="print", color_scheme="dark")
+    assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert not fresh.locator("canvas").is_visible()
+    assert fresh.locator("details td").first.is_visible()
+    fresh.emulate_media(media="screen", color_scheme="light")
+
+
+@pytest.mark.parametrize("width", [360, 800, 1400])
+def test_no_width_scrolls_sideways(fresh: Any, width: int) -> None:
+    """A telephone, a small and a large window: nothing is wider than the page."""
+    fresh.set_viewport_size({"width": width, "height": 800})
+    assert fresh.evaluate("() => document.documentElement.scrollWidth") <= width
+    assert fresh.evaluate("() => viewer.canvas.clientWidth") > 300
+    fresh.set_viewport_size({"width": 1280, "height": 900})
+
+
+def test_every_control_has_a_name(fresh: Any) -> None:
+    """A screen reader says what each control is; the robot is described in words."""
+    for control in fresh.locator("main :is(button, input, select, canvas):visible").all():
+        assert control.evaluate("node => node.ariaLabel || node.labels?.[0]?.innerText || node.innerText")
+    assert "right-wheel-forward" in fresh.locator("#robot-words").inner_text()
+
+
+def test_page_works_without_scripts(open_page: Open, tmp_path: Path) -> None:
+    """Without JavaScript there is no 3-D, and all else is there."""
+    file = write(tmp_path, "grade", SAMPLES["lidar-buried"].path)
+    page = open_page(file, java_script_enabled=False).page
+    assert page.locator("#criterion-lidar-frame").is_visible()
+    assert page.locator(".views svg").is_visible()
+    assert not page.locator("canvas").is_visible()
+
+
+def test_page_without_webgl_says_so(open_page: Open, tmp_path: Path) -> None:
+    """Where WebGL is missing, a sentence takes the place of the canvas."""
+    file = write(tmp_path, "inspect", SAMPLES["arm-axis-sign"].path)
+    opened = open_page("about:blank")
+    opened.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    opened.page.goto(file.as_uri())
+    opened.requests.clear()
+    assert opened.page.get_by_text("does not show 3-D graphics").is_visible()
+    assert not opened.page.locator("canvas").is_visible()
+
+
+@pytest.mark.parametrize("command", ["grade", "inspect"])
+def test_hostile_text_stays_text(open_page: Open, tmp_path: Path, command: str) -> None:
+    """Scripts, handlers and markup in names of links, joints and files, in values, answers and comments do nothing."""
+    slots = (
+        "robot",
+        "link",
+        "joint",
+        "material",
+        "comment",
+        "file",
+        "folder",
+        "picture",
+        "answer",
+        "note",
+        "box",
+        "setup",
+        "frame",
+    )
+    write_submission(tmp_path / "submission", dict.fromkeys(slots, HOSTILE))
+    kind = {"grade": Format.HTML, "inspect": InspectFormat.HTML}[command]
+    opened = open_page(write(tmp_path, command, tmp_path / "submission", name=f"{kind}.html"))
+    assert (
+        "<script>document.title"
+        in opened.page.locator("body").inner_text() + opened.page.locator("table").first.inner_text()
+    )
+    assert opened.page.title() != "run"
+    assert len(opened.requests) == 1
