@@ -287,6 +287,16 @@ def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monk
         assert 'href="end"' in review.get(str(ITEMS)).text
 
 
+def test_a_fault_of_the_grader_is_one_line(review: Review, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a traceback, and the review goes on."""
+    with monkeypatch.context() as patched:
+        patched.setattr("grader.usecases.review_page.item_page", lambda *_: 1 / 0)
+        found = review.get("1")
+    assert (found.status, found.headers["content-type"]) == (500, "text/plain; charset=utf-8")
+    assert found.text == "the grader failed on this request: ZeroDivisionError: division by zero\n"
+    assert review.get("1").status == 200
+
+
 def locked_page(*_: object) -> str:
     """Fail as a gradebook on a broken disk does."""
     from grader.errors import InputError

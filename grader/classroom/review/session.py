@@ -12,6 +12,7 @@ from grader.classroom.gradebook.marks import (
     criterion_of,
     manual_grading_queue,
     mark,
+    newest_mark,
     queued_result,
     reusable_comments,
 )
@@ -101,7 +102,7 @@ class ReviewSession:
         return self.item is not None and (self.item.result.is_open or self.is_own)
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
-        """Mark the current item. The mark that it has already, if it is this one, is not repeated.
+        """Mark the current item, unless it already has this mark.
 
         `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
         one, and InputError.
@@ -109,11 +110,11 @@ class ReviewSession:
         item = self.item
         assert item is not None
         shown = item.newest if shown is None else shown
-        same = item.mark is not None and (item.mark.points, item.mark.comment) == (points, comment)
-        if same and self._own.get(self.position) == shown:
+        book, criterion = self._grades.book, item.result.criterion
+        newest = newest_mark(book, item.grade.id, criterion.id)
+        if newest is not None and newest[:2] + newest[3:4] == (shown, points, comment):
             return
-        criterion = item.result.criterion
-        added = mark(self._grades.book, item.grade, criterion, points, self._by, comment, shown=shown)
+        added = mark(book, item.grade, criterion, points, self._by, comment, shown=shown)
         self._given.append(_Given(self.position, added.before))
         self._own[self.position] = added.id
 

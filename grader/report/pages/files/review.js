@@ -23,7 +23,7 @@
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
       if (answer.go) {
-        location.replace(answer.go);
+        location.assign(answer.go);
         return;
       }
       if (answer.newer) askToKeep(answer);
