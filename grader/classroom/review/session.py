@@ -112,7 +112,7 @@ class ReviewSession:
         shown = item.newest if shown is None else shown
         book, criterion = self._grades.book, item.result.criterion
         newest = newest_mark(book, item.grade.id, criterion.id)
-        if newest is not None and newest[:2] + newest[3:4] == (shown, points, comment):
+        if newest is not None and (newest.id, newest.points, newest.comment) == (shown, points, comment):
             return
         added = mark(book, item.grade, criterion, points, self._by, comment, shown=shown)
         self._given.append(_Given(self.position, added.before))
