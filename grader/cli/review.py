@@ -9,6 +9,7 @@ import typer
 
 from grader.cli.options import ByOption, GradebookOption
 from grader.cli.output import TERMINAL
+from grader.errors import InputError
 from grader.usecases.writing import write_stdout
 
 
@@ -19,13 +20,20 @@ def review(
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
     ] = None,
+    html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
+    port: Annotated[int, typer.Option(metavar="N", min=0, max=65535, help="The port of the page; default: any.")] = 0,
 ) -> int:
     """Grade what needs manual grading, one item at a time.
 
     Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a comment: 3.5
     the roots are missing. You can stop at any time: marks are kept, and the next review continues with the rest.
 
+    With --html, the same review is a page in the browser, with pictures. The command prints its address, which works on this machine
+    only; Ctrl-C ends it.
+
     Examples:
+
+      grader review --gradebook lab6.db --html
 
       grader review --gradebook lab6.db
 
@@ -33,6 +41,15 @@ def review(
 
       grader review --gradebook lab6.db --pictures pictures
     """
+    if html:
+        from grader.usecases.review_page import review_in_browser
+
+        if pictures is not None:
+            raise InputError("--html shows the pictures itself: leave out --pictures")
+        write_stdout(review_in_browser(gradebook, criterion, by, port, TERMINAL))
+        return 0
+    if port:
+        raise InputError("--port needs --html")
     from grader.usecases.review import review as review_all
 
     if isinstance(sys.stdin, io.TextIOWrapper):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from math import inf, sqrt, tau
 from typing import NamedTuple
 
-from grader.drawing.curves import Curve, Line
+from grader.drawing.curves import Arc, Curve, Line
 from grader.drawing.views import VIEWER
 from grader.robot.model import Box, Cylinder
 from grader.robot.shapes import Shape
@@ -24,8 +24,8 @@ _Linear = tuple[float, float]  # a + b s
 _SHRUNK = 1e-4  # metres: an edge that is less deep below a surface lies on it, as that of a wheel beside its base
 _SHARE = 0.01  # of the size of a shape that is smaller
 _PARALLEL = 1e-9
-_SAMPLES = 48  # of a circle
-_HALVINGS = 24
+_SAMPLES = 36  # of a circle
+_HALVINGS = 16
 _EVERYWHERE: Piece = (0.0, 1.0)
 _NOWHERE: Piece = (1.0, 0.0)
 
@@ -33,14 +33,16 @@ _NOWHERE: Piece = (1.0, 0.0)
 class Cover(NamedTuple):
     """A shape that covers edges: its frame, the direction to the viewer in it, and its half sizes by axis between flat faces.
 
-    It is round, with a radius, across the axes `round_axes`: x and y for a cylinder, all for a sphere.
+    It is round, with a radius, across the first `round_axes` axes: two for a cylinder, three for a sphere. `slope` is the square of
+    the part of the direction across them.
     """
 
     T_shape_view: Transform
     to_viewer: Vector
     halves: tuple[tuple[int, float], ...]
-    round_axes: tuple[int, ...]
-    radius: float
+    round_axes: int = 0
+    radius: float = 0.0
+    slope: float = 0.0
 
     @classmethod
     def of(cls, shape: Shape, pose: Transform) -> "Cover":
@@ -49,47 +51,66 @@ class Cover(NamedTuple):
         to_viewer = inverse.rotate(VIEWER)
         if isinstance(shape, Box):
             x, y, z = map(_shrunk, shape.size)
-            return cls(inverse, to_viewer, ((0, x), (1, y), (2, z)), (), 0.0)
-        radius = _shrunk(2.0 * shape.radius)
+            return cls(inverse, to_viewer, ((0, x), (1, y), (2, z)))
+        radius, slope = _shrunk(2.0 * shape.radius), to_viewer[0] * to_viewer[0] + to_viewer[1] * to_viewer[1]
         if isinstance(shape, Cylinder):
-            return cls(inverse, to_viewer, ((2, _shrunk(shape.length)),), (0, 1), radius)
-        return cls(inverse, to_viewer, (), (0, 1, 2), radius)
+            return cls(inverse, to_viewer, ((2, _shrunk(shape.length)),), 2, radius, slope)
+        return cls(inverse, to_viewer, (), 3, radius, 1.0)
 
     def pieces(self, curve: Curve) -> list[Piece]:
         """Return the covered pieces of a curve in ascending order."""
         if not isinstance(curve, Line):
-            samples = max(4, round(_SAMPLES * abs(curve.end - curve.start) / tau))
-            return [*_sampled(lambda share: self.covers(curve.at(share)), samples)]
+            return [*_sampled(self._covers_share(curve), max(4, round(_SAMPLES * abs(curve.end - curve.start) / tau)))]
         start, end = self._piece(curve)
         return [(start, end)] if end > start else []
 
     def covers(self, point: Vector) -> bool:
         """Return whether a ray from a point to the viewer enters the shape."""
-        low, high = self._ray(point)
-        return high >= max(low, 0.0)
+        low, high = self._ray(self.T_shape_view.apply(point))
+        return high >= low and high >= 0.0
+
+    def _covers_share(self, arc: Arc) -> Callable[[float], bool]:
+        """Return the function of a share of an arc that says whether the shape covers it, with the arc in the shape's frame."""
+        local = Arc(
+            self.T_shape_view.apply(arc.centre),
+            self.T_shape_view.rotate(arc.major),
+            self.T_shape_view.rotate(arc.minor),
+            arc.start,
+            arc.end,
+        )
+
+        def covers(share: float) -> bool:
+            low, high = self._ray(local.at(share))
+            return high >= low and high >= 0.0
+
+        return covers
 
     def depth(self, x: float, y: float) -> float | None:
         """Return the z of the surface that the viewer sees at a place in the view; None beside the shape."""
-        low, high = self._ray((x, y, 0.0))
+        low, high = self._ray(self.T_shape_view.apply((x, y, 0.0)))
         return high if high >= low else None
 
-    def _ray(self, point: Vector) -> Piece:
+    def _ray(self, q: Vector) -> Piece:
         """Return how far from a point to the viewer the shape begins and ends; the end is first where there is nothing."""
-        q, v = self.T_shape_view.apply(point), self.to_viewer
+        v = self.to_viewer
         low, high = -inf, inf
         for axis, half in self.halves:
-            if abs(v[axis]) > _PARALLEL:
-                one, other = (-half - q[axis]) / v[axis], (half - q[axis]) / v[axis]
-                low, high = max(low, min(one, other)), min(high, max(one, other))
-            elif abs(q[axis]) > half:
+            speed, at = v[axis], q[axis]
+            if abs(speed) > _PARALLEL:
+                middle, depth = -at / speed, half / abs(speed)
+                low = max(low, middle - depth)
+                high = min(high, middle + depth)
+            elif abs(at) > half:
                 return (inf, -inf)
-        if self.round_axes:
-            a, b, c = self._products(v, v), self._products(q, v), self._products(q, q) - self.radius * self.radius
+        if self.round_axes and low <= high:
+            a, b = self.slope, self._products(q, v)
+            c = self._products(q, q) - self.radius * self.radius
             root = b * b - a * c
             if root < 0.0 or (a <= _PARALLEL and c > 0.0):
                 return (inf, -inf)
             if a > _PARALLEL:
-                low, high = max(low, (-b - sqrt(root)) / a), min(high, (-b + sqrt(root)) / a)
+                root = sqrt(root)
+                low, high = max(low, (-b - root) / a), min(high, (-b + root) / a)
         return (low, high)
 
     def _piece(self, line: Line) -> Piece:
@@ -114,7 +135,7 @@ class Cover(NamedTuple):
     def _round_pieces(self, q: Vector, d: Vector, lows: list[_Linear], highs: list[_Linear]) -> Iterator[Piece]:
         """Yield where a line is covered by the round body, and where by that and each slab at once."""
         v = self.to_viewer
-        a = self._products(v, v)
+        a = self.slope
         c = (self._products(q, q) - self.radius * self.radius, 2.0 * self._products(q, d), self._products(d, d))
         if a <= _PARALLEL:
             yield _where_root((-c[0], -c[1], -c[2]), (0.0, 0.0))
@@ -129,7 +150,8 @@ class Cover(NamedTuple):
 
     def _products(self, p: Vector, q: Vector) -> float:
         """Return the scalar product across the round axes."""
-        return sum(p[axis] * q[axis] for axis in self.round_axes)
+        flat = p[0] * q[0] + p[1] * q[1]
+        return flat if self.round_axes == 2 else flat + p[2] * q[2]
 
 
 def _shrunk(size: float) -> float:

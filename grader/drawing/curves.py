@@ -10,6 +10,8 @@ from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, cross, minus, unit
 
+Extents = tuple[tuple[float, float], ...]  # along x, y and z
+
 _EDGE_ON = 1e-9  # a face whose normal leans less to the viewer is seen from its edge
 _ALIGNED = (1.0, 0.0, 0.0)
 
@@ -24,6 +26,10 @@ class Line(NamedTuple):
         """Return the point at a share of the length, from 0 to 1."""
         (a, b, c), (d, e, f) = self.start, self.end
         return (a + share * (d - a), b + share * (e - b), c + share * (f - c))
+
+    def extents(self) -> Extents:
+        """Return the least and the largest coordinates."""
+        return tuple((min(pair), max(pair)) for pair in zip(self.start, self.end, strict=True))
 
     def cut(self, start: float, end: float) -> "Line":
         """Return the part between two shares of the length."""
@@ -48,6 +54,11 @@ class Arc(NamedTuple):
         c, s = cos(angle), sin(angle)
         (x, y, z), (a, b, d), (e, f, g) = self.centre, self.major, self.minor
         return (x + c * a + s * e, y + c * b + s * f, z + c * d + s * g)
+
+    def extents(self) -> Extents:
+        """Return the least and the largest coordinates of the whole circle."""
+        reaches = map(hypot, self.major, self.minor)
+        return tuple((middle - reach, middle + reach) for middle, reach in zip(self.centre, reaches, strict=True))
 
     def cut(self, start: float, end: float) -> "Arc":
         """Return the part between two shares of the angle."""

@@ -5,15 +5,16 @@ from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 from grader.drawing.covering import Cover
-from grader.drawing.curves import Curve, outline
+from grader.drawing.curves import Curve, Extents, outline
 from grader.drawing.scene import Body
 from grader.robot.separation import separation
 from grader.robot.shapes import extent
 from grader.robot.transforms import Transform, Vector
 
-MAX_PAIRS = 20_000  # shapes that overlap in a view: more are ordered by their depth, and hide nothing
+MAX_PAIRS = 5_000  # shapes that overlap in a view: more are ordered by their depth, and hide nothing
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _SAME = 1e-6  # metres
+_MAJORITY = 3  # places at which one body is in front of the other, more than the other way round
 _INSIDE = (0.95, 0.5)  # of the way from the centre of a shape to its outline
 
 
@@ -23,7 +24,7 @@ class Seen(NamedTuple):
     body: Body
     pose: Transform
     outline: tuple[Curve, ...]
-    extents: tuple[tuple[float, float], ...]
+    extents: Extents
     cover: Cover
 
     @classmethod
@@ -32,11 +33,17 @@ class Seen(NamedTuple):
         extents = tuple(extent(body.shape, pose, axis) for axis in _AXES)
         return cls(body, pose, outline(body.shape, pose), extents, Cover.of(body.shape, pose))
 
-    def overlaps(self, other: "Seen") -> bool:
-        """Return whether the rectangles around two bodies overlap in the view."""
-        (a, b), (c, d) = self.extents[:2]
-        (e, f), (g, h) = other.extents[:2]
+    def overlaps(self, other: Extents) -> bool:
+        """Return whether the rectangle around the body overlaps another one in the view."""
+        (a, b), (c, d), _ = self.extents
+        (e, f), (g, h), _ = other
         return a < f - _SAME and e < b - _SAME and c < h - _SAME and g < d - _SAME
+
+    def may_cover(self, other: Extents) -> bool:
+        """Return whether something with these extents may be behind the body, or inside of it."""
+        (a, b), (c, d), (_, near) = self.extents
+        (e, f), (g, h), (far, _) = other
+        return near > far + _SAME and a < f and e < b and c < h and g < d
 
 
 def overlapping(seen: Sequence[Seen]) -> list[tuple[int, int]] | None:
@@ -47,7 +54,7 @@ def overlapping(seen: Sequence[Seen]) -> list[tuple[int, int]] | None:
     for index in ordered:
         left = seen[index].extents[0][0]
         active = [other for other in active if seen[other].extents[0][1] > left]
-        pairs += [(other, index) for other in active if seen[index].overlaps(seen[other])]
+        pairs += [(other, index) for other in active if seen[index].overlaps(seen[other].extents)]
         if len(pairs) > MAX_PAIRS:
             return None
         active.append(index)
@@ -96,6 +103,8 @@ def _in_front(one: Seen, other: Seen) -> float:
         depth, other_depth = one.cover.depth(x, y), other.cover.depth(x, y)
         if depth is not None and other_depth is not None and abs(depth - other_depth) > 2e-4:
             votes += 1 if depth > other_depth else -1
+        if abs(votes) == _MAJORITY:
+            break
     if votes:
         return votes
     gap = separation(one.body.shape, one.pose, other.body.shape, other.pose)

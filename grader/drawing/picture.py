@@ -22,6 +22,7 @@ from grader.robot.transforms import Vector, minus
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 _FRAMES = ("relative_to", "base", "on", "of", "parent")  # and in whose frame
 _SAME = 0.001  # metres: shapes and frames that differ by less look equal
+_TURNED = 0.02  # radians, as well
 
 
 class Callout(NamedTuple):
@@ -163,8 +164,9 @@ def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:
 def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
     if link not in scene.poses:
         return False
-    apart = minus(scene.poses[link].translation, reference.poses[link].translation)
-    return max(map(abs, apart)) <= _SAME
+    one, other = scene.poses[link], reference.poses[link]
+    turned = max(abs(a - b) for a, b in zip(one.rotation, other.rotation, strict=True))
+    return max(map(abs, minus(one.translation, other.translation))) <= _SAME and turned <= _TURNED
 
 
 def _point(scene: Scene | None, link: str) -> Vector | None:

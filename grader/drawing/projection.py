@@ -23,18 +23,23 @@ class Stroke(NamedTuple):
 
 
 class Projection(NamedTuple):
-    """What is seen of a scene in one view. `bodies` are from back to front; `hidden` strokes are behind or inside of bodies."""
+    """What is seen of a scene in one view. `bodies` are from back to front; `hidden` strokes are behind or inside of bodies.
+
+    `is_complete` is false where so many bodies overlap that all edges which face the viewer count as visible.
+    """
 
     view: View
     bodies: tuple[Seen, ...]
     visible: tuple[Stroke, ...]
     hidden: tuple[Stroke, ...]
+    is_complete: bool = True
 
 
 def projection(scene: Scene, view: View) -> Projection:
     """Return what is seen of a scene in a view."""
     seen = seen_in(scene, scene.bodies, view)
-    pairs = overlapping(seen) or []
+    found = overlapping(seen)
+    pairs = found or []
     behind: dict[int, list[Seen]] = {}
     for one, other in pairs:
         behind.setdefault(one, []).append(seen[other])
@@ -42,13 +47,12 @@ def projection(scene: Scene, view: View) -> Projection:
     visible: list[Stroke] = []
     hidden: list[Stroke] = []
     for index, body in enumerate(seen):
-        others = [other for other in behind.get(index, ()) if _may_hide(other, body)]
+        others = [other for other in behind.get(index, ()) if other.body.rgba[3] >= _TRANSPARENT]
         _add_strokes(body, others, visible, hidden)
     shown = {_key(stroke.curve): stroke for stroke in visible}
     unshown = {_key(stroke.curve): stroke for stroke in hidden if _key(stroke.curve) not in shown}
-    return Projection(
-        view, tuple(seen[index] for index in painted(seen, pairs)), tuple(shown.values()), tuple(unshown.values())
-    )
+    bodies = tuple(seen[index] for index in painted(seen, pairs))
+    return Projection(view, bodies, tuple(shown.values()), tuple(unshown.values()), found is not None)
 
 
 def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
@@ -60,7 +64,9 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
     """Add the edges of a body: the pieces that other bodies cover are hidden, and those that it hides itself."""
     own = seen.body.rgba
     for curve, faces_viewer in edges(seen.body.shape, seen.pose):
-        covered = [(piece, other) for other in others for piece in other.cover.pieces(curve)]
+        extents = curve.extents()
+        near = [other for other in others if other.may_cover(extents)]
+        covered = [(piece, other) for other in near for piece in other.cover.pieces(curve)]
         if not faces_viewer:
             front = max((other for _, other in covered), key=_front, default=None)
             hidden += _strokes(curve, [(0.0, 1.0)], front.body.rgba if front is not None else own)
@@ -71,10 +77,6 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
             hidden += _strokes(curve, [(start, end)], rgba)
             rest = end
         visible += _strokes(curve, [(rest, 1.0)], own)
-
-
-def _may_hide(one: Seen, other: Seen) -> bool:
-    return one.body.rgba[3] >= _TRANSPARENT and one.extents[2][1] > other.extents[2][0] + _SAME
 
 
 def _front(seen: Seen) -> float:

@@ -81,15 +81,33 @@ def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
     right = max(y * scale + 2.0 * MARGIN, KEY_WIDTH)
     columns = ((0.0, WIDTH - right), (WIDTH - right, right))
     rows = (max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT), z * scale + 2.0 * MARGIN + TITLE)
-    middle = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0
+    middle = _middle(low, high)
     cells = []
     for view, column, row in ((TOP, 0, 0), (SIDE, 0, 1), (FRONT, 1, 1)):
         left, width = columns[column]
-        above = top + sum(rows[:row])
-        u, v, _ = view.T_view_frame.apply(middle)
-        origin = left + width / 2.0 - scale * u, above + (TITLE + rows[row]) / 2.0 + scale * v
-        cells.append(Cell(view, left, above, width, rows[row], origin, scale))
+        cells.append(_cell(view, (left, top + sum(rows[:row])), (width, rows[row]), middle, scale, TITLE))
     return Sheet(tuple(cells), (columns[1][0], top), top + sum(rows), scale)
+
+
+def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Cell:
+    """Return a view of a picture alone, in a rectangle of this size in pixels."""
+    low, high = _bounds(picture)
+    (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
+    scale = min(
+        (width - 2.0 * margin) / max(abs(c - a), _SMALLEST), (height - 2.0 * margin) / max(abs(d - b), _SMALLEST)
+    )
+    return _cell(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
+
+
+def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Cell:
+    """Return a cell with the middle of the robot in its middle, below its title."""
+    u, v, _ = view.T_view_frame.apply(middle)
+    origin = corner[0] + size[0] / 2.0 - scale * u, corner[1] + (title + size[1]) / 2.0 + scale * v
+    return Cell(view, *corner, *size, origin, scale)
+
+
+def _middle(low: Vector, high: Vector) -> Vector:
+    return (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0
 
 
 def _bounds(picture: Picture) -> tuple[Vector, Vector]:

@@ -3,23 +3,29 @@
 The element needs no style sheet, script or other file. A page that has it inside adds `DARK_RULES` for dark mode.
 """
 
+from dataclasses import replace
 from itertools import groupby
+from statistics import median
 from typing import Any
 
 from lxml import etree
 
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.projection import Stroke, projection
-from grader.drawing.sheet import WIDTH, Cell, sheet_of
-from grader.drawing.views import SIDE
+from grader.drawing.projection import Projection, Stroke, projection
+from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
+from grader.drawing.views import SIDE, View
 from grader.report.drawing_key import description, put_key, put_legend
-from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels, outlines
+from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_HIDDEN = {"stroke-opacity": "0.5", "stroke-width": "0.9"}
-_THUMBNAIL = (160.0, 100.0)
+_THUMBNAIL = (240.0, 150.0)  # pixels
+_MARGIN = 16.0
+_THICKNESS = 0.05  # of an edge, as a share of the size of a shape
+_THIN, _THICK = 0.3, 1.3  # pixels
+_HIDDEN = 0.7  # of the thickness of a visible edge
+_CROWDED = "So many shapes overlap that edges behind others are drawn as if they were in front."
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
 
@@ -32,26 +38,27 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     sheet = sheet_of(picture, top)
     put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     titles = put(root, "g", "faint")
+    notes = picture.scene.missing
     for cell in sheet.cells:
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
-        _put_view(put(root, "g"), cell, picture)
+        if not _put_view(put(root, "g"), cell, picture):
+            notes = (*picture.scene.missing, _CROWDED)
     put_key(put(root, "g"), sheet, picture)
-    return _sized(root, WIDTH, put_legend(root, sheet.height, picture) if legend else sheet.height)
+    return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
-def thumbnail_element(picture: Picture) -> Any:
-    """Return a small picture of a robot: the side view without labels."""
-    root = _root("The robot from its side", description(picture))
-    width, height = _THUMBNAIL
-    cell = next(cell for cell in sheet_of(picture).cells if cell.view is SIDE)
-    group = put(root, "g")
-    _put_bodies(group, cell, picture)
-    for seen in outlines(picture, cell):
-        put(group, "path", "reference", {"d": path_data(cell, seen.outline, closed=True)})
-    root.set("viewBox", f"{cell.left:g} {cell.top:g} {cell.width:g} {cell.height:g}")
-    root.set("width", f"{width:g}")
-    root.set("height", f"{height:g}")
-    return root
+def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
+    """Return a small picture of a robot: one view, where the reference differs, and the way the wheels drive."""
+    root = _root(f"The robot in the {view.title} view", description(picture))
+    cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
+    labels, below, above, group = Labels(cell), Signs(), Signs(), put(root, "g")
+    add_ground(below, cell, picture, labels)
+    below.put(group)
+    _put_bodies(group, cell, projection(picture.scene, view))
+    add_outlines(above, cell, replace(picture, frames=()), labels)
+    add_wheels(above, cell, picture, labels)
+    above.put(group)
+    return _sized(root, *_THUMBNAIL)
 
 
 def empty_element(title: str, words: str, height: float) -> Any:
@@ -66,7 +73,8 @@ def _sized(root: Any, width: float, height: float) -> Any:
     root.set("viewBox", f"0 0 {width:g} {height:.0f}")
     root.set("width", f"{width:g}")
     root.set("height", f"{height:.0f}")
-    root.find(f"{{{SVG}}}rect").set("height", f"{height:.0f}")
+    for paper in root.iterfind(f"{{{SVG}}}rect"):
+        paper.set("height", f"{height:.0f}")
     return root
 
 
@@ -80,25 +88,30 @@ def _root(title: str, words: str) -> Any:
     return root
 
 
-def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
+def _put_view(group: Any, cell: Cell, picture: Picture) -> bool:
+    """Add a view, and return whether its hidden edges are known."""
     labels, below, above = Labels(cell), Signs(), Signs()
     add_ground(below, cell, picture, labels)
     below.put(group)
-    _put_bodies(group, cell, picture)
-    add_outlines(above, cell, picture)
-    add_frames(above, cell, picture, labels)
+    shown = projection(picture.scene, cell.view)
+    _put_bodies(group, cell, shown)
+    add_outlines(above, cell, picture, labels)
+    add_frames(above, cell, picture, labels, framed_links(picture))
     add_wheels(above, cell, picture, labels)
     add_callouts(above, cell, picture, labels)
     above.put(group)
+    return shown.is_complete
 
 
-def _put_bodies(group: Any, cell: Cell, picture: Picture) -> None:
-    """Add the shapes from back to front, then hidden edges, then visible ones."""
-    shown = projection(picture.scene, cell.view)
+def _put_bodies(group: Any, cell: Cell, shown: Projection) -> None:
+    """Add the shapes from back to front, then hidden edges, then visible ones; thinner where the shapes are small."""
     for seen in shown.bodies:
         body = put(group, "path", "", {"d": path_data(cell, seen.outline, closed=True), **colour(seen.body.rgba)})
         put(body, "title", text=seen.body.link)
-    for strokes, attributes in ((shown.hidden, _HIDDEN), (shown.visible, {})):
+    sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in shown.bodies]
+    width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
+    hidden = {"stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"}
+    for strokes, attributes in ((shown.hidden, hidden), (shown.visible, {"stroke-width": width})):
         for look, some in groupby(sorted(strokes, key=_look), _look):
             path = path_data(cell, (stroke.curve for stroke in some))
             put(group, "path", look, {"d": path, **attributes})

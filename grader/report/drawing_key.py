@@ -1,6 +1,6 @@
 """The words of a drawing: the key of its signs with the scale bar, and the criteria that it calls out."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -67,14 +67,14 @@ def _draw_axes(signs: Signs, at: Place) -> None:
     signs.line("axis-y", circle((x, y), 2.5))
 
 
-def put_legend(root: Any, top: float, picture: Picture) -> float:
-    """Add the criteria that are called out and what is not shown, below `top`; return where they end, in pixels."""
-    if not picture.callouts and not picture.scene.missing:
+def put_legend(root: Any, top: float, callouts: Sequence[Callout], notes: Sequence[str]) -> float:
+    """Add the criteria that are called out, and notes, below `top`; return where they end, in pixels."""
+    if not callouts and not notes:
         return top
     put(root, "path", "rule", {"d": segments([((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0))])})
     badges, strong, plain = Signs(), put(root, "g", "strong"), put(root, "g", "text")
     left, width, y = _LEFT + _INDENT, WIDTH - 2.0 * _LEFT - _INDENT, top + 28.0
-    for callout in picture.callouts:
+    for callout in callouts:
         add_badge(badges, (_LEFT + 9.0, y - 4.0), callout.number)
         y = put_lines(strong, left, y, width, heading(callout))
         for result in callout.results:
@@ -82,7 +82,7 @@ def put_legend(root: Any, top: float, picture: Picture) -> float:
             words = f"{criterion.id} ({counted_points(criterion.points)}): {result.outcome.message}"
             y = put_lines(plain, left, y, width, words)
         y += 6.0
-    for sentence in picture.scene.missing:
+    for sentence in notes:
         y = put_lines(plain, left, y, width, sentence)
     badges.put(root)
     return y + 2.0

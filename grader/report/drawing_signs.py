@@ -1,18 +1,19 @@
 """The signs of a drawing: ground, frames with axes, the way wheels drive, the reference's outlines, numbers where criteria failed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import hypot
 from typing import Any
 
 from grader.drawing.labels import Labels
-from grader.drawing.order import Seen
 from grader.drawing.picture import Picture
 from grader.drawing.projection import seen_in
-from grader.drawing.sheet import Cell, Place, framed_links
+from grader.drawing.sheet import Cell, Place
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
 _AXIS = 20.0  # pixels
+_LONG_AXIS = 32.0  # of a frame of the reference, which is seen beside the robot's own
+_LETTER = 7.0  # behind the tip of an axis
 _ARROW = 30.0
 _HEAD = 6.0
 _RADIUS = 9.0  # of a number
@@ -85,33 +86,41 @@ def _ground_line(cell: Cell, ground: Transform) -> tuple[Place, Place] | None:
     return ends[0], ends[1]
 
 
-def add_outlines(signs: Signs, cell: Cell, picture: Picture) -> None:
-    """Add the dashed outlines and frames of the reference."""
+def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+    """Add the dashed outlines of the reference, and its frames with their axes and letters."""
     if picture.reference is None:
         return
-    for seen in outlines(picture, cell):
+    for seen in seen_in(picture.reference, picture.outlines, cell.view):
         signs.line("reference", path_data(cell, seen.outline, closed=True))
+        (a, b), (c, d), _ = seen.extents
+        labels.mark([cell.on_sheet((a, c, 0.0)), cell.on_sheet((b, d, 0.0))])
     for link in picture.frames:
         pose = picture.reference.poses[link]
+        if link in picture.scene.poses and _look_of(cell, pose) == _look_of(cell, picture.scene.poses[link]):
+            continue  # in this view it covers the robot's own
         start = cell.place(pose.translation)
-        tips = [_tip(cell, start, pose.rotate(axis)) for _, axis in _AXES]
-        signs.line("reference", segments((start, tip) for tip, length in tips if length > _END_ON))
+        for name, axis in _AXES:
+            tip, length = _tip(cell, start, pose.rotate(axis), _LONG_AXIS)
+            if length > _END_ON:
+                signs.line("reference", segments([(start, tip)]))
+                _add_letter(signs, labels, start, tip, name)
 
 
-def outlines(picture: Picture, cell: Cell) -> list[Seen]:
-    """Return the bodies of the reference that are outlined, as they are seen in a cell."""
-    return seen_in(picture.reference, picture.outlines, cell.view) if picture.reference is not None else []
-
-
-def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
     """Add the frames of links with their axes and letters, each that looks the same once."""
     shown: set[object] = set()
-    for link in framed_links(picture):
+    for link in links:
         pose = picture.scene.poses[link]
-        key = tuple(round(value) for value in (*cell.place(pose.translation), *(10.0 * part for part in pose.rotation)))
-        if key not in shown:
-            shown.add(key)
+        look = _look_of(cell, pose)
+        if look not in shown:
+            shown.add(look)
             _add_frame(signs, cell, pose, labels)
+
+
+def _look_of(cell: Cell, pose: Transform) -> tuple[int, ...]:
+    """Return what is equal for frames that look the same in a cell."""
+    seen = (value for _, axis in _AXES for value in cell.direction(pose.rotate(axis)))
+    return (*map(round, cell.place(pose.translation)), *(round(10.0 * value) for value in seen))
 
 
 def _add_frame(signs: Signs, cell: Cell, pose: Transform, labels: Labels) -> None:
@@ -121,19 +130,26 @@ def _add_frame(signs: Signs, cell: Cell, pose: Transform, labels: Labels) -> Non
         if length > _END_ON:
             signs.line(f"axis-{name}", segments([(start, tip)]))
             labels.mark([start, tip])
-            place = start[0] + (tip[0] - start[0]) * 1.35, start[1] + (tip[1] - start[1]) * 1.35
-            if labels.take(place, 9.0, 11.0):
-                signs.text("letter", (place[0], place[1] + 3.5), name)
+            _add_letter(signs, labels, start, tip, name)
         elif cell.direction(pose.rotate(axis))[2] > 0.0:
             signs.line(f"dot-{name}", circle(start, 3.0))  # to the viewer
         else:
             signs.line(f"axis-{name}", circle(start, 2.5))
 
 
-def _tip(cell: Cell, start: Place, axis: Vector) -> tuple[Place, float]:
+def _add_letter(signs: Signs, labels: Labels, start: Place, tip: Place, name: str) -> None:
+    """Add the letter of an axis behind its tip, unless another one is there."""
+    long = hypot(tip[0] - start[0], tip[1] - start[1])
+    way = 1.0 + _LETTER / long
+    place = start[0] + (tip[0] - start[0]) * way, start[1] + (tip[1] - start[1]) * way
+    if labels.take(place, 9.0, 11.0):
+        signs.text("letter", (place[0], place[1] + 3.5), name)
+
+
+def _tip(cell: Cell, start: Place, axis: Vector, length: float = _AXIS) -> tuple[Place, float]:
     """Return where an axis ends on the sheet, and the part of its length that is seen."""
     x, y, _ = cell.direction(axis)
-    return (start[0] + _AXIS * x, start[1] + _AXIS * y), hypot(x, y)
+    return (start[0] + length * x, start[1] + length * y), hypot(x, y)
 
 
 def add_wheels(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:

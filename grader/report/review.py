@@ -26,8 +26,8 @@ def render_item(item: QueuedResult, position: str, pictures: Sequence[str], cons
         wrapped(console, Text(f"Marked: {mark_text(item.mark)}", style="bold"), 0)
     if isinstance(outcome.measured, str):
         _print_block("Found", outcome.measured, console)
-    elif isinstance(outcome.measured, tuple | list):
-        _print_block("Look at", "\n".join(_where(item, str(file)) for file in outcome.measured), console)
+    if files := files_text(item):
+        _print_block("Look at", "\n".join(files), console)
     if pictures:
         _print_block("Pictures", "\n".join(pictures), console)
     if criterion.answer:
@@ -49,6 +49,21 @@ def mark_text(mark: Mark) -> str:
     parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
     comment = " ".join(mark.comment.split())
     return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
+
+
+def files_text(item: QueuedResult) -> list[str]:
+    """Return where the files are that a criterion is about, printable."""
+    measured = item.result.outcome.measured
+    return [printable(_where(item, str(file))) for file in measured] if isinstance(measured, tuple | list) else []
+
+
+def place_text(item: QueuedResult) -> str:
+    """Return where the answer is, printable: the file, and the line where editors count lines. Empty if there is none."""
+    location = item.result.outcome.location
+    if location is None:
+        return ""
+    line = "" if location.path.lower().endswith(_WITHOUT_LINES) else f", line {location.line}"
+    return printable(f"{_where(item, location.path)}{line}")
 
 
 def _print_block(title: str, text: str, console: Console) -> None:

@@ -4,7 +4,7 @@ The looks for light mode and print are presentation attributes, which need no st
 classes in dark mode.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from math import atan2, degrees, hypot, isfinite, tau
 from typing import Any
 
@@ -13,7 +13,10 @@ from lxml import etree
 from grader.drawing.curves import Arc, Curve, Line
 from grader.drawing.scene import Rgba
 from grader.drawing.sheet import Cell, Place
+from grader.robot.transforms import Vector
 from grader.text import printable
+
+_Point = tuple[str, str]  # coordinates on the sheet, as they are written
 
 SVG = "http://www.w3.org/2000/svg"
 _LINE = {"fill": "none", "stroke-linecap": "round", "stroke-linejoin": "round"}
@@ -24,9 +27,9 @@ _DARK_INK, _DARK_PAPER = "#e8eaed", "#16191d"
 LOOKS: Mapping[str, tuple[Mapping[str, str], Mapping[str, str]]] = {
     "paper": ({"fill": _PAPER}, {"fill": _DARK_PAPER}),
     "rule": ({**_LINE, "stroke": "#c9ced6"}, {"stroke": "#3a4048"}),
-    "edge": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {"stroke": _DARK_INK}),
-    "edge-on-light": ({**_LINE, "stroke": _INK, "stroke-width": "1.3"}, {}),
-    "edge-on-dark": ({**_LINE, "stroke": _DARK_INK, "stroke-width": "1.3"}, {}),
+    "edge": ({**_LINE, "stroke": _INK}, {"stroke": _DARK_INK}),
+    "edge-on-light": ({**_LINE, "stroke": _INK}, {}),
+    "edge-on-dark": ({**_LINE, "stroke": _DARK_INK}, {}),
     "hidden": ({**_LINE, "stroke": _INK, "stroke-opacity": "0.5"}, {"stroke": _DARK_INK}),
     "ground": ({**_LINE, "stroke": "#6b7280", "stroke-width": "1.5"}, {"stroke": "#9aa3af"}),
     "halo": (
@@ -81,15 +84,15 @@ def put(parent: Any, tag: str, look: str = "", attributes: Mapping[str, object] 
 
 
 def number(value: float) -> str:
-    """Return a length in pixels with two decimals."""
-    return f"{round(value, 2) + 0.0:.2f}".rstrip("0").rstrip(".")
+    """Return a length in pixels with one decimal."""
+    return f"{round(value, 1) + 0.0:g}"
 
 
 def colour(rgba: Rgba) -> dict[str, str]:
     """Return the attributes that fill a shape with a colour; a channel that is no number is 0."""
     red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
     channels = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
-    return {"fill": f"#{channels}", **({"fill-opacity": number(alpha)} if alpha < 1.0 else {})}
+    return {"fill": f"#{channels}", **({"fill-opacity": f"{alpha:.2g}"} if alpha < 1.0 else {})}
 
 
 def edge_look(rgba: Rgba) -> str:
@@ -106,42 +109,45 @@ def edge_look(rgba: Rgba) -> str:
 def path_data(cell: Cell, curves: Iterable[Curve], *, closed: bool = False) -> str:
     """Return curves of a view as path data on the sheet; a new piece begins wherever one does not continue the one before."""
     parts: list[str] = []
-    last: str | None = None
+    last: _Point | None = None
     for curve in curves:
-        start, end = _place(cell, curve.at(0.0)), _place(cell, curve.at(1.0))
+        start = _point(cell, curve.at(0.0))
         if start != last:
-            parts.append(f"M{start}")
-        if isinstance(curve, Line):
-            if start != end:
-                parts.append(f"L{end}")
-        else:
-            parts += _arc(cell, curve)
-        last = end
+            parts.append(f"M{start[0]} {start[1]}")
+        halves = 2 if isinstance(curve, Arc) and abs(curve.end - curve.start) > tau / 2.0 - 1e-6 else 1
+        for half in range(1, halves + 1):
+            end = _point(cell, curve.at(half / halves))
+            parts.append(_line(start, end) if isinstance(curve, Line) else _arc(cell, curve, start, end))
+            start = end
+        last = start
     return "".join(parts) + ("Z" if closed else "")
 
 
-def _arc(cell: Cell, arc: Arc) -> list[str]:
-    """Return an elliptical arc in commands of at most half a turn; a line if it is seen from its edge."""
-    rx, ry = cell.scale * hypot(*arc.major[:2]), cell.scale * hypot(*arc.minor[:2])
-    if number(rx) == "0" or number(ry) == "0":
-        return [f"L{_place(cell, arc.at(share))}" for share in (0.5, 1.0)]
-    tilt = degrees(atan2(-arc.major[1], arc.major[0]))
+def _line(start: _Point, end: _Point) -> str:
+    if start[1] == end[1]:
+        return f"H{end[0]}" if start != end else ""
+    return f"V{end[1]}" if start[0] == end[0] else f"L{end[0]} {end[1]}"
+
+
+def _arc(cell: Cell, arc: Arc, start: _Point, end: _Point) -> str:
+    """Return an elliptical arc of at most half a turn; a line if it is seen from its edge."""
+    rx, ry = (number(cell.scale * hypot(*radius[:2])) for radius in (arc.major, arc.minor))
+    if "0" in (rx, ry):
+        return _line(start, end)
+    tilt = number(degrees(atan2(-arc.major[1], arc.major[0]))) if rx != ry else "0"
     turn = (arc.major[0] * arc.minor[1] - arc.major[1] * arc.minor[0]) * (arc.end - arc.start)
-    sweep = 0 if turn > 0.0 else 1  # y points down on the sheet
-    radii = f"{number(rx)} {number(ry)} {number(tilt)}"
-    halves = 2 if abs(arc.end - arc.start) > tau / 2.0 - 1e-6 else 1
-    shares = [number_ / halves for number_ in range(1, halves + 1)]
-    return [f"A{radii} 0 {sweep} {_place(cell, arc.at(share))}" for share in shares]
+    return f"A{rx} {ry} {tilt} 0 {0 if turn > 0.0 else 1} {end[0]} {end[1]}"  # y points down on the sheet
 
 
-def _place(cell: Cell, point: Sequence[float]) -> str:
-    x, y = cell.on_sheet((point[0], point[1], 0.0))
-    return f"{number(x)} {number(y)}"
+def _point(cell: Cell, point: Vector) -> _Point:
+    x, y = cell.on_sheet(point)
+    return number(x), number(y)
 
 
 def segments(lines: Iterable[tuple[Place, Place]]) -> str:
     """Return straight lines on the sheet as path data."""
-    return "".join(f"M{number(a)} {number(b)}L{number(c)} {number(d)}" for (a, b), (c, d) in lines)
+    ends = (((number(a), number(b)), (number(c), number(d))) for (a, b), (c, d) in lines)
+    return "".join(f"M{start[0]} {start[1]}{_line(start, end)}" for start, end in ends)
 
 
 def circle(centre: Place, radius: float) -> str:

@@ -1,9 +1,13 @@
 """Write the class's page beside the pages of its students."""
 
+from collections.abc import Collection
+from concurrent.futures import Executor
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from urllib.parse import quote
 
+from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.summary import summary_of
@@ -13,11 +17,12 @@ from grader.usecases.report_names import CLASS_PAGE
 from grader.usecases.writing import save
 
 _MAX_ATTENTION = 100  # students who are named
+_MAX_TRIED = 3  # students whose submissions may have changed since they were graded
 
 
-def write_class_page(book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
+def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
     """Write the page into the folder of the students' pages. A submission that is gone has no link."""
-    from grader.report.pages.class_page import render_class_page  # late: only pages need a library of templates
+    from grader.report.pages.class_page import MAX_DRAWINGS, render_class_page  # late: they need a library of templates
 
     with Gradebook(book) as opened:
         grades = Grades(opened, due)
@@ -27,5 +32,26 @@ def write_class_page(book: Path, folder: Path, names: dict[str, str], due: datet
             for grade in grades.all()
             if grade.student.key in names and not grade.is_gone
         }
-        page = render_class_page(summary, grades, links, {})
+        drawings = _drawings(executor, book, summary.fixes[:MAX_DRAWINGS])
+        page = render_class_page(summary, grades, links, drawings)
     save(folder / CLASS_PAGE, without_commands(page))
+
+
+def _drawings(executor: Executor, book: Path, fixes: Collection[CommonFix]) -> dict[str, str]:
+    """Return a picture as SVG of a robot that needs each edit, by the action; none where it can no longer be read."""
+    tasks = {fix.action: executor.submit(_draw, str(book), fix.students[:_MAX_TRIED], fix.criteria) for fix in fixes}
+    found = {}
+    for action, task in tasks.items():
+        with suppress(Exception):  # whatever a robot does to its picture: the page is complete without it
+            found[action] = task.result()
+    return found
+
+
+def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
+    """Return a picture of the first of some students' robots that can be read; empty if there is none."""
+    from grader.report.pages.thumbnail import thumbnail
+
+    with Gradebook(Path(book)) as opened:
+        grades = Grades(opened)
+        drawn = (thumbnail(grades.report(grades.find(key)), criteria) for key in keys)
+        return next(filter(None, drawn), "")

@@ -56,14 +56,11 @@ def write_reports(
     for task in tasks:
         task.result()
     if Format.HTML in formats:
-        write_class_page(book, folder, names, due)
+        write_class_page(executor, book, folder, names, due)
     warn(f"{counted(len(keys), 'report')} written to {printable_path(folder)}")
     if earlier:
-        verb = "is" if len(earlier) == 1 else "are"
-        named = enumerated(earlier, _MAX_NAMED)
-        warn(
-            printable(f"{counted(len(earlier), 'earlier report')} there {verb} of no student in the gradebook: {named}")
-        )
+        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
+        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
 def _write_some(

@@ -44,6 +44,7 @@ class ReviewSession:
         self.queue = tuple(manual_grading_queue(grades, criterion))
         self._given: list[_Given] = []
         self._own: dict[int, int] = {}  # the newest mark of this review, by the position of its item
+        self._comments: dict[str, list[str]] = {}  # of each criterion, in the order of their keys
         self.item: QueuedResult | None = None
         self.start()
 
@@ -159,6 +160,14 @@ class ReviewSession:
         return pictures_of(item.result, submission)
 
     def comments(self) -> list[str]:
-        """Return comments that were given before for the criterion of the current item, the most frequent first."""
+        """Return comments that were given before for the criterion of the current item, the most frequent first.
+
+        A comment keeps its place during the review, because its key is its place.
+        """
         criterion = self.queue[self.position].criterion
-        return reusable_comments(self._grades.book, criterion, MAX_COMMENTS)
+        found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS)
+        before = self._comments.get(criterion, [])
+        new = iter([comment for comment in found if comment not in before])
+        places = [comment if comment in found else next(new, "") for comment in before]
+        self._comments[criterion] = [*filter(None, places), *new]
+        return self._comments[criterion]

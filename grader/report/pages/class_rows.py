@@ -8,7 +8,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.grading.rubric import Criterion
 from grader.report.class_words import VERDICTS, span
-from grader.text import counted, format_points
+from grader.text import counted, enumerated, format_points
 
 _MAX_LOST = 3  # criteria that are named in a row
 
@@ -25,8 +25,7 @@ class StudentRow(NamedTuple):
     pending: str
     late: str
     total: str
-    lost: tuple[str, ...]
-    more: int
+    lost: str
 
 
 class Group(NamedTuple):
@@ -50,7 +49,7 @@ def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, link
     status = grade.why_attention or VERDICTS[grade.verdict]
     about = key, grade.student.name or key, links.get(key, ""), grade.verdict, status
     if not is_graded:
-        return StudentRow(*about, "", "", "", "", (), 0)
+        return StudentRow(*about, "", "", "", "", "")
     maximum = "" if grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
     lost = _costliest(summary, member)
     return StudentRow(
@@ -59,8 +58,7 @@ def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, link
         format_points(grade.pending) if grade.pending else "",
         counted(grade.late.days, "day") if grade.late.days else "",
         format_points(grade.total) if grade.late.points else "",
-        tuple(criterion.id for criterion in lost[:_MAX_LOST]),
-        max(0, len(lost) - _MAX_LOST),
+        enumerated([criterion.id for criterion in lost], _MAX_LOST),
     )
 
 

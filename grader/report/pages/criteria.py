@@ -51,11 +51,11 @@ class Card(NamedTuple):
 
 
 def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
-    """Return a criterion that failed, with what is skipped because of it; feedback that is `shown` already is not repeated."""
+    """Return a criterion that failed, with what is skipped because of it; feedback only where no hint says more, and once."""
     result, skipped = failure
     card = card_of(result, report)
     cost = signed_points(-failure.lost) if failure.lost else "0"
-    feedback = card.details.feedback if card.details.feedback not in shown else ""
+    feedback = "" if card.details.hints or card.details.feedback in shown else card.details.feedback
     shown.add(feedback)
     return card._replace(
         cost=f"{cost} point{'' if failure.lost == 1 else 's'}",

@@ -155,15 +155,21 @@ def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
 
 
 def test_reusable_comments(book: Gradebook) -> None:
-    """Distinct, of this criterion, the most frequent first; those of marks that no longer count are not among them."""
-    session = ReviewSession(Grades(book))
-    assert session.comments() == []
+    """Distinct, of this criterion, the most frequent first; those of marks that no longer count are not among them.
+
+    In a review that goes on, a comment keeps its place.
+    """
+    first, second = ReviewSession(Grades(book)), ReviewSession(Grades(book))
+    assert first.comments() == []
+    theirs(book, "ash", "essay", "1", "one root")
+    assert first.comments() == ["one root"]
     for key, comment in (("ash", "one root"), ("birch", "two roots"), ("cedar", "two roots")):
         theirs(book, key, "essay", "1", comment)
     theirs(book, "ash", "picture", "1", "too small")
-    assert session.comments() == ["two roots", "one root"]
+    assert first.comments() == ["one root", "two roots"]
+    assert second.comments() == ["two roots", "one root"]
     theirs(book, "ash", "essay", None)
-    assert session.comments() == ["two roots"]
+    assert first.comments() == second.comments() == ["two roots"]
     assert reusable_comments(book, "essay", 0) == []
 
 

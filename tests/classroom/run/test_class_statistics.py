@@ -9,6 +9,7 @@ import jsonschema
 import pytest
 
 from tests.classroom.class_runs import grader
+from tests.report.class_pages import ClassPageReader
 from tests.samples import ROOT
 
 URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_text(encoding="utf-8")
@@ -244,3 +245,60 @@ def test_without_a_roster_every_folder_is_graded(tmp_path: Path) -> None:
             "batch", tmp_path / "class", "--gradebook", tmp_path / f"g{len(more)}.db", "--format", "json", *more
         )
         assert len(json.loads(done.stdout)["students"]) == 2
+
+
+# --- The class's page -------------------------------------------------------------------------------------------------
+
+
+def test_the_page_says_what_the_terminal_says(top: Path) -> None:
+    """The same words, the same numbers, and as many students behind each as it says."""
+    done = grader("export", "html", "--gradebook", top / "g.db", "--output", top / "pages")
+    assert (done.returncode, done.stdout) == (0, "")
+    page, found = ClassPageReader(top / "pages/index.html"), data(top)
+    statistics, printed = found["statistics"], text(top)
+    (counts,) = page.texts("//p[@class='counts']")
+    assert counts.startswith(f"{statistics['counts']['graded']} graded {statistics['pending']} need manual grading")
+    paragraphs = page.texts("//section[@id='grades']/p")
+    assert len(paragraphs) == 4
+    assert all(paragraph in printed for paragraph in paragraphs)
+    assert [int(count) for count in page.texts("//span[@class='bar-count']")] == statistics["tenths"]
+    assert [len(page.members(f"grade-{tenth}")) for tenth in range(10)] == statistics["tenths"]
+    rows = {row["criterion"].split()[0]: row for row in page.table("criteria")}
+    assert rows.keys() == {row["id"] for row in statistics["criteria"]}
+    for row in statistics["criteria"]:
+        shown = rows[row["id"]]
+        assert (shown["passed"], shown["carried"]) == (str(row["passed"]), str(row["carried"]))
+        assert shown["of"] == "14"
+        line = f"{row['id']} {row['max_points']:g} {row['passed']} {row['carried']} 14 {shown['share']} {shown['discrimination']}"
+        assert line.removesuffix(" low").strip() in printed
+        assert ("low" in shown["discrimination"]) == ((row["discrimination"] or 1) < 0.2)
+    mistakes = page.texts("//section[@id='mistakes']//li")
+    assert mistakes == [f"{row['count']} {row['criterion']}: {row['message']}" for row in statistics["failures"]]
+    for number, row in enumerate(statistics["failures"]):
+        assert len(page.members(f"mistake-{number}")) == row["count"]
+
+
+def test_the_page_shows_edits_and_identical_work(top: Path) -> None:
+    """Each edit with a picture of a robot that needs it, and each group with links to its pages."""
+    grader("export", "html", "--gradebook", top / "g.db", "--output", top / "pages")
+    page, found = ClassPageReader(top / "pages/index.html"), data(top)
+    stated = grader("stats", "--gradebook", top / "g.db").stdout
+    printed = " ".join(stated.split())
+    assert len(found["fixes"]) > 2
+    assert page.texts("//article/h3") == [
+        f"{fix['count']} student{'s' * (fix['count'] > 1)}: {fix['action']}" for fix in found["fixes"]
+    ]
+    for number, (fix, gain) in enumerate(zip(found["fixes"], page.texts("//article/p"), strict=True)):
+        assert gain in printed
+        assert len(page.members(f"edit-{number}")) == fix["count"]
+    lines = page.texts("//article/pre/*")
+    assert lines
+    assert all(line in printed for line in lines)
+    assert page.members("edit-0") == ["Ash Tree", "Birch Tree", "Cedar Tree"]
+    (lidar,) = page.root.xpath("//article[1]//*[local-name()='svg']")
+    assert [path.get("class") for path in lidar.iter("path")].count("reference") == 1
+    assert page.texts("//section[@id='identical']//li") == [
+        "3 students: Ash Tree ash, Birch Tree birch, Cedar Tree cedar (the same file: ash and cedar)"
+    ]
+    assert page.root.xpath("//section[@id='identical']//a/@href") == ["ash.html", "birch.html", "cedar.html"]
+    assert page.texts("//section[@id='identical']/p")[0] in printed

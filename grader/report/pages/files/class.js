@@ -129,4 +129,5 @@
   });
   addEventListener("hashchange", read);
   read();
+  if (state.has("show")) place.scrollIntoView();
 })();

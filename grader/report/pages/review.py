@@ -1,0 +1,102 @@
+"""The pages of a review in the browser: one item that needs manual grading, the end of the queue, an error."""
+
+from collections.abc import Iterator, Sequence
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+from grader import __version__
+from grader.classroom.gradebook.marks import QueuedResult
+from grader.documents.pictures import NotShown, Picture
+from grader.grading.rubric import Criterion
+from grader.report.pages.shell import render_page
+from grader.report.review import files_text, mark_text, place_text, who
+from grader.text import counted, counted_points, format_points, shell_quoted
+
+_SOURCES = "img-src 'self'; connect-src 'self'"
+_DECIMALS = Decimal("0.0001")
+
+
+class Place(NamedTuple):
+    """The place of an item in the queue, counted from 1, and whether this review has marked it, and anything."""
+
+    number: int
+    total: int
+    is_own: bool
+    can_undo: bool
+
+
+def item_page(
+    item: QueuedResult, place: Place, found: Sequence[Picture | NotShown], comments: Sequence[str], notice: str
+) -> str:
+    """Return the page of an item. Its pictures have the addresses NUMBER/picture/1 and so on."""
+    criterion, outcome = item.result.criterion, item.result.outcome
+    given = item.result.manual_mark
+    answer = outcome.measured if isinstance(outcome.measured, str) else ""
+    values = {
+        "title": f"{place.number} of {place.total}: {who(item.grade.student)}, {criterion.title}",
+        "place": place,
+        "who": who(item.grade.student),
+        "criterion": criterion,
+        "points": counted_points(criterion.points),
+        "maximum": format_points(criterion.points),
+        "score": f"{format_points(item.grade.score)} of {format_points(item.grade.out_of)} points so far",
+        "message": outcome.message,
+        "answer": _lines(answer),
+        "model": _lines(criterion.answer),
+        "places": [*files_text(item), *filter(None, [place_text(item)])],
+        "pictures": [*_pictures(found, place.number)],
+        "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
+        "marked": mark_text(item.mark) if given is not None and item.mark is not None else "",
+        "choices": _choices(criterion),
+        "comments": [" ".join(comment.split()) for comment in comments],
+        "notice": notice,
+    }
+    data = {
+        "shown": item.newest,
+        "points": format_points(given.points) if given is not None else "",
+        "comment": given.comment if given is not None else "",
+        "comments": [*comments],
+    }
+    return _page("review.html", values, data)
+
+
+def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:
+    """Return the page after the last item: how many were marked and are left, and the next command."""
+    values = {
+        "title": "Nothing needs manual grading" if not left else f"{counted(left, 'item')} left",
+        "summary": f"{counted(marked, 'item')} marked in this review.",
+        "left": left,
+        "command": f"grader export csv --gradebook {shell_quoted(gradebook)}",
+        "can_undo": marked > 0,
+        "notice": notice,
+    }
+    return _page("review-end.html", values, {})
+
+
+def error_page(message: str, following: str) -> str:
+    """Return the page of an item that cannot be shown; `following` is the address of the next one."""
+    return _page("review-error.html", {"title": "This cannot be shown", "message": message, "following": following}, {})
+
+
+def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
+    shared = {"version": __version__, **values}
+    return render_page(template, shared, data, "review.css", "review.js", _SOURCES)
+
+
+def _pictures(found: Sequence[Picture | NotShown], number: int) -> Iterator[tuple[str, str, int, int]]:
+    """Yield the address, the words, the width and the height of each picture."""
+    for index, one in enumerate(found, 1):
+        if isinstance(one, Picture):
+            yield f"{number}/picture/{index}", one.words, one.width, one.height
+
+
+def _choices(criterion: Criterion) -> list[tuple[str, str]]:
+    """Return the points that have a button, and the name of each."""
+    half = criterion.points / 2
+    named = {"none": Decimal(0), "half": half, "all": criterion.points}
+    return [(format_points(value), name) for name, value in named.items() if value == value.quantize(_DECIMALS)]
+
+
+def _lines(text: str) -> list[str]:
+    """Return the lines of a text without empty ones at its beginning and end."""
+    return text.strip("\n").splitlines()

@@ -1,0 +1,189 @@
+"""A server for one person on this machine: bound to the loopback address, with a secret in the path of every address.
+
+Whoever does not know the secret learns nothing, and a page of another site can send nothing: the server answers only to its own host
+name, and takes only JSON of its own origin. One thread does all the work, so that nothing is written concurrently.
+"""
+
+import hmac
+import secrets
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from threading import BoundedSemaphore
+from typing import Any, NamedTuple
+
+from grader import __version__
+from grader.errors import InputError
+from grader.text import printable
+
+HOST = "127.0.0.1"
+MAX_BODY = 64 * 1024  # bytes
+MAX_CONNECTIONS = 64
+PATIENCE = 15.0  # seconds in which a client must send or receive something
+TEXT = "text/plain; charset=utf-8"
+_TOKEN_BYTES = 24
+_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "X-Frame-Options": "DENY",
+}
+_SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
+
+
+class Request(NamedTuple):
+    """What is asked for: the parts of the path after the secret, and the body of a POST."""
+
+    path: tuple[str, ...]
+    body: bytes | None = None
+
+
+class Response(NamedTuple):
+    """What is answered. `location` is where a browser goes instead, after the secret."""
+
+    body: bytes
+    media_type: str = TEXT
+    status: HTTPStatus = HTTPStatus.OK
+    location: str | None = None
+    policy: str = _SANDBOX
+
+
+Application = Callable[[Request], Response]
+
+
+class _RefusedError(Exception):
+    """A request that is not answered."""
+
+    def __init__(self, status: HTTPStatus, why: str) -> None:
+        super().__init__(why)
+        self.response = Response(f"{why}\n".encode(), status=status)
+
+
+class LocalServer(ThreadingHTTPServer):
+    """Serves an application until it is interrupted. `url` is the address with its secret; `worker` is the one thread.
+
+    Raises InputError if the port is taken.
+    """
+
+    daemon_threads = True  # a slow client keeps nobody waiting, also not at the end
+    allow_reuse_address = True
+    request_queue_size = MAX_CONNECTIONS
+
+    def __init__(self, application: Application, worker: ThreadPoolExecutor, port: int = 0) -> None:
+        self.application, self.worker = application, worker
+        self.token = secrets.token_urlsafe(_TOKEN_BYTES)
+        self.free = BoundedSemaphore(MAX_CONNECTIONS)
+        try:
+            super().__init__((HOST, port), _Handler)
+        except (OSError, OverflowError) as error:
+            reason = error.strerror if isinstance(error, OSError) else str(error)
+            raise InputError(f"cannot listen on port {port} of {HOST}: {reason}; name another --port") from None
+        self.hosts = tuple(f"{name}:{self.server_port}" for name in (HOST, "localhost"))
+        self.url = f"http://{self.hosts[0]}/{self.token}/"
+
+    def server_bind(self) -> None:
+        """Bind the socket; the name of the machine is not looked up."""
+        self.socket.bind(self.server_address)
+        self.server_address = self.socket.getsockname()
+        self.server_name, self.server_port = HOST, int(self.server_address[1])
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in its own thread, unless there are too many."""
+        if self.free.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve a connection."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self.free.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a connection that broke."""
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: LocalServer
+    protocol_version = "HTTP/1.1"
+    timeout = PATIENCE
+    server_version, sys_version = f"grader/{__version__}", ""
+
+    def do_GET(self) -> None:
+        """Answer a request that changes nothing."""
+        self._serve(has_body=False)
+
+    def do_HEAD(self) -> None:
+        """Answer without the body."""
+        self._serve(has_body=False)
+
+    def do_POST(self) -> None:
+        """Answer a request of our own page."""
+        self._serve(has_body=True)
+
+    def _serve(self, *, has_body: bool) -> None:
+        try:
+            request = Request(self._path(), self._body() if has_body else None)
+        except _RefusedError as error:
+            self.close_connection = True  # a body may be unread
+            self._send(error.response)
+        else:
+            self._send(self._answer(request))
+
+    def _path(self) -> tuple[str, ...]:
+        """Return the path after the secret."""
+        if len(self.headers.get_all("Host", [])) != 1 or self.headers["Host"].lower() not in self.server.hosts:
+            raise _RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "this server has another name")
+        if self.path == "/favicon.ico":  # every browser asks for it
+            raise _RefusedError(HTTPStatus.OK, "")
+        first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
+        if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
+            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")
+        return tuple(rest)
+
+    def _body(self) -> bytes:
+        """Return the body of a request, which must be JSON of our own page."""
+        own = f"http://{self.headers['Host'].lower()}"
+        if self.headers.get("Origin") != own or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin":
+            raise _RefusedError(HTTPStatus.FORBIDDEN, "this is not a request of the page")
+        if self.headers.get_content_type() != "application/json":
+            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "only application/json")
+        length = self.headers.get("Content-Length", "")
+        if "Transfer-Encoding" in self.headers or not (length.isascii() and length.isdigit()):
+            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length is missing")
+        if len(length) > 9 or int(length) > MAX_BODY:
+            raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MAX_BODY} bytes")
+        return self.rfile.read(int(length))
+
+    def _answer(self, request: Request) -> Response:
+        return self.server.worker.submit(self.server.application, request).result()
+
+    def _send(self, response: Response) -> None:
+        self.send_response(response.status)
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        self.send_header("Content-Security-Policy", response.policy)
+        self.send_header("Content-Type", response.media_type)
+        self.send_header("Content-Length", str(len(response.body)))
+        if response.location is not None:
+            self.send_header("Location", f"/{self.server.token}/{response.location}")
+        if self.close_connection:
+            self.send_header("Connection", "close")
+        self.end_headers()
+        if getattr(self, "command", "") != "HEAD":
+            self.wfile.write(response.body)
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """Answer a request that cannot be read, or has another method, in plain text."""
+        del explain
+        self.close_connection = True
+        status = HTTPStatus.METHOD_NOT_ALLOWED if code == HTTPStatus.NOT_IMPLEMENTED else HTTPStatus(code)
+        self._send(_RefusedError(status, printable(message or "this request cannot be read")).response)
+
+    def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002  the name of the base class
+        """Log nothing: addresses contain the secret."""

@@ -1,0 +1,218 @@
+"""Grade what needs manual grading on a page in the browser, one item at a time."""
+
+import json
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.review.session import ReviewSession
+from grader.documents.pictures import NotShown, Picture
+from grader.errors import GraderError, InputError
+from grader.report.pages.review import Place, end_page, error_page, item_page
+from grader.report.review import mark_text
+from grader.usecases import Terminal
+from grader.usecases.local_server import LocalServer, Request, Response
+from grader.usecases.review import NOTHING, summary
+
+_KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
+_PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
+_HTML, _JSON = "text/html; charset=utf-8", "application/json"
+
+
+class ReviewPage:
+    """The application behind the page: shows items of a session by their number, and follows what the page sends."""
+
+    def __init__(self, session: ReviewSession, gradebook: str) -> None:
+        self.session, self._gradebook = session, gradebook
+        self._albums: OrderedDict[int, tuple[Picture | NotShown, ...]] = OrderedDict()
+        self._notice = ""
+
+    def __call__(self, request: Request) -> Response:
+        """Return the answer to a request; an error of the gradebook is a message."""
+        try:
+            return self._posted(request) if request.body is not None else self._page(request.path)
+        except GraderError as error:
+            if request.body is not None:
+                return _json({"error": str(error)})
+            position = self._position(request.path[0])
+            following = str(position + 2) if position is not None and position + 1 < len(self.session.queue) else "end"
+            return _html(error_page(str(error), following), HTTPStatus.SERVICE_UNAVAILABLE)
+
+    def prepare(self) -> None:
+        """Read the pictures of the next item, while the person looks at this one."""
+        here = self.session.position
+        try:
+            self.session.go(here + 1)
+            self._album()
+        except GraderError:  # the page of that item will say it
+            pass
+        finally:
+            self.session.go(here)
+
+    def _page(self, path: tuple[str, ...]) -> Response:
+        match path:
+            case ("",):
+                return Response(b"", status=HTTPStatus.FOUND, location=self._address())
+            case ("end",):
+                return _html(end_page(self.session.marked, self.session.left, self._gradebook, self._said()))
+            case (number,) if (position := self._position(number)) is not None:
+                self.session.go(position)
+                return self._item()
+            case (number, "picture", which) if (position := self._position(number)) is not None:
+                self.session.go(position)
+                return self._picture(which)
+        return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
+
+    def _item(self) -> Response:
+        session = self.session
+        if session.item is None:
+            raise InputError("this criterion is no longer graded for this student")
+        place = Place(session.position + 1, len(session.queue), session.is_own, session.can_undo)
+        return _html(item_page(session.item, place, self._album(), session.comments(), self._said()))
+
+    def _picture(self, which: str) -> Response:
+        found = dict(enumerate(map(_shown, self._album()), 1)).get(int(which) if _is_number(which) else 0)
+        if found is None:
+            return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
+        return Response(found.data, found.kind.media_type)
+
+    def _posted(self, request: Request) -> Response:
+        """Follow what the page sends: next, back, undo, or a mark."""
+        sent = _read(request.body or b"")
+        position = self._position(request.path[0]) if len(request.path) == 1 else None
+        if request.path == ("end",):
+            position = len(self.session.queue)
+        if sent is None or position is None:
+            return _json({"error": "this is not a request of the page"}, HTTPStatus.BAD_REQUEST)
+        self.session.go(position)
+        try:
+            self._follow(sent)
+        except NewerMarkError as error:
+            return _json({"newer": mark_text(error.mark), "shown": error.mark.id})
+        return _json({"go": self._address()})
+
+    def _follow(self, sent: Mapping[str, Any]) -> None:
+        session = self.session
+        match sent["do"]:
+            case "mark":
+                if session.item is None:
+                    raise InputError("this is no longer graded")
+                points = read_points(sent["points"], session.item.result.criterion)
+                if points is None:
+                    raise InputError("points are a number; u undoes a mark")
+                session.mark(points, sent["comment"].strip(), sent["shown"])
+                session.next()
+            case "next":
+                session.next()
+            case "back":
+                if not session.back():
+                    raise InputError("this is the first item")
+            case "undo":
+                if not session.can_undo:
+                    raise InputError("nothing to undo: this review has marked nothing")
+                self._undo()
+
+    def _undo(self) -> None:
+        try:
+            before = self.session.undo()
+        except NewerMarkError as error:
+            self._notice = f"Not undone: somebody has marked this since: {mark_text(error.mark)}"
+        else:
+            self._notice = f"Undone; the mark before it counts again: {mark_text(before)}" if before else "Undone."
+
+    def _album(self) -> tuple[Picture | NotShown, ...]:
+        position = self.session.position
+        if position not in self._albums:
+            self._albums[position] = self.session.pictures()
+        self._albums.move_to_end(position)
+        while len(self._albums) > _KEPT:
+            self._albums.popitem(last=False)
+        return self._albums[position]
+
+    def _address(self) -> str:
+        return str(self.session.position + 1) if self.session.item is not None else "end"
+
+    def _position(self, number: str) -> int | None:
+        inside = _is_number(number) and 1 <= int(number) <= len(self.session.queue)
+        return int(number) - 1 if inside else None
+
+    def _said(self) -> str:
+        """Return what the last action has to say, once."""
+        said, self._notice = self._notice, ""
+        return said
+
+
+def _read(body: bytes) -> dict[str, Any] | None:
+    """Return what the page has sent, or None if it is of another form."""
+    try:
+        sent = json.loads(body)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(sent, dict) or sent.get("do") not in ("mark", "next", "back", "undo"):
+        return None
+    if sent["do"] == "mark":
+        wanted = {"points": str, "comment": str, "shown": int}
+        return sent if all(type(sent.get(name)) is kind for name, kind in wanted.items()) else None
+    return sent
+
+
+def _is_number(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 9
+
+
+def _shown(found: Picture | NotShown) -> Picture | None:
+    return found if isinstance(found, Picture) else None
+
+
+def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> Response:
+    return Response(page.encode("utf-8", "backslashreplace"), _HTML, status, policy=_PAGE_POLICY)
+
+
+def _json(answer: Mapping[str, Any], status: HTTPStatus = HTTPStatus.OK) -> Response:
+    return Response(json.dumps(answer).encode(), _JSON, status)
+
+
+def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, terminal: Terminal) -> str:
+    """Serve a page that grades until it is interrupted, and return a summary. The address is printed. Raises InputError."""
+    with serving(gradebook, criterion, by, port) as (server, page):
+        if server is None:
+            return NOTHING
+        terminal.show(f"{server.url}\n")
+        terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept")
+        with suppress(KeyboardInterrupt):
+            server.serve_forever()
+        return server.worker.submit(lambda: summary(page.session)).result()
+
+
+@contextmanager
+def serving(
+    gradebook: Path, criterion: str = "", by: str = "", port: int = 0
+) -> Iterator[tuple[LocalServer | None, ReviewPage]]:
+    """Yield a server for a review, None if nothing needs manual grading. One thread opens, reads and writes the gradebook."""
+    with ThreadPoolExecutor(1) as worker:
+        book = worker.submit(Gradebook, gradebook).result()
+        try:
+            session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), criterion, by)).result()
+            page = ReviewPage(session, book.shown)
+            if not session.queue:
+                yield None, page
+                return
+
+            def followed(request: Request) -> Response:
+                """Answer a request, and then read the pictures of the item after the one that is shown."""
+                response = page(request)
+                if request.body is None and len(request.path) == 1 and response.status is HTTPStatus.OK:
+                    worker.submit(page.prepare)
+                return response
+
+            with LocalServer(followed, worker, port) as server:
+                yield server, page
+        finally:
+            worker.submit(book.close).result()

@@ -1,0 +1,136 @@
+"""The class's page in a browser: sort, search, show a group, and go to a student's page and back."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.summary import summary_of
+from grader.report.pages.class_page import render_class_page
+from tests.browser.conftest import OpenPage
+from tests.classroom.gradebooks import batch, graded_as, lab, make_class, record_run
+from tests.report.hostile_class import CORPUS, export_hostile_class
+
+pytestmark = pytest.mark.slow
+Open = Callable[..., OpenPage]
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the pages of a small class."""
+    top = tmp_path_factory.mktemp("class")
+    make_class(top)
+    done = batch(top, "--reports", top / "pages", "--report-format", "html")
+    assert done.returncode == 0, done.stderr
+    return top / "pages"
+
+
+def names(opened: OpenPage) -> list[str]:
+    """Return the names that the table of students shows, from the top."""
+    return opened.page.locator("#students tbody tr:not([hidden]) th").all_inner_texts()
+
+
+def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
+    """With the pointer and with keys; the state is in the address, so that "back" restores it."""
+    opened = open_page(pages / "index.html")
+    page = opened.page
+    everybody = ["Anna Ek", "Ben Oh", "Ben Oh", "Cleo Ray", "Dora Fi"]
+    assert names(opened) == everybody
+    score = page.locator("#students th[data-column=score]")
+    score.get_by_role("button").click()
+    assert (names(opened)[0], names(opened)[-1], score.get_attribute("aria-sort")) == (
+        "Cleo Ray",
+        "Dora Fi",
+        "ascending",
+    )
+    score.get_by_role("button").press("Enter")
+    assert (names(opened)[0], names(opened)[-1], score.get_attribute("aria-sort")) == (
+        "Anna Ek",
+        "Dora Fi",
+        "descending",
+    )
+    assert page.locator("#students th[aria-sort]").count() == 1
+    page.keyboard.press("/")
+    page.keyboard.type("BEN")
+    assert names(opened) == ["Ben Oh", "Ben Oh"]
+    assert page.get_by_role("status").inner_text() == "2 of 5 students"
+    page.locator("#find").fill("tall oh")
+    assert names(opened) == ["Ben Oh"]
+    page.keyboard.press("Escape")
+    assert (len(names(opened)), page.locator("#find").input_value()) == (5, "")
+    bar = page.locator("[data-group=grade-5] button")
+    bar.click()
+    assert names(opened) == ["Ben Oh"]
+    assert page.get_by_role("status").inner_text() == "1 of 5 students: a grade of 5.5 to 6.6"
+    assert bar.get_attribute("aria-pressed") == "true"
+    page.locator("[data-group=criterion-1] button").press("Enter")
+    assert page.get_by_role("status").inner_text() == "1 of 5 students: lost points in box"
+    page.go_back()
+    assert page.get_by_role("status").inner_text() == "1 of 5 students: a grade of 5.5 to 6.6"
+    page.locator("#students").get_by_role("link", name="Ben Oh").click()
+    page.wait_for_url("**/emil.html")
+    assert "Ben Oh" not in page.url
+    page.go_back()
+    page.wait_for_url("**/index.html#*")
+    assert names(opened) == ["Ben Oh"]
+    page.get_by_role("button", name="Show all").click()
+    page.locator("[data-group=mistake-0] button").click()
+    assert names(opened) == ["Ben Oh"]
+    assert page.evaluate("document.activeElement.id") == "find"
+    assert all(request.startswith(pages.as_uri()) for request in opened.requests)
+
+
+def test_markup_of_students_stays_text(open_page: Open, tmp_path: Path) -> None:
+    """Whatever students write: nothing runs, nothing is loaded, the console is empty, and a search finds it as text."""
+    folder = export_hostile_class(tmp_path)
+    opened = open_page(folder / "index.html")
+    assert opened.page.title() == "IRP Lab 6: a wheeled base"
+    opened.page.locator("#find").fill(CORPUS[1])
+    assert names(opened)[0] == CORPUS[1]
+    opened.page.locator("[data-group=edit-0] button").click()
+    opened.page.locator("#find").fill("")
+    assert len(names(opened)) > 2
+    opened.page.get_by_role("link", name=CORPUS[0]).first.click()
+    opened.page.wait_for_url("**-*.html")
+    assert opened.page.title() != "run"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_narrow_screens_and_print(open_page: Open, pages: Path, scheme: str) -> None:
+    """No part is wider than the screen, and the table of a print has all rows."""
+    opened = open_page(pages / "index.html", viewport={"width": 360, "height": 700}, color_scheme=scheme)
+    assert opened.page.evaluate("document.documentElement.scrollWidth") == 360
+    opened.page.emulate_media(media="print")
+    assert not opened.page.locator(".tools").is_visible()
+    assert opened.page.locator("#students tbody tr").last.is_visible()
+
+
+def test_without_javascript(browser: object, pages: Path) -> None:
+    """The table is complete and sorted by name, and there is no button that does nothing."""
+    context = browser.new_context(java_script_enabled=False)  # type: ignore[attr-defined]
+    page = context.new_page()
+    page.goto((pages / "index.html").as_uri())
+    assert page.locator("#students tbody tr:visible").count() == 5
+    assert page.locator("button:visible, input:visible").count() == 0
+    context.close()
+
+
+def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
+    """Every row is sorted and searched."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        signs = ("ppppp", "pfspp", "fsspp", "ppp?p")
+        record_run(book, rubric, [graded_as(rubric, f"s{number:04}", signs[number % 4]) for number in range(1000)])
+        grades = Grades(book)
+        page = render_class_page(summary_of(grades, with_fixes=True), grades, {}, {})
+    (tmp_path / "index.html").write_text(page, encoding="utf-8")
+    opened = open_page(tmp_path / "index.html")
+    opened.page.locator("#students th[data-column=score] button").click()
+    assert names(opened)[:3] == ["s0002", "s0006", "s0010"]
+    opened.page.locator("#find").fill("99 loads")
+    assert names(opened) == ["s0990", "s0994", "s0998"]
+    opened.page.locator("[data-group=criterion-0] button").click()
+    opened.page.locator("#find").fill("")
+    assert opened.page.get_by_role("status").inner_text() == "250 of 1000 students: lost points in loads"

@@ -1,0 +1,224 @@
+"""Manual grading in a browser: by keys alone, with hostile submissions, and while somebody else grades as well."""
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from tests.browser.conftest import OpenPage
+from tests.checks.submissions import png
+from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
+from tests.review_server import Review, running
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+pytestmark = pytest.mark.slow
+Open = Callable[..., OpenPage]
+KEYS = ("ash", "birch", "cedar", "dogwood", "elm")
+XSS = (
+    "<script>document.title='run'</script>",
+    "<img src=x onerror=\"document.title='run'\">",
+    "\"><svg onload=document.title='run'>",
+    "'-document.title='run'-'",
+    "</textarea></script><script>document.title='run'</script>",
+    "javascript:document.title='run'",
+    "{{ 7 * 7 }} ${document.title='run'} <!--",
+    "\u202e\x07 <a href=//evil.example>x</a>",
+)
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a class of five, with a picture each; in cedar's zip it is in a folder, and dogwood's is a script."""
+    top = tmp_path_factory.mktemp("review")
+    for key in KEYS:
+        write_submission(top / "class" / key)
+        (top / "class" / key / "screen.png").write_bytes(png(640, 400))
+    (top / "class" / "dogwood" / "screen.png").write_text("<svg xmlns='http://www.w3.org/2000/svg' onload='alert(1)'/>")
+    (top / "class" / "birch" / "screen 2.png").write_bytes(png(300, 200))
+    packed = shutil.make_archive(str(top / "cedar"), "zip", top / "class", "cedar")
+    shutil.rmtree(top / "class" / "cedar")
+    shutil.move(packed, top / "class")
+    return graded_in(top)
+
+
+@pytest.fixture(scope="module")
+def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a class whose names, files and answers are attacks on the page."""
+    top = tmp_path_factory.mktemp("hostile")
+    for key, text in zip(("ash", "birch"), (XSS[:4], XSS[4:]), strict=True):
+        write_submission(top / "class" / key, answer="\n\n".join(text))
+        (top / "class" / key / "screen.png").unlink()
+        for number, line in enumerate(text):
+            (top / "class" / key / f"screen {number} {line.replace('/', '|')}.png").write_bytes(png(30, 20))
+        (top / "class" / key / f"screen 9 {text[0].replace('/', '|')}.png").write_text(text[1])
+    return graded_in(top, f'id,name\nash,"{XSS[1].replace(chr(34), chr(34) * 2)}"\nbirch,{XSS[4]}\n')
+
+
+def graded_in(top: Path, roster: str = "id,name\nash,Ash Ek\n") -> Path:
+    """Grade the class in a folder and return the gradebook."""
+    (top / "roster.csv").write_text(roster)
+    (top / "small.toml").write_text(lab_text())
+    done = batch(top)
+    assert done.returncode == 0, done.stderr
+    return top / "book.db"
+
+
+@pytest.fixture
+def book(graded: Path, tmp_path: Path) -> Path:
+    """Return a copy of the gradebook of the class of five."""
+    return Path(shutil.copy(graded, tmp_path))
+
+
+@pytest.fixture
+def review(book: Path) -> Iterator[Review]:
+    """Yield a review of ten items."""
+    with running(book) as review:
+        yield review
+
+
+def marks(book: Path) -> list[tuple[Any, ...]]:
+    """Return all marks: key, criterion, points, comment."""
+    query = "SELECT key, criterion, points / 10000.0, comment FROM mark JOIN student ON student = student.id"
+    with Gradebook(book) as opened:
+        return list(opened.rows(f"{query} ORDER BY mark.id"))
+
+
+def press(page: "Page", keys: str, then: str = "") -> None:
+    """Press keys one after the other, and wait for the page whose address ends so; a word in quotes is typed."""
+    for key in re.findall(r"'[^']*'|\S+", keys):
+        if key.startswith("'"):
+            page.keyboard.type(key.strip("'"))
+        else:
+            page.keyboard.press(key)
+    if then:
+        page.wait_for_url(f"**/{then}")
+        page.wait_for_selector("html")
+
+
+def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) -> None:
+    """All are in the gradebook: typed points, all, half, none, comments, a comment that was given before, back and undo."""
+    page = open_page(review.url).page
+    press(page, "'3.5' c 'the roots are missing' Enter", "2")
+    press(page, "f Enter", "3")
+    press(page, "h c 'half of it' Enter", "4")
+    press(page, "0 Escape 2 Enter", "5")
+    assert page.locator(".comments button").all_inner_texts() == ["1 the roots are missing", "2 half of it"]
+    press(page, "n", "6")
+    press(page, "b", "5")
+    press(page, "4 Escape 1 Escape 2 Enter", "6")
+    press(page, "1 Enter", "7")
+    press(page, "b", "6")
+    assert "1 point by Kim" in page.locator(".marked").inner_text()
+    press(page, "u", "6")
+    assert page.locator(".marked").count() == 0
+    press(page, "h Enter", "7")
+    for number in (8, 9, 10):
+        press(page, "1 Enter", str(number))
+    press(page, "0 c 'a script' Enter", "end")
+    assert page.locator("h1").inner_text() == "Nothing needs manual grading"
+    assert marks(book) == [
+        ("ash", "essay", 3.5, "the roots are missing"), ("birch", "essay", 4, ""), ("cedar", "essay", 2, "half of it"),
+        ("dogwood", "essay", 0, "half of it"), ("elm", "essay", 4, "the roots are missing half of it"),
+        ("ash", "picture", 1, ""), ("ash", "picture", None, ""), ("ash", "picture", 0.5, ""), ("birch", "picture", 1, ""),
+        ("cedar", "picture", 1, ""), ("dogwood", "picture", 1, ""), ("elm", "picture", 0, "a script"),
+    ]  # fmt: skip
+    press(page, "b", "10")
+    press(page, "u", "10")
+    assert marks(book)[-1] == ("elm", "picture", None, "")
+
+
+def test_pictures(open_page: Open, review: Review) -> None:
+    """Every picture is shown, those in archives as well, and enlarged by a key; a script under the name of a picture is not."""
+    opened = open_page(f"{review.url}7")
+    page = opened.page
+    sizes = "[...document.querySelectorAll('figure img')].map(i => [i.complete, i.naturalWidth, i.naturalHeight])"
+    assert page.evaluate(sizes) == [[True, 300, 200], [True, 640, 400]]
+    press(page, "z")
+    assert page.locator("#large").is_visible()
+    assert page.locator("#large-words").inner_text() == "1 of 2: screen 2.png (300 x 200 pixels)"
+    press(page, "ArrowRight")
+    assert page.locator("#large-words").inner_text() == "2 of 2: screen.png (640 x 400 pixels)"
+    press(page, "z")
+    assert page.locator("#large-picture").bounding_box()["width"] == 640  # type: ignore[index]
+    press(page, "z")
+    assert not page.locator("#large").is_visible()
+    page.goto(f"{review.url}8")
+    assert page.evaluate(sizes) == [[True, 640, 400]]
+    page.goto(f"{review.url}9")
+    assert page.locator("img:visible").count() == 0
+    assert "Not shown: screen.png: its content is SVG" in page.locator(".not-shown").inner_text()
+    assert not [request for request in opened.requests if "/9/picture" in request]
+
+
+def test_hostile_text_stays_text(open_page: Open, hostile: Path) -> None:
+    """Names, file names, answers and comments show what they are; nothing of them runs, loads or changes the page."""
+    with running(hostile) as review:
+        comments = [f"{one}\n{other}" for one, other in zip(XSS[:4], XSS[4:], strict=True)]
+        for number, comment in enumerate(comments, 1):
+            assert "go" in review.mark(str(number), "1", comment)
+        for number, corpus in ((1, XSS[:4]), (2, XSS[4:]), (3, XSS[:4]), (4, XSS[4:])):
+            page = open_page(f"{review.url}{number}").page
+            assert page.title().startswith(f"{number} of 4: ")
+            assert page.locator("script").count() == 2
+            assert page.locator("a:not(.skip), svg, iframe, [onerror], [onload]").count() == 0
+            text = page.locator("body").inner_text()
+            for line in corpus[:3]:
+                assert (line if number < 3 else line.replace("/", "|")) in text
+            assert len(page.locator("figure").all()) == (0 if number < 3 else 4)
+            assert page.locator("#comment").input_value() == comments[number - 1]
+            press(page, "Escape 1 Escape 2")
+            both = comments[:2] if number < 3 else comments[2:]
+            assert all(comment in page.locator("#comment").input_value() for comment in both)
+            assert page.locator(".marked").inner_text().count("document.title") == comments[number - 1].count(
+                "document.title"
+            )
+            assert page.title() != "run"
+
+
+def test_somebody_else_marks_meanwhile(open_page: Open, review: Review, book: Path) -> None:
+    """The page shows the newer mark, and the person keeps or replaces it."""
+    page = open_page(review.url).page
+    for key, name in (("ash", "1"), ("birch", "2")):
+        done = grader("mark", key, "essay", "1", "--by", "Lee", "--comment", "<b>seen</b>", "--gradebook", book)
+        assert done.returncode == 0
+        press(page, "4 Enter")
+        page.wait_for_selector("#newer:visible")
+        assert "1 point by Lee at 20" in page.locator("#newer").inner_text()
+        assert page.locator("#newer-text").inner_text().endswith(": <b>seen</b>")
+        assert page.evaluate("document.activeElement.id") == "keep"
+        press(page, "k" if name == "1" else "r", str(int(name) + 1))
+    assert [row[:3] for row in marks(book)] == [("ash", "essay", 1), ("birch", "essay", 1), ("birch", "essay", 4)]
+
+
+def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, book: Path) -> None:
+    """Invalid points, leaving what is not saved, and a command that has ended."""
+    page = open_page(review.url).page
+    error = page.locator("#error")
+    for typed, why in (("", "points are a number from 0 to 4"), ("9", "essay is worth 0 to 4 points, not 9")):
+        press(page, f"{typed} Enter")
+        page.wait_for_function("why => document.getElementById('error').textContent.includes(why)", arg=why)
+        assert page.evaluate("document.activeElement.id") == "points"
+    press(page, "n")
+    assert error.inner_text() == "Not saved. The same key again leaves without saving (next)."
+    press(page, "n", "2")
+    press(page, "?")
+    assert page.locator("#help").is_visible()
+    press(page, "Escape b", "1")
+    assert marks(book) == []
+
+
+def test_the_page_fits(open_page: Open, review: Review) -> None:
+    """On a laptop, on a small screen and enlarged to 400 %, in both colour schemes, nothing is cut off sideways."""
+    for width, height, scheme in ((1280, 800, "light"), (800, 600, "dark"), (320, 480, "light")):
+        page = open_page(f"{review.url}7", viewport={"width": width, "height": height}, color_scheme=scheme).page
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.locator("#points").is_visible()
+        assert page.evaluate("document.activeElement.id") == "points"
+        unnamed = "[...document.querySelectorAll('input, textarea')].filter(field => !field.labels.length).length"
+        assert page.evaluate(unnamed) == 0

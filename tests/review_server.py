@@ -1,0 +1,79 @@
+"""A review server in this process, for tests of its answers and of its page."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from http.client import HTTPConnection, HTTPResponse
+from pathlib import Path
+from threading import Thread
+from typing import Any, NamedTuple
+
+from grader.usecases.local_server import HOST
+from grader.usecases.review_page import serving
+
+_TIMEOUT = 60.0  # seconds, of a machine that is busy
+
+
+class Answer(NamedTuple):
+    """The answer to a request."""
+
+    status: int
+    body: bytes
+    headers: dict[str, str]
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """The body as JSON."""
+        found: dict[str, Any] = json.loads(self.body)
+        return found
+
+    @property
+    def text(self) -> str:
+        """The body as text."""
+        return self.body.decode()
+
+
+class Review(NamedTuple):
+    """A running review: its address, port and secret."""
+
+    url: str
+    port: int
+    token: str
+
+    def ask(self, method: str, path: str, headers: Mapping[str, str] = {}, body: bytes | None = None) -> Answer:
+        """Send one request, with the path as it is given; an underscore in a header's name is a hyphen."""
+        connection = HTTPConnection(HOST, self.port, timeout=_TIMEOUT)
+        try:
+            given = {name.replace("_", "-"): value for name, value in headers.items()}
+            connection.request(method, path, body, given)
+            answer: HTTPResponse = connection.getresponse()
+            return Answer(answer.status, answer.read(), {name.lower(): value for name, value in answer.headers.items()})
+        finally:
+            connection.close()
+
+    def get(self, path: str = "", **headers: str) -> Answer:
+        """Return the answer to a GET below the secret."""
+        return self.ask("GET", f"/{self.token}/{path}", headers)
+
+    def post(self, path: str, sent: object, **headers: str) -> Answer:
+        """Return the answer to what the page sends."""
+        own = {"Content_Type": "application/json", "Origin": f"http://{HOST}:{self.port}"}
+        return self.ask("POST", f"/{self.token}/{path}", own | headers, json.dumps(sent).encode())
+
+    def mark(self, path: str, points: str, comment: str = "", shown: int = 0) -> dict[str, Any]:
+        """Mark an item and return the answer."""
+        return self.post(path, {"do": "mark", "points": points, "comment": comment, "shown": shown}).json
+
+
+@contextmanager
+def running(gradebook: Path, criterion: str = "", by: str = "Kim") -> Iterator[Review]:
+    """Yield a review that runs in another thread."""
+    with serving(gradebook, criterion, by) as (server, _):
+        assert server is not None
+        thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
+        thread.start()
+        try:
+            yield Review(server.url, server.server_port, server.token)
+        finally:
+            server.shutdown()
+            thread.join()
