@@ -169,6 +169,10 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     assert fresh.pdf()[:5] == b"%PDF-"
     fresh.emulate_media(media="print", color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert (
+        fresh.evaluate("() => getComputedStyle(document.querySelector('.hint')).backgroundColor")
+        == "rgb(218, 251, 225)"
+    )
     assert not fresh.locator("canvas").is_visible()
     assert fresh.locator("details td").first.is_visible()
     fresh.emulate_media(media="screen", color_scheme="light")
