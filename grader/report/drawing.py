@@ -14,11 +14,10 @@ from grader.drawing.picture import Picture
 from grader.drawing.projection import Projection, Stroke, projection
 from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
 from grader.drawing.views import SIDE, View
-from grader.grading.report import Report
-from grader.report.drawing_key import description, put_key, put_legend
+from grader.report.callouts import description
+from grader.report.drawing_key import put_key, put_legend
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.svg_elements import SVG, circle, colour, edge_look, path_data, put
-from grader.submission.urdf import Absent
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
 _RING = 8.0  # pixels
@@ -72,16 +71,6 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
             above.line("leader", circle(cell.place(callout.point), _RING))
     above.put(group)
     return _sized(root, *_THUMBNAIL)
-
-
-def why_no_drawing(report: Report) -> str:
-    """Return why there is no drawing of a report's robot, as a sentence."""
-    submission, originals = report.submission, report.submission.originals
-    if submission.robot is not None and submission.robot.links:
-        return "No picture: no link of the robot has a place."
-    if submission.sha256 is not None and (originals is None or isinstance(originals.urdf, Absent)):
-        return "No picture: the submission has changed or moved since it was graded."
-    return "No picture: no robot could be read from the submission."
 
 
 def empty_element(title: str, words: str, height: float) -> Any:

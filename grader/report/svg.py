@@ -6,8 +6,8 @@ from grader.drawing.picture import Picture, picture_of
 from grader.drawing.scene import scene_of
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
-from grader.report.content import score_text, summary
-from grader.report.drawing import drawing_element, empty_element, why_no_drawing
+from grader.report.content import score_text, summary, why_no_picture
+from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection
 from grader.report.svg_elements import DARK_RULES, SVG, put
 from grader.report.svg_text import LINE, put_lines, wrapped
@@ -19,8 +19,9 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot it says why in a line."""
-    title = f"{report.rubric.title}: {score_text(report)}"
-    return _file(picture_of(report), title, summary(report), why_no_drawing(report))
+    return _file(
+        picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), why_no_picture(report)
+    )
 
 
 def inspection_svg(inspection: Inspection) -> str:

@@ -9,7 +9,6 @@ from grader.drawing.picture import picture_of
 from grader.grading.report import Report
 from grader.report import content
 from grader.report.details import group_status, status_of
-from grader.report.drawing import why_no_drawing
 from grader.report.evidence import evidence
 from grader.report.order import alike, groups, in_order
 from grader.report.pages.criteria import SYMBOLS, Card, card_of, failure_card
@@ -69,8 +68,8 @@ def render_html(report: Report) -> str:
         "next": command,
         "left": "" if command else content.what_is_left(report),
         "robot": robot,
+        "no_picture": "" if picture is not None else content.why_no_picture(report),
         "views": views(picture) if picture is not None else "",
-        "no_views": why_no_drawing(report) if picture is None else "",
         "called": {
             result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
         },
