@@ -123,7 +123,7 @@ class Unsafe:
 
     def source(self, path: str) -> Source | None:
         """Fail as well."""
-        raise MemoryError
+        raise MemoryError(path)
 
 
 def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
