@@ -8,6 +8,7 @@ from grader.grading.report import Report, Result
 from grader.problems import Problem
 from grader.report.details import sentence
 from grader.report.order import failures
+from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
@@ -87,6 +88,17 @@ def pending_points(report: Report) -> str:
 def notes(report: Report) -> list[str]:
     """Return notes on how the submission was read."""
     return [f"Note: {printable(note)}" for note in report.notes]
+
+
+def why_no_picture(report: Report) -> str:
+    """Return why no picture shows the robot of a report that has none."""
+    submission = report.submission
+    urdf = submission.originals.urdf if submission.originals is not None else Absent()
+    if submission.has_urdf and isinstance(urdf, Absent):
+        return "No picture: the submission has changed or moved since it was graded."
+    if submission.robot is None or not submission.robot.links:
+        return "No picture: no robot could be read from the submission."
+    return "No picture: no link of the robot has a place."
 
 
 def first_ignored(report: Report) -> list[str]:

@@ -6,7 +6,7 @@ from grader.drawing.picture import Picture, picture_of
 from grader.drawing.scene import scene_of
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
-from grader.report.content import score_text, summary
+from grader.report.content import score_text, summary, why_no_picture
 from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection
 from grader.report.svg_elements import DARK_RULES, SVG, put
@@ -19,11 +19,9 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot it says why in a line."""
-    submission = report.submission
-    reason = "No picture: no robot could be read from the submission."
-    if submission.has_urdf and submission.robot is not None and submission.robot.links:
-        reason = "No picture: no link of the robot has a place."
-    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), reason)
+    return _file(
+        picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), why_no_picture(report)
+    )
 
 
 def inspection_svg(inspection: Inspection) -> str:

@@ -1,15 +1,19 @@
 """The student's page in a browser: controls move the robot, keys work, failures lead to their link, nothing runs or loads."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from grader.report.formats import Format, InspectFormat
+from grader.grading.report import Report
+from grader.report.formats import Format, render
 from tests.browser.conftest import OpenPage
 from tests.command_line import run
 from tests.report.hostile import HTML, LINKS, XML, write_submission
+from tests.report.reports import hinted, marked
+from tests.report.rewording import recast
 from tests.samples import SAMPLES
 
 pytestmark = pytest.mark.slow
@@ -18,9 +22,9 @@ PIXELS = "() => { viewer.draw(); return viewer.canvas.toDataURL(); }"
 HOSTILE = "".join(("</script><script>document.title='run'</script>", *HTML, *LINKS, *XML)) + "\"onerror='x' javascript:"
 
 
-def write(folder: Path, *arguments: object, name: str = "page.html") -> Path:
+def write(folder: Path, *arguments: object) -> Path:
     """Write what a command prints to a file, and return that."""
-    file = folder / name
+    file = folder / "page.html"
     file.write_bytes(run((*arguments, "--format", "html")).stdout)
     return file
 
@@ -165,6 +169,10 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     assert fresh.pdf()[:5] == b"%PDF-"
     fresh.emulate_media(media="print", color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+    assert (
+        fresh.evaluate("() => getComputedStyle(document.querySelector('.hint')).backgroundColor")
+        == "rgb(218, 251, 225)"
+    )
     assert not fresh.locator("canvas").is_visible()
     assert fresh.locator("details td").first.is_visible()
     fresh.emulate_media(media="screen", color_scheme="light")
@@ -225,11 +233,26 @@ def test_hostile_text_stays_text(open_page: Open, tmp_path: Path, command: str) 
         "frame",
     )
     write_submission(tmp_path / "submission", dict.fromkeys(slots, HOSTILE))
-    kind = {"grade": Format.HTML, "inspect": InspectFormat.HTML}[command]
-    opened = open_page(write(tmp_path, command, tmp_path / "submission", name=f"{kind}.html"))
+    opened = open_page(write(tmp_path, command, tmp_path / "submission"))
     assert (
         "<script>document.title"
         in opened.page.locator("body").inner_text() + opened.page.locator("table").first.inner_text()
     )
+    assert opened.page.title() != "run"
+    assert len(opened.requests) == 1
+
+
+@pytest.mark.parametrize("made", [hinted, marked])
+def test_hostile_report_stays_text(open_page: Open, tmp_path: Path, made: Callable[[], Report]) -> None:
+    """The same in messages, notes, problems, paths, source lines, hints and comments of manual marks."""
+    report = recast(made(), lambda: HOSTILE)
+    results = (
+        result._replace(manual_mark=result.manual_mark and result.manual_mark._replace(by=HOSTILE, comment=HOSTILE))
+        for result in report.results
+    )
+    file = tmp_path / "page.html"
+    file.write_text(render(replace(report, results=tuple(results), notes=(HOSTILE,)), Format.HTML), encoding="utf-8")
+    opened = open_page(file)
+    assert "<script>document.title" in opened.page.locator("main").inner_text()
     assert opened.page.title() != "run"
     assert len(opened.requests) == 1

@@ -14,9 +14,10 @@ def test_output_is_unchanged(case: Golden) -> None:
     assert (done.returncode, done.stderr) == (case.exit_code, b"")
 
 
-def test_output_is_deterministic() -> None:
+@pytest.mark.parametrize("kind", ["json", "html"])
+def test_output_is_deterministic(kind: str) -> None:
     """Hash seeds, time zones and locales change nothing."""
-    arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json")
+    arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", kind)
     one = run_process(arguments, variables={"PYTHONHASHSEED": "1", "TZ": "UTC", "LANG": "C"})
     other = run_process(arguments, variables={"PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo", "LANG": "C.UTF-8"})
     assert one.stdout == other.stdout

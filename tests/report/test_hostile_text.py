@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from grader.cli.app import run
 from grader.grading.grade import grade
 from grader.grading.report import Report
-from grader.report.formats import Format, render
+from grader.report.formats import Format, InspectFormat, render
 from grader.report.locations import Base
 from grader.submission.opening import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
@@ -160,8 +160,9 @@ def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
             _, out, err = cli(command, str(target))
             is_harmless(out)
             is_harmless(err)
-        _, out, err = cli("inspect", str(target), "--format", "json")
-        is_harmless(out)
+        for kind in (InspectFormat.JSON, InspectFormat.HTML):
+            _, out, err = cli("inspect", str(target), "--format", kind)
+            is_harmless(out)
 
 
 @given(TEXT)

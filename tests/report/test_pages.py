@@ -5,15 +5,20 @@ import re
 import subprocess
 import sys
 from base64 import b64encode
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import html
 
+from grader.report.formats import Format, render
 from grader.report.pages.shell import render_page
+from grader.text import without_commands
 from tests.command_line import ROOT
+from tests.samples import SAMPLES
 
+FILES = ROOT / "grader" / "report" / "pages" / "files"
 VALUES = {"version": "1", "title": "A page"}
 
 
@@ -62,3 +67,21 @@ loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe
 assert not loaded, loaded
 """
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
+
+
+@pytest.mark.parametrize("file", sorted(FILES.iterdir()), ids=lambda file: file.name)
+def test_own_files_are_not_changed_for_ci(file: Path) -> None:
+    """No line of a script or style looks like a command of a CI system: a changed one would not match its hash."""
+    text = file.read_text(encoding="utf-8")
+    assert without_commands(text) == text
+
+
+@pytest.mark.parametrize("name", ["several-mistakes", "pictures-only"])
+def test_policy_names_the_scripts_of_the_students_page(name: str) -> None:
+    """The hashes in the policy are those of the scripts and styles as they are printed."""
+    text = render(SAMPLES[name].grade(), Format.HTML)
+    named = re.findall("'sha256-([^']+)'", text.partition('Policy" content="')[2].replace("&#39;", "'"))
+    inline = re.findall("<style>(.*?)</style>|<script>(.*?)</script>", text, re.DOTALL)
+    hashes = [b64encode(hashlib.sha256("".join(pair).encode()).digest()).decode() for pair in inline]
+    assert named == hashes
+    assert len(hashes) > 3

@@ -1,13 +1,25 @@
 """The student's page says what the terminal says with `--verbose`, failures first, and nothing of the submission is markup."""
 
+import sys
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 from lxml import html
 
+from grader.grading.grade import grade
+from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
+from grader.submission.opening import read_submission
 from tests.command_line import run
 from tests.report.reports import hinted, marked
+from tests.samples import LAB6, ROOT, SAMPLES
+
+sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
+from pages import chain
+
+MAX_SIZE = 300_000  # bytes
 
 
 def read(text: str | bytes) -> Any:
@@ -50,3 +62,64 @@ def test_model_answers_need_the_option(answers: tuple[str, ...], count: int) -> 
     """Model answers are on the page with --answers only."""
     page = read(run(("grade", "submissions/reference", "--format", "html", *answers)).stdout)
     assert ("Model answer:" in page.text_content()) == bool(count)
+
+
+def test_page_of_sixty_links_is_small() -> None:
+    """Score, failures, three views and the robot in 3-D with 59 joints that move take less than 300 KB."""
+    page = render(grade(LAB6, read_submission(chain(60).encode(), identity="x", path="x.urdf")), Format.HTML)
+    assert len(page.encode()) < MAX_SIZE
+    assert len(read(page).xpath("//input[@type='range']")) == 59
+
+
+def test_number_of_a_failure_is_that_of_the_picture() -> None:
+    """A failure has the number under which the views call its link out."""
+    page = read(render_html(hinted()))
+    pins = {pin.get("data-show") for pin in page.find_class("pin")}
+    assert pins == {text.text for text in page.xpath("//*[@class='number']//*[text()]")}
+    assert len(pins) == 5
+
+
+def test_page_says_why_it_has_no_picture() -> None:
+    """Nothing was submitted that a picture could show, or it is no longer there."""
+    assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
+    report = SAMPLES["lidar-buried"].grade()
+    gone = replace(report, submission=replace(report.submission, originals=None))
+    assert "has changed or moved since it was graded" in render_html(gone)
+
+
+def test_late_penalty_is_a_note() -> None:
+    """Notes on the whole submission stand below the score."""
+    report = replace(SAMPLES["reference"].grade(), notes=("2 days late: -10 points",))
+    assert [note.text for note in read(render_html(report)).find_class("note")] == ["Note: 2 days late: -10 points"]
+
+
+def inspected(*arguments: object) -> Any:
+    """Return the page of an inspection."""
+    return read(run(("inspect", *arguments, "--format", "html")).stdout)
+
+
+def test_inspection_shows_problems_tree_and_poses() -> None:
+    """A rejected URDF: its verdict, the problem with its line, the tree, and where each link is or why it has no place."""
+    page = inspected(SAMPLES["lidar-without-joint"].path)
+    assert page.xpath("//header//strong")[0].text == "ROS 2 rejects it"
+    assert [mark.text for mark in page.iter("mark")] == ['name="lidar"']
+    assert "caster_wheel  base_caster_wheel_joint: fixed" in page.text_content()
+    rows = {row[0].text_content(): [cell.text for cell in row[1:]] for row in page.iter("tr")}
+    assert rows["base_link"] == ["box 0.6 x 0.4 x 0.2 m", "0 0 0.1", "base_joint (fixed) from base_footprint"]
+    assert rows["lidar"][1] == "no chain of joints leads from 'base_footprint' to 'lidar'"
+
+
+def test_inspection_starts_at_the_given_positions() -> None:
+    """`--joint` sets the sliders; a mimic joint follows and cannot be moved."""
+    page = inspected(SAMPLES["arm-axis-sign"].path, "--joint", "joint_2=0.5")
+    values = {slider.get("value") for slider in page.xpath("//input[@type='range']")}
+    assert values == {"0.0", "28.64789"}
+
+
+def test_inspection_of_what_is_no_robot(tmp_path: Path) -> None:
+    """Text that is no XML has a page with the problem, and no picture."""
+    file = tmp_path / "x.urdf"
+    file.write_text("<robot name='x'><link")
+    page = inspected(file)
+    assert page.find_class("error-card")
+    assert not page.xpath("//canvas")

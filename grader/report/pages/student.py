@@ -68,6 +68,7 @@ def render_html(report: Report) -> str:
         "next": command,
         "left": "" if command else content.what_is_left(report),
         "robot": robot,
+        "no_picture": "" if picture is not None else content.why_no_picture(report),
         "views": views(picture) if picture is not None else "",
         "called": {
             result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
