@@ -13,7 +13,8 @@ from grader.grading.levels import Level
 from grader.report.formats import Format, render
 from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.github import is_github_job, publish_refusal, publish_report
-from grader.usecases.grade import GradeRequest, grade_and_save, read_saves
+from grader.usecases.grade import GradeRequest, grade_and_save
+from grader.usecases.saves import read_saves, saved_pictures
 from grader.usecases.writing import write_stdout
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
@@ -92,7 +93,7 @@ def grade(
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():
             annotate = write_stderr if output_format is not Format.GITHUB else None
-            publish_report(result.report, result.base, annotate, warn)
+            publish_report(result.report, result.base, annotate, warn, [*saved_pictures(saves)])
         elif result.reason:
             warn(result.reason)
     except GraderError as error:

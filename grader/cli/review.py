@@ -21,7 +21,9 @@ def review(
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
     ] = None,
     html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
-    port: Annotated[int, typer.Option(metavar="N", min=0, max=65535, help="The port of the page; default: any.")] = 0,
+    port: Annotated[
+        int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help="The port of the page; default: any.")
+    ] = 0,
 ) -> int:
     """Grade what needs manual grading, one item at a time.
 

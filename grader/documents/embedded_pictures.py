@@ -22,6 +22,7 @@ _PLAIN = {
     "/ASCIIHexDecode",
     "/RunLengthDecode",
 }  # filters without a picture format
+_RELATIONSHIPS = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 _HEADER = struct.Struct(">II")  # before each picture: its number and its length
 _MAX_PICTURES, _MAX_BYTES = 60, 48 * 1024 * 1024  # in one document, and of all of them
 _MAX_PALETTE = 3 * 256
@@ -63,19 +64,25 @@ def _packed(pictures: Iterator[tuple[int, bytes]]) -> bytes:
 
 
 def _in_docx(document: Any, marks: Collection[str]) -> Iterator[tuple[int, bytes]]:
-    """Yield each picture with its number; what Word repeats in a paragraph for older versions only once."""
+    """Yield each picture with its number; what Word repeats in a paragraph for older versions is empty."""
     number = 0
     for block in document.iter_inner_content():
         seen: set[str] = set()
         for element in block._element.iter():  # noqa: SLF001  python-docx has no name for it
             if str(element.tag).rpartition("}")[2] not in marks:
                 continue
-            for name in element.xpath(".//@r:embed | .//*[local-name() = 'imagedata']/@r:id"):
+            for name in filter(None, map(_picture_id, element.iter())):
                 part = document.part.related_parts.get(name)
-                if part is not None and name not in seen:
-                    yield number, part.blob
+                if part is not None:
+                    yield number, b"" if name in seen else part.blob
                 seen.add(name)
             number += 1
+
+
+def _picture_id(element: Any) -> str:
+    """Return the id of the picture that an element of a drawing, or of one for older versions, shows; empty for other elements."""
+    attribute = {"blip": "embed", "imagedata": "id"}.get(str(element.tag).rpartition("}")[2])
+    return str(element.get(f"{{{_RELATIONSHIPS}}}{attribute}", ""))
 
 
 def _in_pdf(pages: Iterable[Any]) -> Iterator[tuple[int, bytes]]:
@@ -128,7 +135,7 @@ def _colour_type(colours: Any) -> int | None:
 def _png(width: int, height: int, kind: int, palette: bytes, samples: bytes) -> bytes:
     """Return samples of 8 bits as a PNG; empty if there are too few."""
     row = width * (3 if kind == _RGB else 1)
-    if len(samples) < row * height:
+    if min(width, height) < 1 or len(samples) < row * height:
         return b""
     lines = b"".join(b"\0" + samples[row * y : row * (y + 1)] for y in range(height))
     header = struct.pack(">IIBBBBB", width, height, 8, kind, 0, 0, 0)

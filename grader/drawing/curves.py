@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import product
-from math import cos, hypot, pi, sin, tau
+from math import atan2, cos, hypot, pi, sin, tau
 from typing import NamedTuple
 
 from grader.drawing.views import VIEWER
@@ -10,6 +10,7 @@ from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, cross, minus, unit
 
+Piece = tuple[float, float]  # shares of the length of a line, or of the angle of an arc
 Extents = tuple[tuple[float, float], ...]  # along x, y and z
 
 _EDGE_ON = 1e-9  # a face whose normal leans less to the viewer is seen from its edge
@@ -91,8 +92,7 @@ def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
     """Return the closed outline of a shape with T_view_shape: curves, each from the end of the one before."""
     match shape:
         case Box(size=size):
-            halves = _columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0))
-            corners = _hull([_corner(pose.translation, halves, signs) for signs in product((-1.0, 1.0), repeat=3)])
+            corners = [*_zonogon(pose.translation, _columns(pose, size))]
             return tuple(Line(a, b) for a, b in zip(corners, (*corners[1:], corners[0]), strict=True))
         case Cylinder(radius=radius, length=length):
             tube = _Tube.of(radius, length, pose)
@@ -168,28 +168,17 @@ def _columns(pose: Transform, sizes: Vector) -> tuple[Vector, Vector, Vector]:
     return (a * x, d * x, g * x), (b * y, e * y, h * y), (c * z, f * z, i * z)
 
 
-def _corner(centre: Vector, halves: tuple[Vector, Vector, Vector], signs: tuple[float, ...]) -> Vector:
-    for half, sign in zip(halves, signs, strict=True):
-        centre = _moved(centre, half, sign)
-    return centre
-
-
-def _hull(points: list[Vector]) -> list[Vector]:
-    """Return the corners of the convex hull in the view, counter-clockwise (Andrew's monotone chain)."""
-    ordered = sorted(points)
-    chains = []
-    for run in (ordered, ordered[::-1]):
-        chain: list[Vector] = []
-        for point in run:
-            while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 1e-15:
-                chain.pop()
-            chain.append(point)
-        chains.append(chain[:-1])
-    return chains[0] + chains[1] or points[:1]
-
-
-def _turn(a: Vector, b: Vector, c: Vector) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+def _zonogon(centre: Vector, sides: tuple[Vector, ...]) -> Iterator[Vector]:
+    """Yield the corners of the outline of a box: its edges one after the other, by their direction, and back."""
+    upward = [side if side[1] > 0.0 or (side[1] == 0.0 and side[0] > 0.0) else _scaled(side, -1.0) for side in sides]
+    upward.sort(key=lambda side: atan2(side[1], side[0]))
+    corner = centre
+    for side in upward:
+        corner = _moved(corner, side, -0.5)
+    for way in (1.0, -1.0):
+        for side in upward:
+            yield corner
+            corner = _moved(corner, side, way)
 
 
 def _moved(point: Vector, along: Vector, share: float) -> Vector:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
-from grader.drawing.covering import Cover
+from grader.drawing.cover import Cover
 from grader.drawing.curves import Curve, Extents, outline
 from grader.drawing.scene import Body
 from grader.robot.separation import separation

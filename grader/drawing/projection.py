@@ -4,14 +4,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import hypot
 from typing import NamedTuple
 
-from grader.drawing.covering import Piece
-from grader.drawing.curves import Curve, Line, edges
+from grader.drawing.covered_arcs import covered_arc
+from grader.drawing.covered_lines import covered_line
+from grader.drawing.curves import Curve, Line, Piece, edges
 from grader.drawing.order import Seen, overlapping, painted
 from grader.drawing.scene import Body, Rgba, Scene
 from grader.drawing.views import View
 
 _TRANSPARENT = 0.05  # a body with less alpha hides nothing
-_SAME = 1e-6  # metres
 _SHORT = 1e-5  # metres: shorter pieces are left out
 
 
@@ -66,7 +66,7 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
     for curve, faces_viewer in edges(seen.body.shape, seen.pose):
         extents = curve.extents()
         near = [other for other in others if other.may_cover(extents)]
-        covered = [(piece, other) for other in near for piece in other.cover.pieces(curve)]
+        covered = [(piece, other) for other in near for piece in _covered(other, curve)]
         if not faces_viewer:
             front = max((other for _, other in covered), key=_front, default=None)
             hidden += _strokes(curve, [(0.0, 1.0)], front.body.rgba if front is not None else own)
@@ -77,6 +77,10 @@ def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidd
             hidden += _strokes(curve, [(start, end)], rgba)
             rest = end
         visible += _strokes(curve, [(rest, 1.0)], own)
+
+
+def _covered(seen: Seen, curve: Curve) -> Iterable[Piece]:
+    return covered_line(seen.cover, curve) if isinstance(curve, Line) else covered_arc(seen.cover, curve)
 
 
 def _front(seen: Seen) -> float:
@@ -100,8 +104,6 @@ def _merged(covered: list[tuple[Piece, Seen]]) -> Iterator[tuple[float, float, R
 def _strokes(curve: Curve, pieces: list[Piece], rgba: Rgba) -> Iterator[Stroke]:
     for start, end in pieces:
         piece = curve.cut(start, end) if (start, end) != (0.0, 1.0) else curve
-        if not isinstance(piece, Line) and hypot(*piece.minor[:2]) <= _SAME:
-            piece = Line(piece.at(0.0), piece.at(1.0))  # an arc that is seen from its edge
         if end > start and _length(piece) > _SHORT:
             yield Stroke(piece, rgba)
 

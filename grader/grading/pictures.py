@@ -19,13 +19,24 @@ _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotShown, ...]:
     """Return the pictures of a criterion that needs manual grading, and the files of which none is shown.
 
-    A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned.
+    A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned,
+    and all files where none is named for the evidence.
     """
-    return tuple(_limited(found for path in files_of(result) for found in _at(path, result, submission)))
+    paths = _files(result) or tuple(proof.file.path for proof in submission.proofs if _is_evidence(result))
+    return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
 
 
-def files_of(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files whose pictures belong to a criterion."""
+def may_have_pictures(result: Result) -> bool:
+    """Return whether pictures of the submission may belong to a criterion."""
+    return bool(_files(result)) or _is_evidence(result)
+
+
+def _is_evidence(result: Result) -> bool:
+    return result.criterion.check.function is evidence_shown
+
+
+def _files(result: Result) -> tuple[str, ...]:
+    """Return the paths of the files that an outcome names."""
     outcome = result.outcome
     if isinstance(outcome.measured, tuple):
         return tuple(map(str, outcome.measured))
@@ -58,7 +69,8 @@ def _in_document(file: File, result: Result, documents: DocumentCollection) -> I
         yield NotShown(file.path, str(error))
         return
     for number, data in found:
-        yield verified(data, document.picture_words(number))
+        if data:  # not shown already
+            yield verified(data, document.picture_words(number))
     if numbers != {number for number, _ in found} or not numbers:
         reason = "it has pictures that cannot be extracted" if numbers else "no picture was found in it"
         yield NotShown(file.path, f"{reason}: open it yourself")
@@ -71,7 +83,7 @@ def _spans(document: Document, result: Result, documents: DocumentCollection) ->
         start = outcome.location.line - 1
         return [(start, start + len(outcome.measured.splitlines()))]
     heads: list[tuple[Document, Heading]] = []
-    if criterion.check.function is evidence_shown:
+    if _is_evidence(result):
         heads = headed(documents, criterion.arguments["names"])
     spans = [(head.start, _last(document, head)) for other, head in heads if other is document]
     return spans or [(0, len(document.lines))]

@@ -15,7 +15,8 @@ from grader.drawing.picture import Picture
 from grader.drawing.projection import Projection, Stroke, projection
 from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
 from grader.drawing.views import SIDE, View
-from grader.report.drawing_key import description, put_key, put_legend
+from grader.report.callouts import description
+from grader.report.drawing_key import put_key, put_legend
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
 

@@ -6,17 +6,16 @@ from typing import Any
 
 from grader.drawing.picture import Callout, Picture
 from grader.drawing.sheet import WIDTH, Place, Sheet
-from grader.report.content import points_of
+from grader.report.callouts import heading
 from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
 from grader.report.svg_elements import circle, put, segments
 from grader.report.svg_text import put_lines
-from grader.text import counted_points, enumerated, printable
+from grader.text import counted_points
 
 _ROW = 18.0
 _SIGN = 34.0  # pixels left of the text of a row
 _LEFT = 14.0
 _INDENT = 26.0
-_NOWHERE = "not in the picture"
 _Draw = Callable[[Signs, Place], None]
 
 
@@ -86,18 +85,3 @@ def put_legend(root: Any, top: float, callouts: Sequence[Callout], notes: Sequen
         y = put_lines(plain, left, y, width, sentence)
     badges.put(root)
     return y + 2.0
-
-
-def heading(callout: Callout) -> str:
-    """Return the link of a callout, the points that its criteria cost, and whether it has no place in the picture."""
-    words = f"{callout.link or 'The robot'}: {points_of(callout.results)} lost"
-    return words if callout.point is not None else f"{words} ({_NOWHERE})"
-
-
-def description(picture: Picture) -> str:
-    """Return in words what a picture calls out and what it does not show."""
-    called = [
-        f"{callout.number}: {heading(callout)}, {enumerated([result.criterion.id for result in callout.results])}."
-        for callout in picture.callouts
-    ]
-    return printable(" ".join((*called, *picture.scene.missing)))

@@ -15,14 +15,15 @@ if TYPE_CHECKING:
     from grader.report.inspection import Inspection
     from grader.report.locations import Base
 
-Need = Literal["", "console", "base", "identity"]
+Need = Literal["", "console", "base", "identity", "picture"]
 
 
 class Format(StrEnum):
     """A format of a report: its name, the ending of its files, `module:function` in this package, and what that needs.
 
     The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base` is where
-    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment.
+    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment; `picture` is the address of
+    the robot's drawing that is saved beside the report.
     """
 
     ending: str
@@ -31,7 +32,7 @@ class Format(StrEnum):
 
     # The endings differ, so that one folder can contain a report in every format under one name.
     TERMINAL = "terminal", "txt", "terminal:render_terminal", "console"
-    MARKDOWN = "markdown", "md", "markdown:render_markdown"
+    MARKDOWN = "markdown", "md", "markdown:render_markdown", "picture"
     JSON = "json", "json", "as_json:render_json"
     JUNIT = "junit", "xml", "junit:render_junit", "base"
     SARIF = "sarif", "sarif", "sarif:render_sarif", "base"
@@ -83,16 +84,17 @@ def render(
     screen: Screen | None = None,
     *,
     verbose: bool = False,
+    picture: str = "",
 ) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
     `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal` shows
-    everything only if `verbose`. Raises InputError if the environment does not say whose result it is (Classroom 50).
+    everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
     function = _function(kind)
     if kind.needs == "console":
         return draw(partial(function, report, verbose=verbose), screen)
-    text: str = function(report, *needed(kind, base))
+    text: str = function(report, *needed(kind, base, picture))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
@@ -110,7 +112,7 @@ def _function(kind: Format | InspectFormat) -> Callable[..., Any]:
     return function
 
 
-def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
+def needed(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     if kind.needs == "base":
         from grader.report.locations import Base
@@ -120,4 +122,6 @@ def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
         from grader.report.classroom50 import identity_from
 
         return (identity_from(os.environ),)
+    if kind.needs == "picture":
+        return (picture,)
     return ()

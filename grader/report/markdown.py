@@ -3,39 +3,42 @@
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
+from grader.report.callouts import drawn
 from grader.report.details import Details, location_text, result_details, status_of
 from grader.report.diff import diff_lines
 from grader.report.evidence import evidence
 from grader.report.markdown_text import code, escaped, fenced, folded
 from grader.report.order import Group, alike, groups, has_passed, in_order
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
-from grader.text import printable
+from grader.text import enumerated, printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
-def render_markdown(report: Report, *, answers: bool = True) -> str:
-    """Return the report, with or without the model answers that its rubric was loaded with."""
-    return "\n".join(f"{block}\n" for block in _blocks(report, answers=answers))
+def render_markdown(report: Report, picture: str = "") -> str:
+    """Return the report. `picture` is the relative address of the robot's drawing, which is shown."""
+    return _joined(_blocks(report, _picture(report, picture), answers=True))
 
 
-def cut_markdown(report: Report, most: int) -> str:
+def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    It is for job summaries, which students read, so it has no model answers.
+    It is for job summaries, which students read, so it has no model answers. GitHub shows no pictures of a job in them: the files of
+    `pictures` are named.
     """
-    text = render_markdown(report, answers=False)
+    named = f"The robot as a picture: {enumerated([code(printable(name)) for name in pictures])}." if pictures else ""
+    text = _joined(_blocks(report, named, answers=False))
     if len(text.encode()) <= most:
         return text
     kept: list[str] = []
     left = most - len(_CUT.encode())
-    for block in _blocks(report, answers=False):
+    for block in _blocks(report, named, answers=False):
         left -= len(block.encode()) + 2
         if left < 0:
             break
@@ -53,9 +56,21 @@ def criterion_markdown(result: Result, report: Report) -> str:
     return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
 
 
-def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
-    """Yield the report block by block, each of which can be the last one."""
+def _joined(blocks: Iterable[str]) -> str:
+    return "\n".join(f"{block}\n" for block in blocks)
+
+
+def _picture(report: Report, address: str) -> str:
+    """Return the image of the robot's drawing with what it shows in words; empty without a robot."""
+    shown = drawn(report) if address else ""
+    return f"![{escaped(shown)}]({address})" if shown else ""
+
+
+def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
+    """Yield the report block by block, each of which can be the last one; `picture` is the one that shows the robot."""
     yield from _head(report)
+    if picture:
+        yield picture
     order, shown = in_order(report), set[str]()
     if order.failures:
         yield "## Failed"

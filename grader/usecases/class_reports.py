@@ -16,6 +16,7 @@ from grader.text import counted, enumerated, format_points, printable, printable
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
 from grader.usecases.report_names import report_names, update_index
+from grader.usecases.saves import address
 from grader.usecases.writing import refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
@@ -72,8 +73,9 @@ def _write_some(
             name = names.get(grade.student.key)
             if name is not None:
                 report = report_of(grades, grade)
+                picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in formats else ""
                 for kind in formats:
-                    save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
+                    save(Path(folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
 
 
 def report_of(grades: Grades, grade: StudentGrade) -> Report:

@@ -1,7 +1,7 @@
 """Annotations and the job summary of GitHub Actions, which `grade` writes without an option."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,8 +23,10 @@ def is_github_job() -> bool:
     return os.environ.get("GITHUB_ACTIONS") == "true"
 
 
-def publish_report(report: "Report", base: "Base", annotate: Annotate | None, warn: Warn) -> None:
-    """Annotate the findings of a report, and add it to the job summary.
+def publish_report(
+    report: "Report", base: "Base", annotate: Annotate | None, warn: Warn, pictures: Sequence[str] = ()
+) -> None:
+    """Annotate the findings of a report, and add it to the job summary, which names the files with pictures.
 
     Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the report.
     """
@@ -33,7 +35,7 @@ def publish_report(report: "Report", base: "Base", annotate: Annotate | None, wa
 
     if annotate is not None:
         annotate(render_github(report, base))
-    _add_to_summary(lambda room: cut_markdown(report, room), warn)
+    _add_to_summary(lambda room: cut_markdown(report, room, pictures), warn)
 
 
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -16,6 +16,7 @@ from grader.text import printable, printable_path, shell_quoted
 from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
+from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from grader.report.locations import Base
 
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
-Saves = tuple[tuple[Format, Path], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,23 +75,6 @@ class GradeResult(NamedTuple):
         if self.exit_code != ExitCode.FAILED or not names or self.report.counts("failed", "skipped"):
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
-
-
-def read_saves(texts: Sequence[str]) -> Saves:
-    """Return the formats and files that `--save` names. Raises GraderError."""
-    saves = tuple(map(_read_save, texts))
-    files = [os.path.realpath(file) for _, file in saves if file.is_file() or not file.exists()]
-    for _, file in saves:
-        if files.count(os.path.realpath(file)) > 1:
-            raise GraderError(f"--save names {file} twice, and one file cannot hold two reports")
-    return saves
-
-
-def _read_save(text: str) -> tuple[Format, Path]:
-    kind, equals, file = text.partition("=")
-    if kind not in list(Format) or not equals or file in ("", "-"):
-        raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
-    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111  the shell expands no ~ after =; this never raises
 
 
 def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
@@ -183,7 +166,9 @@ def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
     _refuse_graded(request, os.path.join(request.path, result.report.submission.path or ""))  # noqa: PTH118  names
     for kind, file in request.saves:
-        save(file, render(result.report, kind, result.base, verbose=request.verbose), (request.path,), modes.get(file))
+        picture = picture_beside(file, request.saves)
+        text = render(result.report, kind, result.base, verbose=request.verbose, picture=picture)
+        save(file, text, (request.path,), modes.get(file))
 
 
 def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":

@@ -161,7 +161,11 @@ class _Handler(BaseHTTPRequestHandler):
         return self.rfile.read(int(length))
 
     def _answer(self, request: Request) -> Response:
-        return self.server.worker.submit(self.server.application, request).result()
+        try:
+            return self.server.worker.submit(self.server.application, request).result()
+        except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
+            message = printable(f"the grader failed on this request: {type(error).__name__}: {error}")
+            return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
     def _send(self, response: Response) -> None:
         self.send_response(response.status)

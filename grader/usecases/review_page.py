@@ -3,7 +3,7 @@
 import json
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page
@@ -21,6 +21,7 @@ from grader.usecases import Terminal
 from grader.usecases.local_server import LocalServer, Request, Response
 from grader.usecases.review import NOTHING, summary
 
+Album = tuple[Picture | NotShown, ...]
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _HTML, _JSON = "text/html; charset=utf-8", "application/json"
@@ -29,9 +30,9 @@ _HTML, _JSON = "text/html; charset=utf-8", "application/json"
 class ReviewPage:
     """The application behind the page: shows items of a session by their number, and follows what the page sends."""
 
-    def __init__(self, session: ReviewSession, gradebook: str) -> None:
-        self.session, self._gradebook = session, gradebook
-        self._albums: OrderedDict[int, tuple[Picture | NotShown, ...]] = OrderedDict()
+    def __init__(self, session: ReviewSession, gradebook: str, reader: ThreadPoolExecutor) -> None:
+        self.session, self._gradebook, self._reader = session, gradebook, reader
+        self._albums: OrderedDict[int, Future[Album]] = OrderedDict()  # by the position of the item
         self._notice = ""
 
     def __call__(self, request: Request) -> Response:
@@ -46,15 +47,12 @@ class ReviewPage:
             return _html(error_page(str(error), following), HTTPStatus.SERVICE_UNAVAILABLE)
 
     def prepare(self) -> None:
-        """Read the pictures of the next item, while the person looks at this one."""
+        """Begin to read the pictures of the next item, while the person looks at this one."""
         here = self.session.position
-        try:
+        with suppress(GraderError):  # the page of that item will say it
             self.session.go(here + 1)
             self._album()
-        except GraderError:  # the page of that item will say it
-            pass
-        finally:
-            self.session.go(here)
+        self.session.go(here)
 
     def _page(self, path: tuple[str, ...]) -> Response:
         match path:
@@ -75,10 +73,10 @@ class ReviewPage:
         if session.item is None:
             raise InputError("this criterion is no longer graded for this student")
         place = Place(session.position + 1, len(session.queue), session.is_own, session.can_undo)
-        return _html(item_page(session.item, place, self._album(), session.comments(), self._said()))
+        return _html(item_page(session.item, place, self._album().result(), session.comments(), self._said()))
 
     def _picture(self, which: str) -> Response:
-        found = dict(enumerate(map(_shown, self._album()), 1)).get(int(which) if _is_number(which) else 0)
+        found = dict(enumerate(map(_shown, self._album().result()), 1)).get(int(which) if _is_number(which) else 0)
         if found is None:
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
         return Response(found.data, found.kind.media_type)
@@ -127,13 +125,13 @@ class ReviewPage:
         else:
             self._notice = f"Undone; the mark before it counts again: {mark_text(before)}" if before else "Undone."
 
-    def _album(self) -> tuple[Picture | NotShown, ...]:
-        position = self.session.position
-        if position not in self._albums:
-            self._albums[position] = self.session.pictures()
-        self._albums.move_to_end(position)
+    def _album(self) -> "Future[Album]":
+        """Return the pictures of the current item, which may still be read: in another thread, so that marks need not wait."""
+        session, position = self.session, self.session.position
+        if position not in self._albums and session.item is not None:
+            self._albums[position] = self._reader.submit(item_pictures, session.item, session.rubric)
         while len(self._albums) > _KEPT:
-            self._albums.popitem(last=False)
+            self._albums.popitem(last=False)[1].cancel()
         return self._albums[position]
 
     def _address(self) -> str:
@@ -195,12 +193,12 @@ def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, termi
 def serving(
     gradebook: Path, criterion: str = "", by: str = "", port: int = 0
 ) -> Iterator[tuple[LocalServer | None, ReviewPage]]:
-    """Yield a server for a review, None if nothing needs manual grading. One thread opens, reads and writes the gradebook."""
-    with ThreadPoolExecutor(1) as worker:
+    """Yield a server for a review, None if nothing needs manual grading. One thread opens, reads and writes the gradebook; another one reads pictures."""
+    with ThreadPoolExecutor(1) as worker, ThreadPoolExecutor(1) as reader:
         book = worker.submit(Gradebook, gradebook).result()
         try:
             session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), criterion, by)).result()
-            page = ReviewPage(session, book.shown)
+            page = ReviewPage(session, book.shown, reader)
             if not session.queue:
                 yield None, page
                 return

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.marks import QueuedCriterion, QueuedResult
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.report.review import who
@@ -35,7 +35,8 @@ def write_pictures(
         if item is None:
             continue
         start = folder / folders[queued.criterion] / names[queued.key]
-        lines[queued] = [_written(found, start, number, item) for number, found in enumerate(session.pictures(), 1)]
+        found = item_pictures(item, session.rubric)
+        lines[queued] = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
         for line in lines[queued]:
             show(f"{who(item.grade.student)}, {printable(queued.criterion)}: {line}\n")
     session.start()

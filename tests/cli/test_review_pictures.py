@@ -1,12 +1,19 @@
 """grader review --pictures: which files are written, for whom, and what they never overwrite."""
 
+import shutil
 import subprocess
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from grader.classroom.gradebook.student_grade import SubmissionFiles, SubmissionSources
+from grader.classroom.intake.fingerprint import fingerprint
+from grader.files.reading import URDF_LIMIT
+from grader.submission.urdf import Read
 from tests.checks.submissions import gif
-from tests.classroom.gradebooks import PNG, batch, grader, lab_text, refusal, write_submission
+from tests.classroom.gradebooks import PNG, batch, grader, lab, lab_text, refusal, urdf, write_submission
 
 SVG = b"<svg xmlns='http://www.w3.org/2000/svg' onload='alert(1)'/>"
 
@@ -75,6 +82,27 @@ def test_a_submission_that_has_changed_shows_no_picture(top: Path) -> None:
     why = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
     assert f"Ash Ek (ash), picture: pictures: {why}\n" in done.stdout
     assert "picture/ash.1.png" not in files(top)
+
+
+def test_a_copy_with_the_same_content_is_no_change(top: Path) -> None:
+    """The contents count, not the times of the files."""
+    (top / "class").rename(top / "moved")
+    shutil.copytree(top / "moved", top / "class", copy_function=shutil.copyfile)
+    review(top)
+    assert len(files(top)) == 3
+
+
+def test_another_limit_of_a_urdf_is_no_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A submission that was graded with --max-size is opened with the same limit, of which its fingerprint has a note."""
+    write_submission(tmp_path / "ash")
+    (tmp_path / "ash" / "robot.urdf").write_text(urdf() + " " * 2_000_000)
+    later = time.time_ns() + 10**9  # files that were just written have no fingerprint
+    monkeypatch.setattr("grader.classroom.gradebook.student_grade.time", SimpleNamespace(time_ns=lambda: later))
+    for limit, is_read in ((3_000_000, True), (URDF_LIMIT, False)):
+        stamp = fingerprint(str(tmp_path), ("ash",), later, limit)
+        sources = SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", stamp), lab())
+        assert isinstance(sources.urdf, Read) == is_read
+    assert SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", f"{stamp}1"), lab()).submission is None
 
 
 def test_a_symlink_is_not_followed(top: Path) -> None:

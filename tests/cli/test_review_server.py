@@ -7,13 +7,17 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Event
 from typing import Any
 from urllib.request import urlopen
 
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.marks import QueuedResult
+from grader.grading.rubric import Rubric
 from grader.usecases import local_server
 from grader.usecases.local_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import ENVIRONMENT, PNG, grader, refusal
@@ -116,6 +120,35 @@ def test_comments_given_before(review: Review) -> None:
     review.mark("1", "3", "two <b>roots</b>")
     assert "<kbd>1</kbd> two &lt;b&gt;roots&lt;/b&gt;" in review.get("2").text
     assert "two" not in review.get("4").text
+
+
+def test_marks_at_once(review: Review, book: Path) -> None:
+    """Requests that arrive together are followed one after the other."""
+    with ThreadPoolExecutor(ITEMS) as pool:
+        answers = list(pool.map(lambda number: review.mark(str(number), "1"), range(1, ITEMS + 1)))
+    assert [list(answer) for answer in answers] == [["go"]] * ITEMS
+    assert len(marks(book)) == ITEMS
+
+
+def test_pictures_that_take_long_do_not_delay_marks(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of the next item are read in another thread, before its page is asked for."""
+    read, started = Event(), Event()
+
+    def slow(item: QueuedResult, rubric: Rubric) -> tuple[()]:
+        if item.grade.student.key != "anna":
+            started.set()
+            assert read.wait(HANG_TIMEOUT)
+        return ()
+
+    monkeypatch.setattr("grader.usecases.review_page.item_pictures", slow)
+    with running(book, "picture") as review:
+        try:
+            assert review.get("1").status == 200
+            assert started.wait(HANG_TIMEOUT)
+            assert review.mark("1", "1") == {"go": "2"}
+        finally:
+            read.set()
+        assert review.get("2").status == 200
 
 
 def test_the_end(review: Review, book: Path) -> None:
@@ -252,6 +285,16 @@ def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monk
         found = review.get("2")
         assert (found.status, "disk I/O error" in found.text, 'href="3"' in found.text) == (503, True, True)
         assert 'href="end"' in review.get(str(ITEMS)).text
+
+
+def test_a_fault_of_the_grader_is_one_line(review: Review, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a traceback, and the review goes on."""
+    with monkeypatch.context() as patched:
+        patched.setattr("grader.usecases.review_page.item_page", lambda *_: 1 / 0)
+        found = review.get("1")
+    assert (found.status, found.headers["content-type"]) == (500, "text/plain; charset=utf-8")
+    assert found.text == "the grader failed on this request: ZeroDivisionError: division by zero\n"
+    assert review.get("1").status == 200
 
 
 def locked_page(*_: object) -> str:

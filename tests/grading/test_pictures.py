@@ -3,6 +3,7 @@
 import io
 import zlib
 from decimal import Decimal
+from typing import Any
 
 import pytest
 
@@ -10,9 +11,10 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
 from grader.documents.pictures import Picture
-from grader.grading.pictures import pictures_of
+from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion
+from grader.source import Location
 from tests.checks.submissions import Submitted, gif, png
 
 STEP_8, STEP_18 = png(8, 8), png(18, 18)
@@ -107,6 +109,36 @@ def test_pictures_below_a_heading_of_a_word_file() -> None:
     ]
 
 
+def test_pictures_for_older_versions_of_word() -> None:
+    """What Word repeats in an older form is shown once; a picture in the older form only is shown, too."""
+    report = pytest.importorskip("docx").Document()
+    run = report.add_paragraph().add_run()
+    run.add_picture(io.BytesIO(STEP_8))
+    other, _ = report.part.get_or_add_image(io.BytesIO(STEP_18))
+    (same,) = [name for name, part in report.part.related_parts.items() if getattr(part, "blob", b"") == STEP_8]
+    both = ["picture 1 in lab.docx (8 x 8 pixels)", "picture 3 in lab.docx (18 x 18 pixels)"]
+    missing = "lab.docx: it has pictures that cannot be extracted: open it yourself"
+    for names, expected in (((same, other), both), (("rId99",), [*both, missing])):
+        for name in names:
+            run._r.append(pict(name))
+        data = io.BytesIO()
+        report.save(data)
+        assert shown({"lab.docx": data.getvalue()}, ["webcam"]) == expected
+
+
+def pict(name: str) -> Any:
+    """Return a picture in the form of older versions of Word."""
+    from lxml.etree import fromstring
+
+    spaces = {
+        "w": "http://schemas.openxmlformats.org/wordprocessingml/2006/main",
+        "v": "urn:schemas-microsoft-com:vml",
+        "r": "http://schemas.openxmlformats.org/officeDocument/2006/relationships",
+    }
+    declared = " ".join(f'xmlns:{prefix}="{space}"' for prefix, space in spaces.items())
+    return fromstring(f'<w:pict {declared}><v:shape><v:imagedata r:id="{name}"/></v:shape></w:pict>')
+
+
 def test_pictures_in_an_answer() -> None:
     """A written answer with a screenshot shows it."""
     report = word("# Step 15", "It vanishes:", STEP_8, "# Step 18", STEP_18)
@@ -130,6 +162,9 @@ def test_pictures_of_a_pdf() -> None:
         image(1, zlib.compress(b"abcd"), "/DeviceCMYK"),
         image(9, zlib.compress(b"abc"), "/DeviceRGB"),
         image(1, b"x", "/DeviceRGB", "/Filter/JPXDecode"),
+        image(0, b"", "/DeviceRGB", ""),
+        image(-1, b"", "/DeviceRGB", ""),
+        image(10**9, b"", "/DeviceRGB", ""),
     ]
     found = shown({"lab.pdf": pages(*kinds.values(), *unknown)}, ["webcam"])
     assert found == [*kinds, "lab.pdf: it has pictures that cannot be extracted: open it yourself"]
@@ -163,10 +198,19 @@ def test_limits_of_one_criterion() -> None:
     assert found[-1] == "more pictures: only the first 40 are shown: open the others yourself"
 
 
-def test_other_criteria_have_none() -> None:
-    """A file that is gone is named; an outcome without files has no pictures."""
+def test_without_a_name_all_pictures_are_shown() -> None:
+    """Where no file is named for the evidence, the person sees all pictures; for another criterion none."""
+    submission = Submitted({"a.png": STEP_8, "b.gif": gif(3, 4), "answers.md": b"# Step 1\n\nNo.\n"}).submission
+    assert shown({"a.png": STEP_8, "b.gif": gif(3, 4)}, ["webcam"]) == ["a.png (8 x 8 pixels)", "b.gif (3 x 4 pixels)"]
+    criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[answered], {})
+    result = Result(criterion, Outcome("pending", "?", "No.", location=Location("answers.md", 1, 1)))
+    assert not may_have_pictures(result)
+    assert pictures_of(result, submission) == ()
+
+
+def test_a_file_that_is_gone_is_named() -> None:
+    """As after a new run that found another file."""
     submission = Submitted({"a.png": STEP_8}).submission
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["a"]})
-    assert pictures_of(Result(criterion, Outcome("pending", "?")), submission) == ()
     (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
     assert str(found) == "b.png: it is no longer in the submission"

@@ -29,7 +29,18 @@ _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt
 _COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted")
-_OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")
+_OTHERS = (
+    "deadline",
+    "extension",
+    "days_late",
+    "is_on_roster",
+    "is_gone",
+    "is_late",
+    "files",
+    "source",
+    "fingerprint",
+    "digest",
+)
 _COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
 _QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
@@ -166,7 +177,7 @@ class Grades:
         times = SubmissionTimes(is_late, texts["submitted"], values["deadline"], extension, values["days_late"])
         paths, names, attempt, earlier = json.loads(values["files"])
         is_outdated = bool(rubric) and rubric != self._newest_sha256
-        key, fingerprint = values["key"], values["fingerprint"] or ""
+        fingerprint, digest = values["fingerprint"] or "", values["digest"] or ""
         return StudentGrade(
             **{**counts, **points, **texts, "faults": counts["faults"] or 0},
             student=Student(*(values[name] for name in STUDENT_COLUMNS)),
@@ -177,7 +188,9 @@ class Grades:
             has_other_parts=bool(rubric)
             and not is_outdated
             and self._parts_of(rubric, texts["statuses"]) != self.parts,
-            files=SubmissionFiles(values["source"] or "", tuple(paths), tuple(names), key, fingerprint),
+            files=SubmissionFiles(
+                values["source"] or "", tuple(paths), tuple(names), values["key"], fingerprint, digest
+            ),
             attempt=attempt,
             earlier=tuple(earlier),
             late=lateness(self.rubric(rubric), times, points["score"], self._deadline) if rubric else Lateness(),

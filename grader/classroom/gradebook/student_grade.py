@@ -11,6 +11,7 @@ from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.source import Source
 from grader.submission.submission import Submission
@@ -19,13 +20,17 @@ from grader.text import counted, counted_points
 
 
 class SubmissionFiles(NamedTuple):
-    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint of the files."""
+    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint and digest of the files.
+
+    The fingerprint is empty for files that were written just before, and changes if they are copied; the digest is that of their contents.
+    """
 
     root: str
     paths: tuple[str, ...]
     names: tuple[str, ...]
     key: str
     fingerprint: str
+    digest: str = ""
 
 
 class SubmissionSources:
@@ -46,11 +51,13 @@ class SubmissionSources:
     @cached_property
     def submission(self) -> Submission | None:
         """The submission; None if it cannot be read or has changed since it was graded."""
-        root, paths, names, key, stored = self._files
-        if not stored or fingerprint(root, paths, time.time_ns()) != stored:
-            return None
+        root, paths, names, key, stored, digest = self._files
+        found = fingerprint(root, paths, time.time_ns())
+        limit = stored.removeprefix(found).removeprefix(" ")  # of a URDF, if it is not the default
+        is_unchanged = found != "" and stored in (found, f"{found} {limit}")
         try:
-            return open_submission(root, paths, names, key).submission(self._rubric)
+            opened = open_submission(root, paths, names, key, int(limit) if is_unchanged and limit else URDF_LIMIT)
+            return opened.submission(self._rubric) if is_unchanged or opened.digest == digest else None
         except InputError:
             return None
 

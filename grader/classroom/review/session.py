@@ -12,12 +12,14 @@ from grader.classroom.gradebook.marks import (
     criterion_of,
     manual_grading_queue,
     mark,
+    newest_mark,
     queued_result,
     reusable_comments,
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
-from grader.grading.pictures import files_of, pictures_of
+from grader.grading.pictures import may_have_pictures, pictures_of
+from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
 _CHANGED = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
@@ -100,7 +102,7 @@ class ReviewSession:
         return self.item is not None and (self.item.result.is_open or self.is_own)
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
-        """Mark the current item. The mark that it has already, if it is this one, is not repeated.
+        """Mark the current item, unless it already has this mark.
 
         `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
         one, and InputError.
@@ -108,11 +110,11 @@ class ReviewSession:
         item = self.item
         assert item is not None
         shown = item.newest if shown is None else shown
-        same = item.mark is not None and (item.mark.points, item.mark.comment) == (points, comment)
-        if same and self._own.get(self.position) == shown:
+        book, criterion = self._grades.book, item.result.criterion
+        newest = newest_mark(book, item.grade.id, criterion.id)
+        if newest is not None and (newest.id, newest.points, newest.comment) == (shown, points, comment):
             return
-        criterion = item.result.criterion
-        added = mark(self._grades.book, item.grade, criterion, points, self._by, comment, shown=shown)
+        added = mark(book, item.grade, criterion, points, self._by, comment, shown=shown)
         self._given.append(_Given(self.position, added.before))
         self._own[self.position] = added.id
 
@@ -149,15 +151,11 @@ class ReviewSession:
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
 
-    def pictures(self) -> tuple[Picture | NotShown, ...]:
-        """Return the pictures of the current item, and what is not shown. The submission is opened again, and must be unchanged."""
-        item = self.item
-        if item is None or not files_of(item.result):
-            return ()
-        submission = SubmissionSources(item.grade.files, self._grades.rubric(item.grade.rubric)).submission
-        if submission is None:
-            return (NotShown("pictures", _CHANGED),)
-        return pictures_of(item.result, submission)
+    @property
+    def rubric(self) -> Rubric:
+        """The rubric that the current item was graded with."""
+        assert self.item is not None
+        return self._grades.rubric(self.item.grade.rubric)
 
     def comments(self) -> list[str]:
         """Return comments that were given before for the criterion of the current item, the most frequent first.
@@ -171,3 +169,11 @@ class ReviewSession:
         places = [comment if comment in found else next(new, "") for comment in before]
         self._comments[criterion] = [*filter(None, places), *new]
         return self._comments[criterion]
+
+
+def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
+    """Return the pictures of an item, and what is not shown. The submission is opened again, and must be unchanged."""
+    if not may_have_pictures(item.result):
+        return ()
+    submission = SubmissionSources(item.grade.files, rubric).submission
+    return (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)

@@ -93,8 +93,8 @@ def _pictures(found: Sequence[Picture | NotShown], number: int) -> Iterator[tupl
 def _choices(criterion: Criterion) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
     half = criterion.points / 2
-    named = {"none": Decimal(0), "half": half, "all": criterion.points}
-    return [(format_points(value), name) for name, value in named.items() if value == value.quantize(_DECIMALS)]
+    named = {Decimal(0): "none", half: "half", criterion.points: "all"}
+    return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
 
 
 def _lines(text: str) -> list[str]:

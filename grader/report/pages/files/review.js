@@ -23,7 +23,7 @@
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
       if (answer.go) {
-        location.replace(answer.go);
+        location.assign(answer.go);
         return;
       }
       if (answer.newer) askToKeep(answer);
@@ -84,7 +84,7 @@
   const choices = [...document.querySelectorAll("[data-points]")];
   const keys = {
     n: () => send("next"), s: () => send("next"), b: () => send("back"), u: () => send("undo"), z: zoom,
-    f: () => setPoints(choices.at(-1)), h: () => setPoints(choices.find((button) => button.ariaLabel.startsWith("half"))),
+    f: () => setPoints(choices.at(-1)), h: () => setPoints(choices.find((button) => button.dataset.name === "half")),
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
@@ -92,7 +92,8 @@
 
   function onKey(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.isComposing) return;
-    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const isOther = event.key.length === 1 && event.key > "~" && event.code.startsWith("Key");  // a layout without Latin letters
+    const key = isOther ? event.code.slice(3).toLowerCase() : event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (help?.open) {
       if (key === "?") { event.preventDefault(); help.close(); }
       return;
