@@ -163,12 +163,41 @@ def memory(bench: Bench) -> None:
         print(f"  {size:>7} submissions  {peak / 2**20:8.1f} MiB  {peak / base:6.2f} x")
 
 
+def pages(bench: Bench) -> None:
+    """Compare the pages of a class with its first run, as whole processes, and measure the sizes of the pages.
+
+    Hints are searched before, because `stats` and other reports search the same ones.
+    """
+    size = bench.usual
+    book, folder = bench.top / "pages.db", bench.top / "pages"
+    export = [sys.executable, "-m", "grader", "export", "html", "--gradebook", str(book), "--output", str(folder)]
+    for command in (_command(bench, size, book), export):
+        subprocess.run(command, capture_output=True, check=True)
+
+    def batch() -> float:
+        with tempfile.TemporaryDirectory(dir=bench.top) as top:
+            return once(
+                lambda: subprocess.run(_command(bench, size, Path(top, "g.db")), capture_output=True, check=True)
+            )
+
+    def pages() -> float:
+        return once(lambda: subprocess.run(export, capture_output=True, check=True))
+
+    times = in_turn({"batch": batch, "export html": pages}, bench.runs)
+    print(f"\n`grader export html` against `grader batch`, {size} submissions, {processors()} processors")
+    _ratios({name: [value / size for value in values] for name, values in times.items()}, "batch")
+    index = (folder / "index.html").stat().st_size
+    others = [path.stat().st_size for path in folder.glob("*.html") if path.name != "index.html"]
+    print(f"  the class's page {index / 1000:.0f} kB, a student's page {statistics.median(others) / 1000:.0f} kB")
+
+
 FIGURES: dict[str, Callable[[Bench], None]] = {
     "speed": speed,
     "parallel": parallel,
     "check_urdf": against_check_urdf,
     "again": again,
     "memory": memory,
+    "pages": pages,
 }
 
 

@@ -62,16 +62,18 @@ class Labels:
 
         It overlaps no other label; of the free places it has the nearest one at which it and its leader line cover fewest signs.
         """
-        best = min(
-            (found for found in self._candidates(place, size) if found[0] < 1e6),
-            default=None,
-            key=lambda found: found[0],
-        )
-        centre = best[1] if best is not None else place
-        self._taken.append(Rectangle.around([centre], size / 2.0))
-        return centre
+        best, lowest = place, 1e6
+        for ring, centre, box in self._free(place, size):
+            if ring >= lowest:  # nothing farther away costs less
+                break
+            cost = ring + self._cost(place, centre, box)
+            if cost < lowest:
+                best, lowest = centre, cost
+        self._taken.append(Rectangle.around([best], size / 2.0))
+        return best
 
-    def _candidates(self, place: Place, size: float) -> Iterator[tuple[float, Place]]:
+    def _free(self, place: Place, size: float) -> Iterator[tuple[float, Place, Rectangle]]:
+        """Yield the free places around a place, the nearest first, with their distance and the label's rectangle."""
         for ring in _RINGS:
             for number in range(_DIRECTIONS):
                 angle = tau * (number + 2) / _DIRECTIONS  # up and to the right first
@@ -79,7 +81,7 @@ class Labels:
                 box = Rectangle.around([centre], size / 2.0 + 1.0)
                 if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
                     continue
-                yield ring + self._cost(place, centre, box), centre
+                yield ring, centre, box
 
     def _cost(self, place: Place, centre: Place, box: Rectangle) -> float:
         covered = sum(30.0 for mark in self._marks if box.overlaps(mark))

@@ -3,7 +3,6 @@
 The element needs no style sheet, script or other file. A page that has it inside adds `DARK_RULES` for dark mode.
 """
 
-from dataclasses import replace
 from itertools import groupby
 from statistics import median
 from typing import Any
@@ -49,14 +48,14 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view, where the reference differs, and the way the wheels drive."""
+    """Return a small picture of a robot: one view, where shapes and frames of the reference differ, and the way the wheels drive."""
     root = _root(f"The robot in the {view.title} view", description(picture))
     cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
-    labels, below, above, group = Labels(cell), Signs(), Signs(), put(root, "g")
-    add_ground(below, cell, picture, labels)
-    below.put(group)
+    labels, above, group = Labels(cell), Signs(), put(root, "g")
     _put_bodies(group, cell, projection(picture.scene, view))
-    add_outlines(above, cell, replace(picture, frames=()), labels)
+    add_ground(above, cell, picture, labels)
+    add_outlines(above, cell, picture, labels)
+    add_frames(above, cell, picture, labels, [link for link in picture.frames if link in picture.scene.poses])
     add_wheels(above, cell, picture, labels)
     above.put(group)
     return _sized(root, *_THUMBNAIL)

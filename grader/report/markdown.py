@@ -8,7 +8,6 @@ from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.callouts import drawn
 from grader.report.details import Details, location_text, result_details, status_of
 from grader.report.diff import diff_lines
 from grader.report.evidence import evidence
@@ -62,7 +61,11 @@ def _joined(blocks: Iterable[str]) -> str:
 
 def _picture(report: Report, address: str) -> str:
     """Return the image of the robot's drawing with what it shows in words; empty without a robot."""
-    shown = drawn(report) if address else ""
+    if not address:
+        return ""
+    from grader.report.callouts import drawn  # late: few reports show a picture
+
+    shown = drawn(report)
     return f"![{escaped(shown)}]({address})" if shown else ""
 
 

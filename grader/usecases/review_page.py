@@ -193,7 +193,10 @@ def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, termi
 def serving(
     gradebook: Path, criterion: str = "", by: str = "", port: int = 0
 ) -> Iterator[tuple[LocalServer | None, ReviewPage]]:
-    """Yield a server for a review, None if nothing needs manual grading. One thread opens, reads and writes the gradebook; another one reads pictures."""
+    """Yield a server for a review, None if nothing needs manual grading.
+
+    One thread opens, reads and writes the gradebook; another one reads pictures.
+    """
     with ThreadPoolExecutor(1) as worker, ThreadPoolExecutor(1) as reader:
         book = worker.submit(Gradebook, gradebook).result()
         try:

@@ -78,7 +78,7 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     page.get_by_role("button", name="Show all").click()
     page.locator("[data-group=mistake-0] button").click()
     assert names(opened) == ["Ben Oh"]
-    assert page.evaluate("document.activeElement.id") == "find"
+    assert page.evaluate("document.activeElement.id") == "shown"
     assert all(request.startswith(pages.as_uri()) for request in opened.requests)
 
 

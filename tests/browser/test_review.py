@@ -115,7 +115,8 @@ def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) ->
     press(page, "1 Enter", "7")
     press(page, "b", "6")
     assert "1 point by Kim" in page.locator(".marked").inner_text()
-    press(page, "u", "6")
+    press(page, "u")
+    page.wait_for_selector("#status:has-text('Undone')")
     assert page.locator(".marked").count() == 0
     press(page, "h Enter", "7")
     for number in (8, 9, 10):
@@ -129,7 +130,8 @@ def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) ->
         ("cedar", "picture", 1, ""), ("dogwood", "picture", 1, ""), ("elm", "picture", 0, "a script"),
     ]  # fmt: skip
     press(page, "b", "10")
-    press(page, "u", "10")
+    press(page, "u")
+    page.wait_for_selector("#status:has-text('Undone')")
     assert marks(book)[-1] == ("elm", "picture", None, "")
 
 

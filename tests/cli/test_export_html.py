@@ -94,7 +94,10 @@ def test_submissions_that_are_gone_or_changed(top: Path) -> None:
     (ben,) = [row for row in page.table("students") if row["key"] == "ben"]
     assert ben["status"] == "no longer in the class folder"
     assert sorted(page.links()) == ["anna.html", "cleo.html", "emil.html"]
-    assert (top / "pages/ben.html").exists()
+    changed = "No picture: the submission has changed or moved since it was graded."
+    pages = {key: (top / f"pages/{key}.html").read_text(encoding="utf-8") for key in ("anna", "ben", "emil")}
+    assert [changed in pages[key] for key in pages] == [False, True, True]
+    assert "Three views" in pages["anna"]
 
 
 @pytest.mark.parametrize(

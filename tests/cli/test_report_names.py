@@ -37,6 +37,14 @@ def test_names_of_devices_are_avoided(key: str) -> None:
     assert file_names([key])[key].startswith("_")
 
 
+@pytest.mark.parametrize("key", ["index", "INDEX", " Index.", "\u0131ndex", "\u0130NDEX", "ind\u200cex", "in\u00addex"])
+def test_no_report_is_the_class_page(key: str) -> None:
+    """Also where a file system ignores case, marks that are not seen, or spaces and dots at the end."""
+    name = file_names([key])[key]
+    seen = "".join(letter for letter in unicodedata.normalize("NFKC", name) if letter.isprintable())
+    assert "index" not in (seen.casefold(), seen.upper().casefold(), seen.lower())
+
+
 def test_a_name_depends_only_on_colliding_ones() -> None:
     """A report has the same name after the next run."""
     assert file_names(["a/b", "c"])["a/b"] == file_names(["a/b", "x", "y"])["a/b"]

@@ -29,6 +29,7 @@ from grader.report.class_words import (
     without_urdf,
 )
 from grader.report.pages.class_rows import Group, StudentRow, groups, student_rows
+from grader.report.pages.robot import RULES
 from grader.report.pages.shell import render_page
 from grader.text import counted, format_points, printable
 
@@ -76,7 +77,7 @@ def render_class_page(
         "columns": _columns(rows),
         "groups": found,
     }
-    return render_page("class.html", values, _data(rows, found), "class.css", "class.js")
+    return render_page("class.html", values, _data(rows, found), "class.css", "class.js", rules=RULES)
 
 
 def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:

@@ -16,27 +16,35 @@ _SAME_WAY = 0.9  # cosine
 
 
 def thumbnail(report: Report, criteria: Collection[str]) -> str:
-    """Return a picture of a graded robot as SVG, with what some criteria are about; empty if it can no longer be read."""
+    """Return a picture of a graded robot as SVG, with what some criteria are about.
+
+    It is empty if none of them is about a link, or if the robot can no longer be read.
+    """
     picture = picture_of(report)
-    if picture is None:
+    shown = _about(picture, criteria) if picture is not None else None
+    if shown is None or not any(callout.link for callout in shown.callouts):
         return ""
-    shown = _about(picture, criteria)
     element = thumbnail_element(shown, TOP if _drives_elsewhere(shown) else SIDE)
     return str(etree.tostring(element, encoding="unicode"))
 
 
 def _about(picture: Picture, criteria: Collection[str]) -> Picture:
-    """Return a picture with only those differences from the reference that some criteria are about."""
+    """Return a picture with only those differences from the reference that some criteria are about.
+
+    A frame is shown only where neither a shape nor an arrow shows the difference.
+    """
     callouts = tuple(
         callout for callout in picture.callouts if any(result.criterion.id in criteria for result in callout.results)
     )
     links = {callout.link for callout in callouts}
-    has_wheels = any(wheel.link in links for wheel in picture.scene.wheels)
+    wheels = links.intersection(wheel.link for wheel in picture.scene.wheels)
+    outlines = tuple(body for body in picture.outlines if body.link in links)
+    seen = wheels.union(body.link for body in outlines)
     return replace(
         picture,
-        scene=picture.scene if has_wheels else replace(picture.scene, wheels=()),
-        outlines=tuple(body for body in picture.outlines if body.link in links),
-        frames=tuple(link for link in picture.frames if link in links),
+        scene=picture.scene if wheels else replace(picture.scene, wheels=()),
+        outlines=outlines,
+        frames=tuple(link for link in picture.frames if link in links - seen),
         callouts=callouts,
     )
 

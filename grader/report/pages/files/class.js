@@ -97,7 +97,7 @@
     made.addEventListener("click", () => {
       change("show", state.get("show") === made.dataset.shows ? "" : made.dataset.shows, true);
       place.scrollIntoView();
-      find.focus({ preventScroll: true });
+      shown.focus({ preventScroll: true });
     });
   }
   for (const table of tables) {
@@ -114,6 +114,7 @@
     state.delete("show");
     change("find", "", false);
   }
+  shown.tabIndex = -1;
   find.form.hidden = false;
   find.form.addEventListener("submit", (event) => event.preventDefault());
   find.addEventListener("input", () => change("find", find.value, false));

@@ -1,0 +1,77 @@
+"""Draw the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser` installed."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+DOCS = Path(__file__).resolve().parent
+SAMPLES = DOCS.parent / "submissions"
+FOLDER = DOCS / "screenshots"
+STUDENTS = ("reference", "lidar-buried", "axis-negated", "wheels-lying-flat", "base-half-sunk", "footprint-too-low")
+SIZE = {"width": 1100, "height": 740}
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+
+
+@contextmanager
+def browser() -> Iterator["Browser"]:
+    """Start a headless browser that draws WebGL without a graphics card."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield started
+        started.close()
+
+
+def grader(*arguments: str | Path) -> None:
+    """Run the command line; a report with failures ends with exit code 1."""
+    done = subprocess.run(
+        [sys.executable, "-m", "grader", *map(str, arguments)], stdout=subprocess.DEVNULL, check=False
+    )
+    if done.returncode > 1:
+        raise SystemExit(f"grader {' '.join(map(str, arguments))}: exit code {done.returncode}")
+
+
+def take(started: "Browser", page: Path, name: str) -> None:
+    """Save a screenshot of the top of a page."""
+    opened = started.new_page(viewport=SIZE)  # type: ignore[arg-type]  # its type is a TypedDict of Playwright
+    opened.goto(page.as_uri())
+    opened.wait_for_load_state("load")
+    opened.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    opened.screenshot(path=FOLDER / f"{name}.png")
+    opened.close()
+
+
+def samples_of_lab6(folder: Path) -> Path:
+    """Copy the samples of Lab 6 into a folder, as the submissions of a class, and return it."""
+    for sample in SAMPLES.iterdir():
+        if 'rubric = "lab6"' in (sample / "expected.toml").read_text(encoding="utf-8"):
+            shutil.copytree(sample, folder / sample.name)
+    return folder
+
+
+def main() -> None:
+    """Draw all of them."""
+    FOLDER.mkdir(exist_ok=True)
+    with TemporaryDirectory() as folder, browser() as started:
+        for name in STUDENTS:
+            page = Path(folder, f"{name}.html")
+            grader("grade", SAMPLES / name, "--part", "task1", "--save", f"html={page}")
+            take(started, page, name)
+        book, pages = Path(folder, "class.db"), Path(folder, "pages")
+        grader("batch", samples_of_lab6(Path(folder, "class")), "--gradebook", book, "--part", "task1")
+        grader("export", "html", "--gradebook", book, "--output", pages)
+        take(started, pages / "index.html", "class")
+
+
+if __name__ == "__main__":
+    main()
