@@ -17,7 +17,7 @@ from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
-from grader.usecases.report_names import report_names, update_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
 from grader.usecases.writing import refuse_symlinks, save
 
@@ -49,6 +49,9 @@ def write_reports(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
+    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
+        shown = printable_path(folder / CLASS_PAGE)
+        raise InputError(f"cannot write {shown}: a file that is not of this grader has the name; choose another folder")
     with Gradebook(book) as opened:
         names = report_names(opened)
     earlier = update_index(folder, names)
