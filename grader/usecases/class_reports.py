@@ -27,7 +27,7 @@ REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
 _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
-def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
+def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
     """Raise InputError for a folder that reports cannot be written to, or that the next run would take for a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
@@ -39,6 +39,9 @@ def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
                 f"cannot write reports to {shown}: the next run would take them for a submission; "
                 "choose a folder outside of the class folder"
             )
+    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
+        page = printable_path(folder / CLASS_PAGE)
+        raise InputError(f"cannot write {page}: a file that is not of this grader has the name; choose another folder")
 
 
 def write_reports(
@@ -49,9 +52,6 @@ def write_reports(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
-    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
-        shown = printable_path(folder / CLASS_PAGE)
-        raise InputError(f"cannot write {shown}: a file that is not of this grader has the name; choose another folder")
     with Gradebook(book) as opened:
         names = report_names(opened)
     earlier = update_index(folder, names)
