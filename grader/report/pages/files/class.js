@@ -67,7 +67,7 @@
   function change(name, value, isNew) {
     value ? state.set(name, value) : state.delete(name);
     apply();
-    const address = `#${state.size ? state : "class"}`;
+    const address = `#${String(state) || "class"}`;
     isNew ? (location.hash = address) : history.replaceState(null, "", address);
   }
 
