@@ -10,6 +10,7 @@ import pytest
 from grader.grading.report import Report
 from grader.report.formats import Format, render
 from tests.browser.conftest import OpenPage
+from tests.browser.test_kinematics import ODD
 from tests.command_line import run
 from tests.report.hostile import HTML, LINKS, XML, write_submission
 from tests.report.reports import hinted, marked
@@ -256,3 +257,36 @@ def test_hostile_report_stays_text(open_page: Open, tmp_path: Path, made: Callab
     assert "<script>document.title" in opened.page.locator("main").inner_text()
     assert opened.page.title() != "run"
     assert len(opened.requests) == 1
+
+
+# Nothing to show, one link, a mesh, sizes that no picture has, names that mean something to JavaScript and to CI systems.
+ODD_ROBOTS = (
+    ODD,
+    "<robot name='a'/>",
+    "<robot name='a'><link name='x'/></robot>",
+    "<robot name='a'><link name='x'><visual><geometry><mesh filename='a.stl'/></geometry></visual></link></robot>",
+    (
+        "<robot name='a'><link name='x'><visual><geometry><box size='9000 1e-9 1e-9'/></geometry></visual>"
+        "<visual><origin xyz='1e200 0 0'/><geometry><sphere radius='1e300'/></geometry></visual></link></robot>"
+    ),
+    (
+        "<robot name='##[error]x'><link name='x'><visual><geometry><box size='1 1 1'/></geometry></visual></link>"
+        "<link name='__proto__'/><link name='constructor'/>"
+        "<joint name='toString' type='continuous'><parent link='x'/><child link='__proto__'/><axis xyz='0 0 1'/></joint>"
+        "<joint name='__proto__' type='continuous'><parent link='x'/><child link='constructor'/><mimic joint='toString'/></joint></robot>"
+    ),
+)
+
+
+def test_odd_robots_are_shown(open_page: Open, tmp_path: Path) -> None:
+    """Each has a page without an error; those with links are drawn, and their joints move."""
+    (tmp_path / "robot.urdf").write_text(ODD_ROBOTS[0])
+    opened = open_page(write(tmp_path, "inspect", tmp_path / "robot.urdf"))
+    for text in ODD_ROBOTS:
+        (tmp_path / "robot.urdf").write_text(text)
+        opened.page.goto(write(tmp_path, "inspect", tmp_path / "robot.urdf").as_uri())
+        if "<link" in text:
+            assert opened.page.evaluate("() => { viewer.draw(); return viewer.camera.target.every(Number.isFinite); }")
+        for slider in opened.page.locator("input[type=range]:enabled").all():
+            slider.evaluate("node => { node.value = node.max; node.dispatchEvent(new Event('input')); viewer.draw(); }")
+            assert slider.locator("..").locator("output").inner_text()[0] in "0123456789-"

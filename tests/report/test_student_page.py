@@ -1,5 +1,6 @@
 """The student's page says what the terminal says with `--verbose`, failures first, and nothing of the submission is markup."""
 
+import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -123,3 +124,13 @@ def test_inspection_of_what_is_no_robot(tmp_path: Path) -> None:
     page = inspected(file)
     assert page.find_class("error-card")
     assert not page.xpath("//canvas")
+
+
+@pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
+def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None:
+    """Below the level `cause` no number of the reference is in the page, and no button shows it."""
+    report = SAMPLES["lidar-buried"].grade()
+    page = read(render_html(replace(report, rubric=replace(report.rubric, hints=level))))
+    data = json.loads(page.get_element_by_id("data").text)
+    assert (data["reference"] is not None) == is_shown
+    assert bool(page.xpath("//button[@data-mode='reference']")) == is_shown
