@@ -74,7 +74,7 @@ def cases(name: str, robot: Robot, random: Random) -> Iterator[dict[str, Any]]:
             free = [joint for joint in movable if joint.mimic is None or random.random() < 0.2]
             given = {joint.name: random.uniform(-3, 3) for joint in free}
             moved = Configuration(robot, given, holding=rest.parent_joints)
-            poses = [_pose(moved, link, frame) for link in data["links"]]
+            poses = [_pose(moved, link, frame) for link in dict.fromkeys(link.name for link in robot.links)]
             yield {"name": name, "robot": data, "given": [*given.items()], "expected": poses}
 
 
