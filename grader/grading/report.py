@@ -155,8 +155,11 @@ class GradedSubmission:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot that was graded; None if there is none, or the URDF can no longer be read."""
-        urdf = self.originals.urdf if self.originals is not None else None
+        """The robot that was graded; None if there is none, or the URDF can no longer be read.
+
+        A submission in which no URDF was read is not opened again: it may be one that crashed the process that graded it.
+        """
+        urdf = self.originals.urdf if self.originals is not None and self.sha256 is not None else None
         return urdf.reading.robot if isinstance(urdf, Read) else None
 
 

@@ -17,9 +17,10 @@ from grader.drawing.views import SIDE, View
 from grader.report.callouts import description
 from grader.report.drawing_key import put_key, put_legend
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
-from grader.report.svg_elements import SVG, colour, edge_look, path_data, put
+from grader.report.svg_elements import SVG, circle, colour, edge_look, path_data, put
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
+_RING = 8.0  # pixels
 _THUMBNAIL = (240.0, 150.0)  # pixels
 _MARGIN = 16.0
 _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
@@ -48,7 +49,10 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view, where shapes and frames of the reference differ, and the way the wheels drive."""
+    """Return a small picture of a robot: one view, where shapes and frames of the reference differ, and the way the wheels drive.
+
+    Rings mark links that are called out for another reason.
+    """
     root = _root(f"The robot in the {view.title} view", description(picture))
     cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
     labels, above, group = Labels(cell), Signs(), put(root, "g")
@@ -57,6 +61,14 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     add_outlines(above, cell, picture, labels)
     add_frames(above, cell, picture, labels, [link for link in picture.frames if link in picture.scene.poses])
     add_wheels(above, cell, picture, labels)
+    shown = {
+        *picture.frames,
+        *(body.link for body in picture.outlines),
+        *(wheel.link for wheel in picture.scene.wheels),
+    }
+    for callout in picture.callouts:
+        if callout.point is not None and callout.link not in shown:
+            above.line("leader", circle(cell.place(callout.point), _RING))
     above.put(group)
     return _sized(root, *_THUMBNAIL)
 

@@ -1,14 +1,16 @@
 """Write a report for each student of a class, from the gradebook, and the class's page beside reports in HTML."""
 
-from collections.abc import Sequence
-from concurrent.futures import Executor
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, Future
 from dataclasses import replace
 from datetime import datetime
+from itertools import islice
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
 from grader.grading.report import Report
 from grader.report.formats import Format, render
@@ -22,6 +24,7 @@ from grader.usecases.writing import refuse_symlinks, save
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3
 REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
+_Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
@@ -48,24 +51,39 @@ def write_reports(
         raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
     with Gradebook(book) as opened:
         names = report_names(opened)
-    keys = list(names)
     earlier = update_index(folder, names)
-    tasks = [
-        executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
-        for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))
-    ]
-    for task in tasks:
-        task.result()
+
+    def write(some: dict[str, str]) -> "Future[None]":
+        return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
+
+    chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
+    lost: dict[str, str] = {}
+    for some, task in [(some, write(some)) for some in chunks]:
+        lost |= _lost(write, some, task)
     if Format.HTML in formats:
-        write_class_page(executor, book, folder, names, due)
-    warn(f"{counted(len(keys), 'report')} written to {printable_path(folder)}")
+        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
+    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
+    for key, why in lost.items():
+        warn(printable(f"no report for {key}: {why}"))
     if earlier:
         reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
         warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
+def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
+    """Wait for reports; return the students who get none, and why. If the process that writes them ends, each is tried alone."""
+    try:
+        task.result()
+    except WorkerError as error:
+        if len(names) == 1:
+            return dict.fromkeys(names, str(error))
+        alone = [{key: name} for key, name in names.items()]
+        return {key: why for one in alone for key, why in _lost(write, one, write(one)).items()}
+    return {}
+
+
 def _write_some(
-    book: str, folder: str, formats: tuple[Format, ...], names: dict[str, str], due: datetime | None
+    book: str, folder: str, formats: tuple[Format, ...], due: datetime | None, names: dict[str, str]
 ) -> None:
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened, due)

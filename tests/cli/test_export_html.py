@@ -1,11 +1,17 @@
 """grader export html, and batch --report-format html: the pages of the students and of the class, as files."""
 
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.run.pool import WorkerError
+from grader.report.formats import Format
+from grader.usecases.class_reports import write_reports
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
 from tests.report.class_pages import ClassPageReader
 
@@ -165,3 +171,27 @@ def test_a_class_without_any_urdf(tmp_path: Path) -> None:
     assert "index.html" not in page.links()
     assert page.texts("//section[@id='look']/p")[-1].startswith("2 submissions have pictures or documents, but no URDF")
     assert not page.root.xpath("//figure")
+
+
+class DyingWorkers(Executor):
+    """An executor whose worker ends whenever it works on the report of one student."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
+        """Run a function here and now."""
+        future: Future[Any] = Future()
+        if any(isinstance(given, dict) and "ben" in given for given in arguments):
+            future.set_exception(WorkerError("the process that graded it was killed"))
+        else:
+            future.set_result(function(*arguments, **named))
+        return future
+
+
+def test_a_crash_costs_one_page(top: Path) -> None:
+    """The others have theirs, the class's page has no link to it, and standard error says why."""
+    lines: list[str] = []
+    write_reports(DyingWorkers(), top / "book.db", top / "pages", [Format.HTML], None, lines.append)
+    assert lines == [
+        f"3 reports written to {top / 'pages'}",
+        "no report for ben: the process that graded it was killed",
+    ]
+    assert sorted(ClassPageReader(top / "pages/index.html").links()) == ["anna.html", "cleo.html", "emil.html"]

@@ -53,6 +53,33 @@ def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]
     )
 
 
+# Samples whose drawings are kept, with their rubrics.
+_DRAWN = {
+    "reference": "lab6",
+    "axis-negated": "lab6",
+    "base-half-sunk": "lab6",
+    "caster-misnamed": "lab6",
+    "lidar-buried": "lab6",
+    "several-mistakes": "lab6",
+    "wheel-inside-base": "lab6",
+    "wheels-lying-flat": "lab6",
+    "arm-hand-half-sunk": "arm",
+    "sensors-camera-up": "sensors",
+}
+
+
+def _drawings() -> tuple[Golden, ...]:
+    """Return a case for each drawing."""
+    return tuple(
+        Golden(
+            f"drawing-{name}",
+            ("grade", f"submissions/{name}", "--rubric", rubric, "--format", "svg"),
+            int(name != "reference"),
+        )
+        for name, rubric in _DRAWN.items()
+    )
+
+
 GOLDEN = (
     Golden("reference", ("grade", "submissions/reference"), 0),
     Golden("reference-verbose", ("grade", "submissions/reference", "--verbose"), 0),
@@ -80,5 +107,20 @@ GOLDEN = (
     Golden("explain-package-code", ("explain", "PKG014"), 0),
     Golden("explain-check", ("explain", "bottom_at_height"), 0),
     Golden("rubric-show", ("rubric", "show", "lab6"), 0),
+    *_drawings(),
+    Golden(
+        "drawing-turned-arm",
+        (
+            "inspect",
+            "submissions/equivalent-arm-plain",
+            "--joint",
+            "joint_2=0.6",
+            "--joint",
+            "joint_3=0.8",
+            "--format",
+            "svg",
+        ),
+        0,
+    ),
     *_in_every_format("several-mistakes", "submissions/several-mistakes/my_robot.urdf", 1),
 )

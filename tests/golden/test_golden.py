@@ -14,7 +14,7 @@ def test_output_is_unchanged(case: Golden) -> None:
     assert (done.returncode, done.stderr) == (case.exit_code, b"")
 
 
-@pytest.mark.parametrize("kind", ["json", "html"])
+@pytest.mark.parametrize("kind", ["json", "html", "svg"])
 def test_output_is_deterministic(kind: str) -> None:
     """Hash seeds, time zones and locales change nothing."""
     arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", kind)

@@ -220,8 +220,12 @@ def read_page(text: str) -> Any:
 
 
 def page_structure(text: str) -> Any:
-    """Return the elements of a page, and the keys of the data for its script. A diff has as many lines as its texts."""
-    return [tag for tag in _tags(read_page(text)) if tag not in ("ins", "del", "span", "code")]
+    """Return the elements of a page outside of drawings. A diff, like a drawing, has as many elements as its texts need."""
+    return [
+        element.tag
+        for element in read_page(text).xpath("//*[not(ancestor::svg)]")
+        if element.tag not in ("ins", "del", "span", "code")
+    ]
 
 
 def page_text(text: str) -> str:
@@ -232,6 +236,29 @@ def page_text(text: str) -> str:
     for element in root.xpath("//*[contains(@class, 'sentence')]//code"):
         element.text = f"`{element.text}`"
     return str(root.text_content())
+
+
+_SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "text", "tspan"}
+_SVG_ATTRIBUTES = {
+    "class", "d", "fill", "fill-opacity", "font-family", "font-size", "font-weight", "height", "paint-order", "role", "stroke",
+    "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "stroke-opacity", "stroke-width", "text-anchor", "viewBox", "width",
+    "x", "y",
+}  # fmt: skip
+
+
+def read_svg(text: str) -> Any:
+    """Return the root of a drawing, which has nothing but shapes and text: no script, link, style attribute or foreign element."""
+    root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
+    for element in root.iter():
+        name = etree.QName(element)
+        assert (name.namespace, name.localname in _SVG_ELEMENTS) == ("http://www.w3.org/2000/svg", True), element.tag
+        assert set(element.attrib) <= _SVG_ATTRIBUTES, element.attrib
+        assert name.localname != "style" or "url" not in str(element.text)
+    return root
+
+
+def svg_text(text: str) -> str:
+    return "\n".join(filter(None, (element.text for element in read_svg(text).iter("{*}text", "{*}tspan", "{*}desc"))))
 
 
 def gradescope_text(text: str) -> str:
@@ -304,6 +331,8 @@ def reader(kind: Format) -> FormatReader:
 
     Only a format with a row must contain every fact.
     """
+    if kind is Format.SVG:
+        return FormatReader(read_svg, lambda _: None, svg_text)  # its texts have as many lines as they need
     is_json = kind.ending.endswith("json")
     return READERS.get(kind) or FormatReader(
         read_json if is_json else str, json_structure if is_json else lambda _: None, str

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.grading.report import GradedPackage, GradedSubmission, Hint, Report, Result
 from grader.report.content import other_problems
 from grader.source import Location, Source
-from grader.submission.urdf import Absent, OtherCandidate, Urdf
+from grader.submission.urdf import Absent, OtherCandidate, Read, Urdf
 from grader.text import printable
 
 Words = Callable[[], str]
@@ -60,8 +60,32 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
-        originals=Reworded(text, old.originals.urdf if old.originals is not None else Absent()),
+        originals=Reworded(text, _urdf(old.originals.urdf, words) if old.originals is not None else Absent()),
     )
+
+
+def _urdf(old: Urdf, words: Words) -> Urdf:
+    """Return a URDF with other names of the robot, its links and joints."""
+    if not isinstance(old, Read) or old.reading.robot is None:
+        return old
+    robot = old.reading.robot
+    links = {link.name: f"{number}{words()}" for number, link in enumerate(robot.links)}
+    joints = {joint.name: f"{number}{words()}" for number, joint in enumerate(robot.joints)}
+    renamed = replace(
+        robot,
+        name=words(),
+        links=tuple(replace(link, name=links[link.name]) for link in robot.links),
+        joints=tuple(
+            replace(
+                joint,
+                name=joints[joint.name],
+                parent=links.get(joint.parent, joint.parent),
+                child=links.get(joint.child, joint.child),
+            )
+            for joint in robot.joints
+        ),
+    )
+    return old._replace(reading=replace(old.reading, robot=renamed))
 
 
 def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> Result:

@@ -3,7 +3,12 @@
 from pathlib import Path
 from urllib.parse import unquote
 
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.summary import summary_of
+from grader.report.pages.class_page import render_class_page
 from grader.text import without_commands
+from tests.classroom.gradebooks import graded_as, lab, record_run
 from tests.report.class_pages import ClassPageReader
 from tests.report.hostile_class import CORPUS, export_hostile_class
 
@@ -28,3 +33,34 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
     for file in pages.glob("*.html"):
         assert "<script>document" not in file.read_text(encoding="utf-8")
         assert "\n::error" not in file.read_text(encoding="utf-8")
+
+
+def test_a_class_without_students(tmp_path: Path) -> None:
+    """A run without submissions has a page, which says so."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, rubric, [])
+        grades = Grades(book)
+        text = render_class_page(summary_of(grades, with_fixes=True), grades, {}, {})
+    (tmp_path / "index.html").write_text(text, encoding="utf-8")
+    page = ClassPageReader(tmp_path / "index.html")
+    assert page.texts("//p[@class='counts']") == ["no students"]
+    assert not page.root.xpath("//section")
+
+
+def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
+    """They are in the table with their reason, and in no figure."""
+    old, new = lab(), lab(loads="1")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, old, [graded_as(old, key, "fspp!") for key in ("ash", "birch")])
+        record_run(book, new, [graded_as(new, "ash", "ppppp")])
+        grades = Grades(book)
+        text = render_class_page(summary_of(grades, with_fixes=True), grades, {"birch": "birch.html"}, {})
+    (tmp_path / "index.html").write_text(text, encoding="utf-8")
+    page = ClassPageReader(tmp_path / "index.html")
+    rows = {row["name"]: row for row in page.table("students")}
+    assert "graded with an earlier version of the rubric" in rows["birch"]["status"]
+    assert (rows["ash"]["score"], rows["birch"]["score"]) == ("9", "4.5 of 11")
+    assert page.members("attention") == ["birch"]
+    assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
+    assert page.links() == ["birch.html"]

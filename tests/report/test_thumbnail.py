@@ -21,7 +21,7 @@ def drawn(sample: str, *criteria: str) -> tuple[str, list[str]]:
     ("sample", "criteria", "view", "signs"),
     [
         ("lidar-buried", ("lidar-frame", "lidar-on-top"), "side (from -y)", ["ground", "reference"]),
-        ("colour-0-255", ("base-green",), "side (from -y)", ["ground"]),
+        ("colour-0-255", ("base-green",), "side (from -y)", ["ground", "leader"]),
         ("axis-negated", ("left-wheel-forward",), "top (from +z)", ["arrow"]),
         (
             "lidar-offset-in-visual",
@@ -32,7 +32,7 @@ def drawn(sample: str, *criteria: str) -> tuple[str, list[str]]:
     ],
 )
 def test_a_thumbnail_shows_one_mistake(sample: str, criteria: tuple[str, ...], view: str, signs: list[str]) -> None:
-    """Outlines for shapes, frames where no shape differs, arrows for wheels, in the view that shows it."""
+    """Outlines for shapes, frames where no shape differs, arrows for wheels, else a ring; in the view that shows it."""
     title, found = drawn(sample, *criteria)
     assert view in title
     assert found == signs

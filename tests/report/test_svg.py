@@ -1,0 +1,225 @@
+"""Drawings as SVG: what they show and say, for every sample, and for robots that cannot be drawn."""
+
+import re
+from itertools import combinations
+from math import hypot
+from typing import Any
+
+import pytest
+
+from grader.drawing.picture import picture_of
+from grader.drawing.sheet import single_cell
+from grader.drawing.views import SIDE
+from grader.report.drawing import drawing_element, thumbnail_element
+from grader.report.formats import Format, render
+from grader.report.svg_elements import DARK_RULES, LOOKS
+from grader.text import format_points
+from tests.command_line import run, run_with_input
+from tests.processor_time import processor_time
+from tests.report.readers import read_svg, svg_text
+from tests.samples import REPORTED, SAMPLES
+
+REFERENCE = "submissions/reference"
+
+
+def shown(*arguments: object, code: int = 0) -> Any:
+    """Return the root of the drawing that a command prints."""
+    done = run([*arguments, "--format", "svg"])
+    assert (done.returncode, done.stdout.count(b"\n")) == (code, 1), done.stderr
+    return read_svg(done.stdout.decode())
+
+
+def inspected(text: str, code: int = 0) -> Any:
+    """Return the root of the drawing of a URDF."""
+    done = run_with_input(("inspect", "-", "--format", "svg"), text.encode())
+    assert done.returncode == code
+    return read_svg(done.stdout.decode())
+
+
+def words(root: Any) -> str:
+    """Return the text of a drawing, without line breaks."""
+    return " ".join(" ".join(element.text or "" for element in root.iter("{*}text", "{*}tspan")).split())
+
+
+def paths(root: Any, look: str) -> list[str]:
+    """Return the path data of a class."""
+    return [element.get("d") for element in root.iter("{*}path") if element.get("class") == look]
+
+
+def bodies(root: Any) -> dict[str, list[Any]]:
+    """Return the shapes of a drawing by their links, in the order of the views."""
+    found: dict[str, list[Any]] = {}
+    for path in root.iter("{*}path"):
+        for title in path.iter("{*}title"):
+            found.setdefault(title.text, []).append(path)
+    return found
+
+
+def link(name: str, geometry: str, rgba: str = "1 1 1 1") -> str:
+    return (
+        f'<link name="{name}"><visual><geometry>{geometry}</geometry>'
+        f'<material name="of {name}"><color rgba="{rgba}"/></material></visual></link>'
+    )
+
+
+def alone(geometry: str) -> str:
+    """Return a robot of one link."""
+    return f'<robot name="r">{link("a", geometry)}</robot>'
+
+
+@pytest.mark.parametrize("name", REPORTED)
+def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str) -> None:
+    """Every callout is in the legend with its criteria and points, and in the words for screen readers."""
+    report = SAMPLES[name].grade()
+    root = read_svg(render(report, Format.SVG))
+    assert root.get("role") == "img"
+    assert root.findtext("{*}title").endswith(
+        f"{format_points(report.score)} / {format_points(report.max_score)} points"
+    )
+    picture, said = picture_of(report), words(root)
+    for callout in picture.callouts if picture is not None else ():
+        for result in callout.results:
+            assert result.criterion.id in root.findtext("{*}desc")
+            assert f"{result.criterion.id} ({format_points(result.criterion.points)} point" in said
+        assert ("not in the picture" in said) or callout.point is not None
+
+
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm-elbow-to-the-side"])
+def test_numbers_do_not_overlap(name: str) -> None:
+    """The discs of all callouts are beside each other, inside the sheet, and there is one in each view."""
+    picture = picture_of(SAMPLES[name].grade())
+    assert picture is not None
+    root = drawing_element(picture, legend=False)
+    found = re.findall(r"M([\d.]+) ([\d.]+)a9 9", "".join(paths(root, "badge")))
+    _, _, width, height = map(float, root.get("viewBox").split())
+    centres = [(float(x) + 9.0, float(y)) for x, y in found]
+    assert all(9.0 <= x <= width - 9.0 and 9.0 <= y <= height - 9.0 for x, y in centres)
+    assert all(hypot(a - c, b - d) >= 18.0 for (a, b), (c, d) in combinations(centres, 2))
+    in_key = bool(picture.callouts)
+    assert len(centres) == 3 * sum(callout.point is not None for callout in picture.callouts) + in_key
+
+
+def test_every_text_is_legible_at_600_pixels() -> None:
+    """A drawing is 600 pixels wide, and no text is smaller than 11 of them."""
+    root = shown("grade", "submissions/several-mistakes/my_robot.urdf", code=1)
+    assert root.get("viewBox").startswith("0 0 600 ")
+    sizes = [float(element.get("font-size")) for element in root.iter() if element.get("font-size")]
+    assert min(sizes) >= 11.0
+
+
+def test_dark_mode_changes_every_colour_that_is_not_the_students() -> None:
+    """The style sheet is for screens in dark mode only, and has a rule for each look but the edges on a colour."""
+    (style,) = shown("grade", REFERENCE).iter("{*}style")
+    assert f"@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}" in style.text
+    assert {look for look in LOOKS if f".{look}{{" not in DARK_RULES} == {"edge-on-light", "edge-on-dark"}
+
+
+def test_colours_are_those_of_the_submission() -> None:
+    """Alpha is opacity; on black edges are light; what is transparent has an outline."""
+    root = inspected(
+        '<robot name="r">' + link("a", '<box size="1 1 1"/>', "0 0.6 0 0.8")
+        + link("b", '<sphere radius="0.2"/>', "0 0 0 1") + link("c", '<sphere radius="0.3"/>', "1 0 0 0")
+        + "".join(f'<joint name="{name}" type="fixed"><parent link="a"/><child link="{name}"/><origin xyz="0 0 {z}"/></joint>'
+                  for name, z in (("b", 2), ("c", 4))) + "</robot>"
+    )  # fmt: skip
+    looks = {name: (found[0].get("fill"), found[0].get("fill-opacity")) for name, found in bodies(root).items()}
+    assert looks == {"a": ("#009900", "0.8"), "b": ("#000000", None), "c": ("#ff0000", "0")}
+    assert len(paths(root, "edge-on-dark")) == 3
+    assert len(paths(root, "edge-on-light")) >= 3
+    assert paths(root, "edge")  # of the transparent one
+
+
+def test_views_show_the_robot_at_one_scale() -> None:
+    """A box of 0.6 x 0.4 x 0.2 is as wide in the view from above as from its side, and the scale bar fits them."""
+    root = inspected(alone('<box size="0.6 0.4 0.2"/>'))
+    sizes = []
+    for path in bodies(root)["a"]:
+        xs = [float(x) for x in re.findall(r"[MH]([\d.]+)", path.get("d"))]
+        ys = [float(y) for y in re.findall(r"(?:V|M[\d.]+ )([\d.]+)", path.get("d"))]
+        sizes.append((max(xs) - min(xs), max(ys) - min(ys)))
+    scale = sizes[0][0] / 0.6
+    for measured, real in zip(sizes, [(0.6, 0.4), (0.6, 0.2), (0.4, 0.2)], strict=True):
+        assert measured == pytest.approx([scale * length for length in real], abs=0.2)
+    bar, length = (
+        re.search(r"M([\d.]+) [\d.]+H([\d.]+)M", paths(root, "ground")[-1]),
+        re.search(r"(\d+) cm", words(root)),
+    )
+    assert bar is not None
+    assert length is not None
+    assert float(bar[2]) - float(bar[1]) == pytest.approx(scale * float(length[1]) / 100.0, abs=0.2)
+
+
+def test_joint_position_moves_the_drawing() -> None:
+    """A wheel that turns about its axis stays; the forearm of an arm does not."""
+    arm = "submissions/equivalent-arm-plain"
+    still, moved = shown("inspect", arm), shown("inspect", arm, "--joint", "joint_3=0.8")
+    assert "joint_3 = 0.8" in words(moved)
+    one, other = bodies(still), bodies(moved)
+    same = {name for name in one if [path.get("d") for path in one[name]] == [path.get("d") for path in other[name]]}
+    assert "upper_arm" in one
+    assert "forearm" not in same
+
+
+def test_frame_of_the_drawing_can_be_chosen() -> None:
+    """With --relative-to z of another link points up."""
+    root = shown("inspect", REFERENCE, "--relative-to", "left_wheel")
+    assert bodies(root).keys() == bodies(shown("inspect", REFERENCE)).keys()
+    assert [path.get("d") for path in bodies(root)["lidar"]] != [
+        path.get("d") for path in bodies(shown("inspect", REFERENCE))["lidar"]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "says"),
+    [
+        ("", 1, "No picture: no robot could be read from the file."),
+        ("<robot", 1, "No picture: no robot could be read from the file."),
+        ('<robot name="r"/>', 1, "No picture: no robot could be read from the file."),
+        ('<robot name="r"><link name="a"/></robot>', 0, "frame of a link"),
+        (alone('<mesh filename="m.stl"/>'), 0, "Not shown: 'a'"),
+        (alone('<sphere radius="1e300"/>'), 0, "Not shown: 'a'"),
+        (alone('<sphere radius="nan"/>'), 0, "frame of a link"),
+        (alone('<box size="1e-9 1e-9 9e3"/>'), 0, "frame of a link"),
+    ],
+    ids=["empty", "broken", "no links", "one link", "mesh", "huge", "not a number", "thin"],
+)
+def test_what_cannot_be_drawn_is_said(text: str, code: int, says: str) -> None:
+    """No exception, the exit code of the other formats, and a sentence."""
+    root = inspected(text, code)
+    assert says in words(root)
+    assert not re.search(r"nan|inf", "".join(path.get("d") for path in root.iter("{*}path")))
+
+
+@pytest.mark.parametrize("name", ["pictures-only", "empty-urdf", "truncated-file"])
+def test_report_without_a_robot_has_a_drawing_with_the_reason(name: str) -> None:
+    """It says the score and why there is no picture; the exit code is that of the other formats."""
+    report = SAMPLES[name].grade()
+    text = svg_text(render(report, Format.SVG))
+    assert ("No picture: no robot could be read" in text) == (picture_of(report) is None)
+    assert run(("grade", SAMPLES[name].path, "--format", "svg")).returncode == 1
+
+
+def test_two_hundred_links_are_drawn_in_a_second() -> None:
+    """A chain of boxes, cylinders and spheres, each of which overlaps its neighbours."""
+    shapes = ('<box size="0.1 0.08 0.12"/>', '<cylinder radius="0.04" length="0.12"/>', '<sphere radius="0.05"/>')
+    text = "".join(link(f"l{n}", shapes[n % 3]) for n in range(200)) + "".join(
+        f'<joint name="j{n}" type="fixed"><parent link="l{n - 1}"/><child link="l{n}"/>'
+        f'<origin xyz="0.02 0 0.1" rpy="0 {n % 2 / 10} 0.2"/></joint>'
+        for n in range(1, 200)
+    )
+    with processor_time(1.0):
+        root = inspected(f'<robot name="r">{text}</robot>')
+    assert len(bodies(root)) == 200
+
+
+def test_thumbnail_is_small() -> None:
+    """One view with the outline of the reference, and no labels."""
+    picture = picture_of(SAMPLES["lidar-buried"].grade())
+    assert picture is not None
+    root = thumbnail_element(picture)
+    assert len(bodies(root)) == 5
+    assert all(len(found) == 1 for found in bodies(root).values())
+    assert paths(root, "reference")
+    assert not paths(root, "badge")
+    cell = single_cell(picture, SIDE, 100.0, 50.0, 5.0)
+    assert cell.width == 100.0
