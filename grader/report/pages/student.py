@@ -6,7 +6,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.drawing.picture import picture_of
-from grader.grading.report import Report
+from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import group_status, status_of
 from grader.report.evidence import evidence
@@ -100,21 +100,14 @@ def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
     for part, found in groupby(groups(report), key=lambda group: group.part):
         some = [*found]
         rows = [
-            Rows(
-                group.title,
-                content.earned_text(group.results),
-                tuple(
-                    Row(
-                        result.criterion.id,
-                        result.criterion.title if status_of(result) == "passed" else "",
-                        status_of(result),
-                        content.earned_text((result,)),
-                        (result.because or "") if result.manual_mark is None else "",
-                    )
-                    for result in group.results
-                ),
-                group_status(group),
-            )
+            Rows(group.title, content.earned_text(group.results), tuple(map(_row, group.results)), group_status(group))
             for group in some
         ]
         yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
+
+
+def _row(result: Result) -> Row:
+    status = status_of(result)
+    title = result.criterion.title if status == "passed" else ""
+    because = (result.because or "") if result.manual_mark is None else ""
+    return Row(result.criterion.id, title, status, content.earned_text((result,)), because)
