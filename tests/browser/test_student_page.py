@@ -322,3 +322,28 @@ def test_odd_robots_are_shown(open_page: Open, tmp_path: Path) -> None:
         for slider in opened.page.locator("input[type=range]:enabled").all():
             slider.evaluate("node => { node.value = node.max; node.dispatchEvent(new Event('input')); viewer.draw(); }")
             assert slider.locator("..").locator("output").inner_text()[0] in "0123456789-"
+
+
+def test_two_fingers_zoom(open_page: Open, tmp_path: Path) -> None:
+    """On a touch screen one finger rotates and two zoom."""
+    file = write(tmp_path, "inspect", SAMPLES["lidar-buried"].path)
+    page: Any = open_page(file, viewport={"width": 400, "height": 900}, has_touch=True, is_mobile=True).page
+    page.locator("canvas").scroll_into_view_if_needed()
+    box, session = page.locator("canvas").bounding_box(), page.context.new_cdp_session(page)
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def touch(*places: tuple[float, ...]) -> list[float]:
+        """Move fingers through places on the x axis, and return azimuth and zoom."""
+        for kind, place in zip(
+            ("touchStart", *["touchMove"] * (len(places) - 1), "touchEnd"), (*places, ()), strict=True
+        ):
+            points = [{"x": x + off, "y": y, "id": number} for number, off in enumerate(place)]
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        found: list[float] = page.evaluate("() => [viewer.camera.azimuth, viewer.camera.zoom]")
+        return found
+
+    start = touch((0,))
+    turned = touch((0,), (20,), (40,), (60,))
+    assert turned[0] < start[0]
+    assert turned[1] == start[1]
+    assert touch((-30, 30), (-40, 40), (-60, 60))[1] > 1.5 * start[1]

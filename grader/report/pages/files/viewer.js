@@ -76,6 +76,8 @@ function makeViewer(data, section) {
     return Math.hypot(...away) > 0.15 * scene.radius ? { ...START, azimuth: Math.atan2(away[1], away[0]) + (away[1] > 0 ? -0.4 : 0.4) } : START;
   }
 
+  const numbered = (number) => data.callouts.find((callout) => callout.number === number);
+
   function choose(link) {
     state.link = link;
     notify();
@@ -83,7 +85,7 @@ function makeViewer(data, section) {
 
   /* Turns to what is called out under a number. */
   function show(number) {
-    const { link, point } = data.callouts.find((callout) => callout.number === number);
+    const { link, point } = numbered(number);
     choose(link);
     glide({ ...aspect(point), zoom: 1.1, target: scene.centre.map((value, k) => value + (point ? 0.35 * (point[k] - value) : 0)) });
   }
@@ -122,7 +124,7 @@ function makeViewer(data, section) {
     given.clear();
     scene.starts.forEach((value, joint) => given.set(joint, value));
     state.drift = IDENTITY;
-    const called = data.callouts.find((callout) => callout.point);
+    const [called] = (data.costly || []).map(numbered).filter((callout) => callout.point);
     Object.assign(camera, aspect(called && called.point), { target: [...scene.centre] });
     notify();
   }
