@@ -10,23 +10,29 @@ const distance = (one, other) => Math.max(...one.map((value, k) => Math.abs(valu
 const upOf = (pose) => [pose[2], pose[5], pose[8]];
 const above = (pose, point) => upOf(pose).reduce((sum, value, k) => sum + value * (point[k] - pose[9 + k]), 0);
 
-/* The middle and the radius of all that the robots show at rest. */
+/* The middle and the radius of all that the robots show at rest, and half of the height in metres that a picture from START needs. */
 function enclosing(robots, resting) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  const add = (point, reach) => point.forEach((value, k) => { low[k] = Math.min(low[k], value - reach); high[k] = Math.max(high[k], value + reach); });
+  const add = (pose, sizes) => [0, 1, 2].forEach((k) => {
+    const reach = sizes.reduce((sum, size, m) => sum + Math.abs(pose[3 * k + m]) * size, 0);
+    low[k] = Math.min(low[k], pose[9 + k] - reach);
+    high[k] = Math.max(high[k], pose[9 + k] + reach);
+  });
   for (const [name, poses] of Object.entries(resting)) {
-    for (const [link, kind, size, origin] of robots[name].shapes) add(compose(poses[link], placed(origin)).slice(9), kind === "sphere" ? size[0] : Math.hypot(...size) / 2);
-    if (!robots[name].shapes.length) poses.filter(Boolean).forEach((pose) => add(pose.slice(9), 0.05));
+    for (const [link, kind, size, origin] of robots[name].shapes) add(compose(poses[link], placed(origin)), size.map((value, k) => (kind === "box" || (kind === "cylinder" && k === 2) ? value / 2 : value)));
+    if (!robots[name].shapes.length) poses.filter(Boolean).forEach((pose) => add(pose, [0.05, 0.05, 0.05]));
   }
   const centre = low.map((value, k) => (value + high[k]) / 2);
-  return { centre, radius: Math.max(Math.hypot(...high.map((value, k) => value - low[k])) / 2, 1e-3) };
+  const half = high.map((value, k) => (value - low[k]) / 2), flat = Math.hypot(half[0], half[1]);
+  const fit = Math.max(half[2] * Math.cos(START.elevation) + flat * Math.sin(START.elevation), (flat * 3) / 4, 1e-3);
+  return { centre, radius: Math.max(Math.hypot(...half), 1e-3), fit: 1.3 * fit };
 }
 
 function makeScene(data) {
   const robots = Object.fromEntries(Object.entries({ submission: data.robot, reference: data.reference }).filter(([, robot]) => robot));
   const starts = new Map(data.sliders.map(({ joint, value }) => [joint, value]));
   const resting = Object.fromEntries(Object.entries(robots).map(([name, robot]) => [name, posesOf(robot, starts)]));
-  const { centre, radius } = enclosing(robots, resting);
+  const { centre, radius, fit } = enclosing(robots, resting);
   const called = new Set(data.callouts.map((callout) => callout.link));
   const power = 10 ** Math.floor(Math.log10(radius)), cell = radius / power > 3 ? power : power / 2;
 
@@ -100,5 +106,5 @@ function makeScene(data) {
     return { found, poses, framed, long, main };
   }
 
-  return { robots, resting, starts, centre, radius, items };
+  return { robots, resting, starts, centre, radius, fit, items };
 }
