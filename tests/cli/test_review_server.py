@@ -304,7 +304,7 @@ def locked_page(*_: object) -> str:
     raise InputError("the gradebook: disk I/O error")
 
 
-def test_idle_and_slow_clients_keep_nobody_waiting(review: Review) -> None:
+def test_idle_and_slow_clients_do_not_block_others(review: Review) -> None:
     """Browsers open connections in advance; the limit of connections is not exhausted by closed ones."""
     idle = [socket.create_connection((HOST, review.port)) for _ in range(20)]
     idle[0].sendall(b"POST / HTTP/1.1\r\nContent-Le")
