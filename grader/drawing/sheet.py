@@ -24,6 +24,7 @@ _MAX_HEIGHT = 460.0  # of the robot in the views above each other
 _MAX_BAR = 90.0
 _SMALLEST = 0.02  # metres
 _MAX_FRAMES = 12
+_MAX_FRAMES_ALONE = 60  # where no shape is shown
 _FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
@@ -138,11 +139,15 @@ def _corners(scene: Scene, bodies: Iterable[Body]) -> Iterator[Vector]:
 
 
 def framed_links(picture: Picture) -> list[str]:
-    """Return the links whose frames are shown: those that show something or are called out; of very many only the latter."""
+    """Return the links whose frames are shown: those with visuals or callouts, and all if there are no visuals.
+
+    Of very many links only those with callouts.
+    """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
     root = scene.robot.root_of(scene.frame)
-    links = dict.fromkeys([scene.frame, root, *called, *picture.frames, *(body.link for body in scene.bodies)])
-    if len(links) > _MAX_FRAMES:
+    shown = [link.name for link in scene.robot.robot.links if link.visuals] or list(scene.poses)
+    links = dict.fromkeys([scene.frame, root, *called, *picture.frames, *shown])
+    if len(links) > (_MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE):
         links = dict.fromkeys([scene.frame, *called[:_MAX_FRAMES]])
     return [link for link in links if link in scene.poses]

@@ -27,6 +27,7 @@ _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
 _CROWDED = "So many shapes overlap that edges behind others are drawn as if they were in front."
+_NO_SHAPES = "There is no visual that can be drawn: only frames of links are shown."
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
 
@@ -39,11 +40,11 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     sheet = sheet_of(picture, top)
     put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     titles = put(root, "g", "faint")
-    notes = picture.scene.missing
+    notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
     for cell in sheet.cells:
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
         if not _put_view(put(root, "g"), cell, picture):
-            notes = (*picture.scene.missing, _CROWDED)
+            notes = (*picture.scene.missing, _CROWDED)  # said once
     put_key(put(root, "g"), sheet, picture)
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 

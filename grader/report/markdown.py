@@ -31,7 +31,8 @@ def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str
     It is for job summaries, which students read, so it has no model answers. GitHub shows no pictures of a job in them: the files of
     `pictures` are named.
     """
-    named = f"The robot as a picture: {enumerated([code(printable(name)) for name in pictures])}." if pictures else ""
+    names = enumerated([code(printable(name)) for name in pictures])
+    named = f"The robot as a picture: {names}, among the files of this run if the job uploads them." if names else ""
     text = _joined(_blocks(report, named, answers=False))
     if len(text.encode()) <= most:
         return text

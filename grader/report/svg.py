@@ -46,5 +46,5 @@ def _file(picture: Picture | None, title: str, words: str, reason: str) -> str:
         put(faint, "text", "", {"x": _LEFT, "y": _TITLE + LINE * number}, line)
     style = etree.Element(f"{{{SVG}}}style")
     style.text = _STYLE
-    root.insert(1, style)
+    root.find(f"{{{SVG}}}rect").addprevious(style)
     return etree.tostring(root, encoding="unicode") + "\n"

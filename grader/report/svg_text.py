@@ -28,16 +28,18 @@ def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
         line = f"{lines[-1]} {word}" if lines[-1] else word
         lines = [*lines[:-1], line] if text_width(line) <= width else [*lines, word]
     lines = [cut(line, width) for line in lines if line]
-    return lines if len(lines) <= most else [*lines[: most - 1], cut(f"{lines[most - 1]} ....", width)]
+    return lines if len(lines) <= most else [*lines[: most - 1], _shortened(lines[most - 1], width)]
 
 
 def cut(text: str, width: float) -> str:
     """Return a text; of a wider one the beginning, with "..."."""
-    if text_width(text) <= width:
-        return text
+    return text if text_width(text) <= width else _shortened(text, width)
+
+
+def _shortened(text: str, width: float) -> str:
     while text and text_width(text) > width - SIZE:
         text = text[:-1]
-    return f"{text}..."
+    return f"{text.rstrip(' .,;:')}..."
 
 
 def text_width(text: str) -> float:

@@ -80,7 +80,7 @@ def test_a_green_check(job: Job) -> None:
     assert done.code == 0, done.stderr
     assert (job.output("score"), job.output("max-score"), job.output("pending")) == ("90", "100", "10")
     assert job.runner.summary.startswith("# 90 / 100 points")
-    for kind in ("json", "markdown", "junit", "sarif"):
+    for kind in ("json", "markdown", "junit", "sarif", "html", "svg"):
         assert Path(job.output(f"report-{kind}")).stat().st_size > 0, kind
     assert json.loads(Path(job.output("report-json")).read_text(encoding="utf-8"))["score"] == 90
     assert "::error" not in done.stderr + done.stdout
@@ -172,7 +172,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
             UPLOAD: upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
-    assert kept == ["junit.xml", "report.json", "report.md", "report.sarif"] * 2
+    assert kept == ["junit.xml", "report.html", "report.json", "report.md", "report.sarif", "report.svg"] * 2
 
 
 @pytest.mark.slow
@@ -254,7 +254,8 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     assert "::warning title=lab6-none::This repository is empty." in printed
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
-    assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "index.csv", "none.md"}
+    expected = {f"{name}.{ending}" for name in ("ada", "grace", "none") for ending in ("md", "svg")} | {"index.csv"}
+    assert {path.name for path in (runner.temp / "reports").iterdir()} == expected
 
 
 @pytest.mark.slow

@@ -293,9 +293,9 @@ def test_a_slanted_lidar_is_not_excused_by_the_base() -> None:
 # --- In every format --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", [kind for kind in Format if kind.needs != "identity"])
+@pytest.mark.parametrize("kind", [kind for kind in Format if kind.needs != "identity" and kind is not Format.SVG])
 def test_every_format_says_so(kind: Format) -> None:
-    """Each names the cause, and the run has failures."""
+    """Each names the cause, and the run has failures. A drawing shows only where points are lost."""
     done = grader("grade", SMALL_WHEELS, "--format", kind.value, COLUMNS="300")
     assert done.returncode == 1
     text = done.stdout.replace("\\", "")

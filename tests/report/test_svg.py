@@ -12,11 +12,16 @@ from grader.drawing.sheet import single_cell
 from grader.drawing.views import SIDE
 from grader.report.drawing import drawing_element, thumbnail_element
 from grader.report.formats import Format, render
+from grader.report.inspection import Inspection, main_root
+from grader.report.svg import inspection_svg
 from grader.report.svg_elements import DARK_RULES, LOOKS
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import read_urdf
 from grader.text import format_points
 from tests.command_line import run, run_with_input
 from tests.processor_time import processor_time
 from tests.report.readers import read_svg, svg_text
+from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import REPORTED, SAMPLES
 
 REFERENCE = "submissions/reference"
@@ -188,6 +193,17 @@ def test_what_cannot_be_drawn_is_said(text: str, code: int, says: str) -> None:
     root = inspected(text, code)
     assert says in words(root)
     assert not re.search(r"nan|inf", "".join(path.get("d") for path in root.iter("{*}path")))
+
+
+def test_every_text_that_the_reader_knows_is_drawn() -> None:
+    """The URDFs on which the reader is compared with ROS 2: no exception, and no coordinate that is not a number."""
+    for case in EDGE_CASES:
+        data = case.text if isinstance(case.text, bytes) else case.text.encode()
+        reading = read_urdf(data, "a.urdf")
+        robot = Configuration(reading.robot) if reading.robot is not None else None
+        root = inspection_svg(Inspection("a.urdf", reading, robot, main_root(robot) if robot is not None else None))
+        drawn = "".join(path.get("d") for path in read_svg(root).iter("{*}path"))
+        assert not re.search(r"[a-z]{2}|e", drawn), case.name
 
 
 @pytest.mark.parametrize("name", ["pictures-only", "empty-urdf", "truncated-file"])
