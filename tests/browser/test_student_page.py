@@ -198,7 +198,7 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     light = fresh.evaluate(PIXELS)
     fresh.emulate_media(color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(13, 17, 23)"
-    assert fresh.evaluate(PIXELS) != light
+    fresh.wait_for_function(f"light => ({PIXELS})() !== light", arg=light)
     assert fresh.pdf()[:5] == b"%PDF-"
     fresh.emulate_media(media="print", color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
@@ -209,6 +209,7 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     assert not fresh.locator("canvas").is_visible()
     assert fresh.locator("details td").first.is_visible()
     fresh.emulate_media(media="screen", color_scheme="light")
+    fresh.wait_for_function(f"light => ({PIXELS})() === light", arg=light)
 
 
 @pytest.mark.parametrize("width", [360, 800, 1400])

@@ -78,6 +78,7 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     pins = {pin.get("data-show") for pin in page.find_class("pin")}
     assert pins == {text.text for text in page.xpath("//*[@class='number']//*[text()]")}
     assert len(pins) == 5
+    assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
 
 
 def test_page_says_why_it_has_no_picture() -> None:

@@ -10,6 +10,13 @@ const distance = (one, other) => Math.max(...one.map((value, k) => Math.abs(valu
 const upOf = (pose) => [pose[2], pose[5], pose[8]];
 const above = (pose, point) => upOf(pose).reduce((sum, value, k) => sum + value * (point[k] - pose[9 + k]), 0);
 
+/* Whether two shapes look the same, within 1 mm and a degree; a cylinder may be turned about its axis. */
+function looksSame(one, other) {
+  const parallel = (k) => Math.abs([k, k + 3, k + 6].reduce((sum, m) => sum + one.pose[m] * other.pose[m], 0)) > 0.9998;
+  const axes = { box: [0, 1, 2], cylinder: [2], sphere: [] }[one.kind];
+  return one.kind === other.kind && distance(one.size, other.size) < 0.001 && distance(one.pose.slice(9), other.pose.slice(9)) < 0.001 && axes.every(parallel);
+}
+
 /* The middle and the radius of all that the robots show at rest, and half of the height in metres that a picture from START needs. */
 function enclosing(robots, resting) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -98,7 +105,9 @@ function makeScene(data) {
     const found = [], long = 0.16 * radius, main = state.mode === "reference" ? "reference" : "submission";
     const poses = Object.fromEntries(Object.entries(robots).map(([name, robot]) => [name, posesOf(robot, given)]));
     for (const name of Object.keys(robots)) {
-      if (state.mode === name || state.mode === "both") found.push(...solids(name, poses[name], state, colours), ...grounded(name, poses, state, colours));
+      if (state.mode !== name && state.mode !== "both") continue;
+      const shown = solids(name, poses[name], state, colours);
+      found.push(...(name === "submission" ? shown : shown.filter((one) => !found.some((other) => looksSame(one, other)))), ...grounded(name, poses, state, colours));
     }
     const own = (link) => (main === "submission" ? link : data.same[link]);
     const framed = poses[main].map((pose, link) => ({ pose, link })).filter(({ pose, link }) => pose && (state.frames || link === robots[main].root || own(link) === state.link));
