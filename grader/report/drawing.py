@@ -26,6 +26,7 @@ _MARGIN = 16.0
 _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
+_MAX_NAME, _MAX_TITLE = 60, 200  # characters
 _CROWDED = "So many shapes overlap that edges behind others are drawn as if they were in front."
 _NO_SHAPES = "There is no visual that can be drawn: only frames of links are shown."
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
@@ -95,7 +96,7 @@ def _root(title: str, words: str) -> Any:
     root = etree.Element(
         f"{{{SVG}}}svg", {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}, nsmap=_NAMESPACES
     )
-    put(root, "title", text=title)
+    put(root, "title", text=title[:_MAX_TITLE])
     if words:
         put(root, "desc", text=words)
     return root
@@ -120,7 +121,7 @@ def _put_bodies(group: Any, cell: Cell, shown: Projection) -> None:
     """Add the shapes from back to front, then hidden edges, then visible ones; thinner where the shapes are small."""
     for seen in shown.bodies:
         body = put(group, "path", "", {"d": path_data(cell, seen.outline, closed=True), **colour(seen.body.rgba)})
-        put(body, "title", text=seen.body.link)
+        put(body, "title", text=seen.body.link[:_MAX_NAME])
     sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in shown.bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
     hidden = {"stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"}

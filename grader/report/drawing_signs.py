@@ -27,14 +27,12 @@ class Signs:
     """The signs of one view: path data and texts by look, so that each look is written once."""
 
     def __init__(self) -> None:
-        self._paths: dict[str, list[str]] = {}
+        self._paths: dict[str, dict[str, None]] = {}
         self._texts: dict[str, list[tuple[Place, str]]] = {}
 
     def line(self, look: str, data: str) -> None:
         """Record path data, each once."""
-        known = self._paths.setdefault(look, [])
-        if data not in known:
-            known.append(data)
+        self._paths.setdefault(look, {})[data] = None
 
     def text(self, look: str, place: Place, text: str) -> None:
         """Record a text; its place is on its base line."""

@@ -10,6 +10,7 @@ SIZE = 12.0  # pixels
 LINE = 15.0  # from one line to the next
 _NARROW, _WIDE = frozenset(" .,:;'|!ijlt()[]fr-"), frozenset("mwMW@%")
 _MAX_LINES = 3
+_MAX_LENGTH = 1000  # characters: more do not fit into three lines
 
 
 def put_lines(group: Any, left: float, top: float, width: float, text: str, most: int = _MAX_LINES) -> float:
@@ -23,12 +24,17 @@ def put_lines(group: Any, left: float, top: float, width: float, text: str, most
 
 def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
     """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
-    lines = [""]
-    for word in printable(text).split(" "):
-        line = f"{lines[-1]} {word}" if lines[-1] else word
-        lines = [*lines[:-1], line] if text_width(line) <= width else [*lines, word]
-    lines = [cut(line, width) for line in lines if line]
-    return lines if len(lines) <= most else [*lines[: most - 1], _shortened(lines[most - 1], width)]
+    lines: list[str] = []
+    line = ""
+    for word in printable(text[:_MAX_LENGTH]).split():
+        longer = f"{line} {word}" if line else word
+        if line and text_width(longer) > width:
+            if len(lines) == most - 1:
+                return [*lines, _shortened(line, width)]
+            lines.append(line)
+            longer = word
+        line = cut(longer, width)
+    return [*lines, line] if line else lines
 
 
 def cut(text: str, width: float) -> str:

@@ -1,6 +1,7 @@
 """Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes their edits."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from grader.errors import InputError
@@ -20,7 +21,7 @@ def with_hints(
 ) -> tuple[Report, Fix | None]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
 
-    The rubric's level is the highest. Raises InputError where edits are to be written, but not shown.
+    The rubric's level is the highest. Pictures of the report show the reference only where the level does. Raises InputError where edits are to be written, but not shown.
     """
     allowed = report.rubric.hints
     level = allowed if wanted is None else min(allowed, wanted, key=LEVELS.index)
@@ -29,6 +30,8 @@ def with_hints(
         raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
     if wanted is not None and level != wanted:
         warn(f"--hints {wanted}: the rubric {report.rubric.id} allows hints up to the level {allowed}")
+    if level != allowed:
+        report = replace(report, rubric=replace(report.rubric, hints=level))
     if level == "none" or not (report.has_failures or is_fixed):
         return report, None
     try:

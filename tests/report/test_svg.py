@@ -154,6 +154,14 @@ def test_views_show_the_robot_at_one_scale() -> None:
     assert float(bar[2]) - float(bar[1]) == pytest.approx(scale * float(length[1]) / 100.0, abs=0.2)
 
 
+@pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
+def test_reference_is_shown_from_the_level_cause_on(level: str, is_shown: bool) -> None:
+    """Also if the option asks for less than the rubric allows; the numbers are there at each level."""
+    root = shown("grade", "submissions/lidar-buried/my_robot.urdf", "--hints", level, code=1)
+    assert (bool(paths(root, "reference")), "reference solution" in words(root)) == (is_shown, is_shown)
+    assert paths(root, "badge")
+
+
 def test_joint_position_moves_the_drawing() -> None:
     """A wheel that turns about its axis stays; the forearm of an arm does not."""
     arm = "submissions/equivalent-arm-plain"
@@ -163,6 +171,23 @@ def test_joint_position_moves_the_drawing() -> None:
     same = {name for name in one if [path.get("d") for path in one[name]] == [path.get("d") for path in other[name]]}
     assert "upper_arm" in one
     assert "forearm" not in same
+
+
+def test_xacro_is_drawn_as_it_expands() -> None:
+    """An arm in xacro with macros looks as the same arm in plain URDF."""
+    one, other = (bodies(shown("inspect", f"submissions/equivalent-arm-{name}")) for name in ("plain", "xacro-macros"))
+    assert {name: [path.get("d") for path in found] for name, found in one.items()} == {
+        name: [path.get("d") for path in found] for name, found in other.items()
+    }
+
+
+def test_long_names_are_cut() -> None:
+    """A name of 200,000 letters makes the drawing neither large nor slow."""
+    text = f'<robot name="{"x" * 200_000}">' + link("y" * 200_000, '<sphere radius="1"/>') + "</robot>"
+    with processor_time(1.0):
+        root = inspected(text)
+    assert len(root.findtext("{*}title")) == 200
+    assert list(bodies(root)) == ["y" * 60]
 
 
 def test_frame_of_the_drawing_can_be_chosen() -> None:
