@@ -11,7 +11,7 @@ from grader.usecases.writing import write_stdout
 
 Target = Literal["csv", "canvas", "moodle", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
-_OUTPUT = "The file to write, default: standard output; for html the folder."
+_OUTPUT = "The file to write (default: standard output); with html, the folder."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
@@ -35,7 +35,7 @@ def export(
     exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import
     overwrites no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row.
 
-    With html, the folder gets a page for each student, and index.html about the class, for the people who grade.
+    With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
 
     Examples:
 

@@ -30,8 +30,8 @@ def review(
     Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a comment: 3.5
     the roots are missing. You can stop at any time: marks are kept, and the next review continues with the rest.
 
-    With --html, the same review is a page in the browser, with pictures. The command prints its address, which works on this machine
-    only; Ctrl-C ends it.
+    With --html, you review on a page in the browser that shows the pictures. The command prints the address of the page, which works
+    on this machine only. Ctrl-C ends the review.
 
     Examples:
 
@@ -47,7 +47,7 @@ def review(
         from grader.usecases.review_page import review_in_browser
 
         if pictures is not None:
-            raise InputError("--html shows the pictures itself: leave out --pictures")
+            raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")
         write_stdout(review_in_browser(gradebook, criterion, by, port, TERMINAL))
         return 0
     if port:

@@ -91,14 +91,14 @@ def notes(report: Report) -> list[str]:
 
 
 def why_no_picture(report: Report) -> str:
-    """Return why no picture shows the robot of a report that has none."""
+    """Return why a report has no picture of the robot."""
     submission = report.submission
     urdf = submission.originals.urdf if submission.originals is not None else Absent()
     if submission.has_urdf and isinstance(urdf, Absent):
         return "No picture: the submission has changed or moved since it was graded."
     if submission.robot is None or not submission.robot.links:
         return "No picture: no robot could be read from the submission."
-    return "No picture: no link of the robot has a place."
+    return "No picture: no link of the robot has a pose."
 
 
 def first_ignored(report: Report) -> list[str]:

@@ -1,6 +1,6 @@
-"""The drawing of a robot as an SVG element: three views at one scale, a key of the signs, and what is called out.
+"""The drawing of a robot as an SVG element: three views at one scale, a key of the signs, and the failed criteria.
 
-The element needs no style sheet, script or other file. A page that has it inside adds `DARK_RULES` for dark mode.
+The element needs no style sheet, script or other file. A page that contains it adds `DARK_RULES` for dark mode.
 """
 
 from itertools import groupby
@@ -27,15 +27,15 @@ _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
 _MAX_NAME, _MAX_TITLE = 60, 200  # characters
-_CROWDED = "So many shapes overlap that edges behind others are drawn as if they were in front."
-_NO_SHAPES = "There is no visual that can be drawn: only frames of links are shown."
+_CROWDED = "Too many shapes overlap: edges that are hidden by other shapes are drawn as visible."
+_NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
 
 def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, legend: bool = True) -> Any:
     """Return the drawing of a robot, with `top` pixels left free above it; `legend` lists the criteria below it.
 
-    A screen reader says the title, and in words what is called out.
+    Screen readers read the title, and a description of the callouts.
     """
     root = _root(title or "Three views of the robot", description(picture))
     sheet = sheet_of(picture, top)
@@ -45,15 +45,15 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     for cell in sheet.cells:
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
         if not _put_view(put(root, "g"), cell, picture):
-            notes = (*picture.scene.missing, _CROWDED)  # said once
+            notes = (*picture.scene.missing, _CROWDED)  # one note for all views
     put_key(put(root, "g"), sheet, picture, legend=legend)
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view, where shapes and frames of the reference differ, and the way the wheels drive.
+    """Return a small picture of a robot: one view with the reference where it differs, and the driving directions of wheels.
 
-    Rings mark links that are called out for another reason.
+    Rings mark the links of callouts without a visible difference.
     """
     root = _root(f"The robot in the {view.title} view", description(picture))
     cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)

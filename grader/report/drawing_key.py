@@ -1,4 +1,4 @@
-"""The words of a drawing: the key of its signs with the scale bar, and the criteria that it calls out."""
+"""The words of a drawing: the key of its signs with the scale bar, and the failed criteria that its numbers refer to."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -20,7 +20,7 @@ _Draw = Callable[[Signs, Place], None]
 
 
 def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None:
-    """Add the scale bar, and each sign that the drawing has with its meaning; with a `legend` the criteria are below it."""
+    """Add the scale bar, and the meaning of each sign in the drawing; with a `legend` the criteria are listed below it."""
     left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
     signs = Signs()
     length, words = sheet.bar
@@ -52,7 +52,7 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
             "positive turn drives this way",
         )
     if any(wheel.travel is None for wheel in scene.wheels):
-        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "turned, it does not roll"
+        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "wheel does not roll"
     yield _draw_axes, "frame of a link: x, y, z"
     if len(scene.bodies) > 1:
         yield partial(_draw_line, "hidden"), "hidden edge"
@@ -70,7 +70,7 @@ def _draw_axes(signs: Signs, at: Place) -> None:
 
 
 def put_legend(root: Any, top: float, callouts: Sequence[Callout], notes: Sequence[str]) -> float:
-    """Add the criteria that are called out, and notes, below `top`; return where they end, in pixels."""
+    """Add the failed criteria of each callout, and notes, below `top`; return where they end, in pixels."""
     if not callouts and not notes:
         return top
     put(root, "path", "rule", {"d": segments([((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0))])})

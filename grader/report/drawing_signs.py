@@ -1,4 +1,4 @@
-"""The signs of a drawing: ground, frames with axes, the way wheels drive, the reference's outlines, numbers where criteria failed."""
+"""The signs of a drawing: ground, frames with axes, driving directions of wheels, outlines of the reference, numbers of callouts."""
 
 from collections.abc import Iterable, Iterator
 from math import hypot
@@ -24,7 +24,7 @@ _NO_HALO = ("ground", "dot-x", "dot-y", "dot-z")
 
 
 class Signs:
-    """The signs of one view: path data and texts by look, so that each look is written once."""
+    """The signs of one view: path data and texts by look, so that the attributes of each look are written once."""
 
     def __init__(self) -> None:
         self._paths: dict[str, dict[str, None]] = {}
@@ -52,7 +52,7 @@ class Signs:
 
 
 def add_ground(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add the ground as a line where it is seen from its edge, and that of the reference where it differs."""
+    """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
     ground = picture.scene.ground
     line = _ground_line(cell, ground) if ground is not None else None
     if line is not None:
@@ -73,7 +73,7 @@ def is_lifted(one: Transform, other: Transform) -> bool:
 
 
 def _ground_line(cell: Cell, ground: Transform) -> tuple[Place, Place] | None:
-    """Return both ends of the plane z = 0 of a frame in a cell, if it is seen from its edge and crosses the cell."""
+    """Return both ends of the plane z = 0 of a frame in a cell, if it is seen edge-on and crosses the cell."""
     across, down, depth = cell.direction(ground.rotate((0.0, 0.0, 1.0)))
     if abs(depth) > 1e-3 or abs(down) < 0.05:
         return None
@@ -105,7 +105,7 @@ def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> 
 
 
 def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
-    """Add the frames of links with their axes and letters, each that looks the same once."""
+    """Add the frames of links with their axes and letters; of frames that look the same, only one."""
     shown: set[object] = set()
     for link in links:
         pose = picture.scene.poses[link]
@@ -116,7 +116,7 @@ def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links
 
 
 def _look_of(cell: Cell, pose: Transform) -> tuple[int, ...]:
-    """Return what is equal for frames that look the same in a cell."""
+    """Return a key that is equal for frames that look the same in a cell."""
     seen = (value for _, axis in _AXES for value in cell.direction(pose.rotate(axis)))
     return (*map(round, cell.place(pose.translation)), *(round(10.0 * value) for value in seen))
 
@@ -151,7 +151,7 @@ def _tip(cell: Cell, start: Place, axis: Vector, length: float = _AXIS) -> tuple
 
 
 def add_wheels(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add an arrow at each wheel for the way in which a positive turn drives, or a crossed circle if it does not roll."""
+    """Add an arrow at each wheel for its driving direction at a positive turn, or a circle with a slash if it does not roll."""
     for wheel in picture.scene.wheels:
         start = cell.place(wheel.centre)
         travel = cell.direction(wheel.travel) if wheel.travel else None

@@ -28,11 +28,11 @@ def render_markdown(report: Report, picture: str = "") -> str:
 def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    It is for job summaries, which students read, so it has no model answers. GitHub shows no pictures of a job in them: the files of
-    `pictures` are named.
+    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there, so the
+    text names the files of `pictures`.
     """
     names = enumerated([code(printable(name)) for name in pictures])
-    named = f"The robot as a picture: {names}, among the files of this run if the job uploads them." if names else ""
+    named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""
     text = _joined(_blocks(report, named, answers=False))
     if len(text.encode()) <= most:
         return text
@@ -61,7 +61,7 @@ def _joined(blocks: Iterable[str]) -> str:
 
 
 def _picture(report: Report, address: str) -> str:
-    """Return the image of the robot's drawing with what it shows in words; empty without a robot."""
+    """Return the image of the robot's drawing with a description; empty without a robot."""
     if not address:
         return ""
     from grader.report.callouts import drawn  # late: few reports show a picture

@@ -41,7 +41,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
             )
     if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
         page = printable_path(folder / CLASS_PAGE)
-        raise InputError(f"cannot write {page}: a file that is not of this grader has the name; choose another folder")
+        raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
 def write_reports(
@@ -74,7 +74,7 @@ def write_reports(
 
 
 def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students who get none, and why. If the process that writes them ends, each is tried alone."""
+    """Wait for reports; return the students without one, and why. If the process that writes them crashes, each is retried alone."""
     try:
         task.result()
     except WorkerError as error:

@@ -1,7 +1,7 @@
 """A server for one person on this machine: bound to the loopback address, with a secret in the path of every address.
 
-Whoever does not know the secret learns nothing, and a page of another site can send nothing: the server answers only to its own host
-name, and takes only JSON of its own origin. One thread does all the work, so that nothing is written concurrently.
+Requests without the secret are refused. Requests of other websites are refused as well: the server accepts only its own host name,
+and only JSON from its own origin. One thread does all the work, so that nothing is written concurrently.
 """
 
 import hmac
@@ -35,14 +35,14 @@ _SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
 class Request(NamedTuple):
-    """What is asked for: the parts of the path after the secret, and the body of a POST."""
+    """A request: the parts of the path after the secret, and the body of a POST."""
 
     path: tuple[str, ...]
     body: bytes | None = None
 
 
 class Response(NamedTuple):
-    """What is answered. `location` is where a browser goes instead, after the secret."""
+    """A response. `location` is the path of a redirect, after the secret."""
 
     body: bytes
     media_type: str = TEXT
@@ -55,7 +55,7 @@ Application = Callable[[Request], Response]
 
 
 class _RefusedError(Exception):
-    """A request that is not answered."""
+    """A request that is refused."""
 
     def __init__(self, status: HTTPStatus, why: str) -> None:
         super().__init__(why)
@@ -68,7 +68,7 @@ class LocalServer(ThreadingHTTPServer):
     Raises InputError if the port is taken.
     """
 
-    daemon_threads = True  # a slow client keeps nobody waiting, also not at the end
+    daemon_threads = True  # a slow client does not delay the end of the server
     allow_reuse_address = True
     request_queue_size = MAX_CONNECTIONS
 
@@ -85,7 +85,7 @@ class LocalServer(ThreadingHTTPServer):
         self.url = f"http://{self.hosts[0]}/{self.token}/"
 
     def server_bind(self) -> None:
-        """Bind the socket; the name of the machine is not looked up."""
+        """Bind the socket, without a lookup of the machine's name."""
         self.socket.bind(self.server_address)
         self.server_address = self.socket.getsockname()
         self.server_name, self.server_port = HOST, int(self.server_address[1])
@@ -105,7 +105,7 @@ class LocalServer(ThreadingHTTPServer):
             self.free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of a connection that broke."""
+        """Ignore errors of broken connections."""
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -123,7 +123,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._serve(has_body=False)
 
     def do_POST(self) -> None:
-        """Answer a request of our own page."""
+        """Answer a request from the page."""
         self._serve(has_body=True)
 
     def _serve(self, *, has_body: bool) -> None:
@@ -138,7 +138,9 @@ class _Handler(BaseHTTPRequestHandler):
     def _path(self) -> tuple[str, ...]:
         """Return the path after the secret."""
         if len(self.headers.get_all("Host", [])) != 1 or self.headers["Host"].lower() not in self.server.hosts:
-            raise _RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "this server has another name")
+            raise _RefusedError(
+                HTTPStatus.MISDIRECTED_REQUEST, "wrong host name: use the address that the command has printed"
+            )
         if self.path == "/favicon.ico":  # every browser asks for it
             raise _RefusedError(HTTPStatus.OK, "")
         first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
@@ -147,15 +149,15 @@ class _Handler(BaseHTTPRequestHandler):
         return tuple(rest)
 
     def _body(self) -> bytes:
-        """Return the body of a request, which must be JSON of our own page."""
+        """Return the body of a request, which must be JSON from the page."""
         own = f"http://{self.headers['Host'].lower()}"
         if self.headers.get("Origin") != own or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin":
-            raise _RefusedError(HTTPStatus.FORBIDDEN, "this is not a request of the page")
+            raise _RefusedError(HTTPStatus.FORBIDDEN, "this request is not from the page")
         if self.headers.get_content_type() != "application/json":
-            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "only application/json")
+            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "the content type must be application/json")
         length = self.headers.get("Content-Length", "")
         if "Transfer-Encoding" in self.headers or not (length.isascii() and length.isdigit()):
-            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length is missing")
+            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the header Content-Length is missing")
         if len(length) > 9 or int(length) > MAX_BODY:
             raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MAX_BODY} bytes")
         return self.rfile.read(int(length))
@@ -183,7 +185,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(response.body)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """Answer a request that cannot be read, or has another method, in plain text."""
+        """Answer a request that cannot be read, or has an unsupported method, in plain text."""
         del explain
         self.close_connection = True
         status = HTTPStatus.METHOD_NOT_ALLOWED if code == HTTPStatus.NOT_IMPLEMENTED else HTTPStatus(code)

@@ -45,7 +45,7 @@ def summary(session: ReviewSession) -> str:
 
 
 def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
-    """Ask until there is a valid answer, and follow it; return False to stop."""
+    """Ask until there is a valid answer, and execute it; return False to stop."""
     assert session.item is not None
     criterion = session.item.result.criterion
     prompt = f"points, 0 to {format_points(criterion.points)} (? for help): "
@@ -78,7 +78,7 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
 
 
 def _undo(session: ReviewSession, terminal: Terminal) -> bool:
-    """Undo a mark of this review, and say what counts now; return whether there was one."""
+    """Undo a mark of this review, and print the mark that counts now; return whether there was one."""
     if not session.can_undo:
         terminal.warn("nothing to undo: this review has marked nothing")
         return False
@@ -94,7 +94,7 @@ def _undo(session: ReviewSession, terminal: Terminal) -> bool:
 
 
 def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Terminal) -> bool:
-    """Add a mark, unless the person keeps that of somebody else, and go to the next item; return False to stop."""
+    """Add a mark, unless the person keeps a newer mark of another grader, and go to the next item; return False to stop."""
     shown = None
     while True:
         try:

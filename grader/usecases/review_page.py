@@ -28,7 +28,7 @@ _HTML, _JSON = "text/html; charset=utf-8", "application/json"
 
 
 class ReviewPage:
-    """The application behind the page: shows items of a session by their number, and follows what the page sends."""
+    """The application of the server: shows items of a session by number, and executes the actions that the page sends."""
 
     def __init__(self, session: ReviewSession, gradebook: str, reader: ThreadPoolExecutor) -> None:
         self.session, self._gradebook, self._reader = session, gradebook, reader
@@ -36,7 +36,7 @@ class ReviewPage:
         self._notice = ""
 
     def __call__(self, request: Request) -> Response:
-        """Return the answer to a request; an error of the gradebook is a message."""
+        """Return the response to a request; errors of the gradebook become messages."""
         try:
             return self._posted(request) if request.body is not None else self._page(request.path)
         except GraderError as error:
@@ -49,7 +49,7 @@ class ReviewPage:
     def prepare(self) -> None:
         """Begin to read the pictures of the next item, while the person looks at this one."""
         here = self.session.position
-        with suppress(GraderError):  # the page of that item will say it
+        with suppress(GraderError):  # the page of that item shows the error
             self.session.go(here + 1)
             self._album()
         self.session.go(here)
@@ -82,13 +82,13 @@ class ReviewPage:
         return Response(found.data, found.kind.media_type)
 
     def _posted(self, request: Request) -> Response:
-        """Follow what the page sends: next, back, undo, or a mark."""
+        """Execute an action of the page: next, back, undo, or a mark."""
         sent = _read(request.body or b"")
         position = self._position(request.path[0]) if len(request.path) == 1 else None
         if request.path == ("end",):
             position = len(self.session.queue)
         if sent is None or position is None:
-            return _json({"error": "this is not a request of the page"}, HTTPStatus.BAD_REQUEST)
+            return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
         self.session.go(position)
         try:
             self._follow(sent)
@@ -101,7 +101,7 @@ class ReviewPage:
         match sent["do"]:
             case "mark":
                 if session.item is None:
-                    raise InputError("this is no longer graded")
+                    raise InputError("this criterion is no longer graded for this student")
                 points = read_points(sent["points"], session.item.result.criterion)
                 if points is None:
                     raise InputError("points are a number; u undoes a mark")
@@ -126,7 +126,7 @@ class ReviewPage:
             self._notice = f"Undone; the mark before it counts again: {mark_text(before)}" if before else "Undone."
 
     def _album(self) -> "Future[Album]":
-        """Return the pictures of the current item, which may still be read: in another thread, so that marks need not wait."""
+        """Return the pictures of the current item. Another thread reads them, so that marks are not delayed."""
         session, position = self.session, self.session.position
         if position not in self._albums and session.item is not None:
             self._albums[position] = self._reader.submit(item_pictures, session.item, session.rubric)
@@ -142,13 +142,13 @@ class ReviewPage:
         return int(number) - 1 if inside else None
 
     def _said(self) -> str:
-        """Return what the last action has to say, once."""
+        """Return the notice of the last action, once."""
         said, self._notice = self._notice, ""
         return said
 
 
 def _read(body: bytes) -> dict[str, Any] | None:
-    """Return what the page has sent, or None if it is of another form."""
+    """Return the action that the page has sent, or None if it is malformed."""
     try:
         sent = json.loads(body)
     except (ValueError, RecursionError):
@@ -178,7 +178,7 @@ def _json(answer: Mapping[str, Any], status: HTTPStatus = HTTPStatus.OK) -> Resp
 
 
 def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, terminal: Terminal) -> str:
-    """Serve a page that grades until it is interrupted, and return a summary. The address is printed. Raises InputError."""
+    """Serve the review page until Ctrl-C, and return a summary. Prints the address. Raises InputError."""
     with serving(gradebook, criterion, by, port) as (server, page):
         if server is None:
             return NOTHING

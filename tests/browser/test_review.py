@@ -102,7 +102,7 @@ def press(page: "Page", keys: str, then: str = "") -> None:
 
 
 def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) -> None:
-    """All are in the gradebook: typed points, all, half, none, comments, a comment that was given before, back and undo."""
+    """All are in the gradebook: typed points, all, half, none, comments, an earlier comment, back and undo."""
     page = open_page(review.url).page
     press(page, "'3.5' c 'the roots are missing' Enter", "2")
     press(page, "f Enter", "3")
@@ -207,7 +207,7 @@ def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, 
         page.wait_for_function("why => document.getElementById('error').textContent.includes(why)", arg=why)
         assert page.evaluate("document.activeElement.id") == "points"
     press(page, "n")
-    assert error.inner_text() == "Not saved. The same key again leaves without saving (next)."
+    assert error.inner_text() == "Not saved. Press the same key again to leave without saving (next)."
     press(page, "n", "2")
     press(page, "?")
     assert page.locator("#help").is_visible()

@@ -154,7 +154,7 @@ def test_a_foreign_index_is_not_replaced(top: Path) -> None:
     (top / "pages").mkdir()
     (top / "pages/index.html").write_text("mine")
     why = refusal(grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages"))
-    assert why.startswith(f"cannot write {top}/pages/index.html: a file that is not of this grader has the name")
+    assert why.startswith(f"cannot write {top}/pages/index.html: it exists, and grader did not write it")
     assert refusal(batch(top, "--reports", top / "pages", "--report-format", "html")) == why
     assert contents(top / "pages") == {"index.html": b"mine"}
 

@@ -358,7 +358,7 @@ def test_options(book: Path, review: Review) -> None:
     """A port that is taken, and options that do not fit together, are refused in one line."""
     html = ("review", "--html", "--gradebook", book)
     assert f"cannot listen on port {review.port} of 127.0.0.1" in refusal(grader(*html, "--port", review.port))
-    assert "leave out --pictures" in refusal(grader(*html, "--pictures", "out"))
+    assert "--pictures cannot be used with --html" in refusal(grader(*html, "--pictures", "out"))
     assert refusal(grader("review", "--gradebook", book, "--port", 8000)) == "--port needs --html"
     assert "did you mean 'essay'" in refusal(grader(*html, "--criterion", "esay"))
     for number in range(1, ITEMS + 1):

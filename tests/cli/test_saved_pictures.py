@@ -78,7 +78,7 @@ def test_job_summary_names_the_pictures(tmp_path: Path) -> None:
     variables = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary)}
     run(("grade", BURIED, *saves), **variables)
     text = summary.read_text(encoding="utf-8")
-    assert "The robot as a picture: `report.svg` and `report.html`, among the files of this run" in text
+    assert "Pictures of the robot: `report.svg` and `report.html` (in the artifacts of this run" in text
     assert (str(tmp_path) in text, images(summary)) == (False, [])
     summary.unlink()
     run(("grade", BURIED), **variables)

@@ -1,4 +1,4 @@
-"""A review: one person goes through what needs manual grading. Every mark is in the gradebook at once."""
+"""A review: one person grades the items that need manual grading. Each mark is saved immediately."""
 
 from decimal import Decimal
 from typing import NamedTuple
@@ -33,7 +33,7 @@ class _Given(NamedTuple):
 
 
 class ReviewSession:
-    """The queue of a review, and the place in it. What this review has marked stays in it; what others mark meanwhile is passed over.
+    """The queue of a review, and the place in it. Items that this review has marked stay in it; items that others mark meanwhile are skipped.
 
     `item` is the current item, None at the end of the queue. `by` is the name that reports show.
     """
@@ -76,7 +76,7 @@ class ReviewSession:
         self.next()
 
     def go(self, position: int) -> None:
-        """Go to a position in the queue, whatever has been done there; beyond it to the end."""
+        """Go to a position in the queue, also to a marked item; beyond the last one to the end."""
         inside = 0 <= position < len(self.queue)
         self.item = queued_result(self._grades, self.queue[position]) if inside else None
         self.position = position if inside else len(self.queue)
@@ -147,7 +147,7 @@ class ReviewSession:
         return given.before
 
     def _forget(self, position: int) -> None:
-        """Leave an item to others: what this review has marked there can no longer be undone."""
+        """Forget the marks of this review for an item: they can no longer be undone."""
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
 
@@ -158,9 +158,9 @@ class ReviewSession:
         return self._grades.rubric(self.item.grade.rubric)
 
     def comments(self) -> list[str]:
-        """Return comments that were given before for the criterion of the current item, the most frequent first.
+        """Return earlier comments for the criterion of the current item, the most frequent first.
 
-        A comment keeps its place during the review, because its key is its place.
+        A comment keeps its position during the review, because its key is its position.
         """
         criterion = self.queue[self.position].criterion
         found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS)
@@ -172,7 +172,7 @@ class ReviewSession:
 
 
 def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
-    """Return the pictures of an item, and what is not shown. The submission is opened again, and must be unchanged."""
+    """Return the pictures of an item, and files that are not shown. The submission is opened again and must be unchanged."""
     if not may_have_pictures(item.result):
         return ()
     submission = SubmissionSources(item.grade.files, rubric).submission

@@ -21,7 +21,7 @@ function makeCamera({ centre, radius, fit }) {
     const { right: r, up: u } = camera.basis(), metres = (2 * camera.distance() * Math.tan(FIELD / 2)) / height;
     camera.target = camera.target.map((value, k) => value - metres * (right * r[k] - up * u[k]));
   };
-  /* The matrix for WebGL, column by column, and where the eye is; `aspect` is width by height. */
+  /* The matrix for WebGL, column by column, and the position of the eye; `aspect` is width by height. */
   camera.seen = (aspect) => {
     const { right, up, toward } = camera.basis(), distance = camera.distance() * Math.max(1, 1 / aspect);
     const eye = camera.target.map((value, k) => value + distance * toward[k]);
@@ -39,13 +39,13 @@ function makeCamera({ centre, radius, fit }) {
   return camera;
 }
 
-/* Where a point is on the canvas, as shares of its width and height; null behind the eye. */
+/* The position of a point on the canvas, as shares of its width and height; null behind the eye. */
 function projected({ rows }, [x, y, z]) {
   const [u, v, , w] = rows.map((row) => row[0] * x + row[1] * y + row[2] * z + row[3]);
   return w > 0 ? [0.5 + u / w / 2, 0.5 - v / w / 2] : null;
 }
 
-/* The direction in which the eye sees a place of the canvas. */
+/* The direction from the eye to a position on the canvas. */
 function sightline({ toward, right, up, aspect }, x, y) {
   const s = Math.tan(FIELD / 2), u = (2 * x - 1) * s * aspect, v = (1 - 2 * y) * s;
   return toward.map((value, k) => u * right[k] + v * up[k] - value);

@@ -1,5 +1,5 @@
 "use strict";
-// The table of students: sort, search, and show a group. The state is in the address, so that "back" restores it.
+// The table of students: sort, search, filter by group. The state is in the address, so that "back" restores it.
 (() => {
   const { groups } = JSON.parse(document.getElementById("data").textContent);
   const place = document.getElementById("class");
@@ -10,7 +10,7 @@
   const compare = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
   const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
   const more = document.getElementById("more");
-  let words = null, state = new URLSearchParams(), most = 200; // rows: a browser needs a millisecond for ten
+  let words = null, state = new URLSearchParams(), most = 200; // rows: a browser needs 1 ms for ten
 
   function wordsOfRows() {
     const found = rows.map((row) => [...row.cells].map((cell) => cell.textContent));

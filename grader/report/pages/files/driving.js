@@ -1,5 +1,5 @@
 "use strict";
-/* The motion of a base whose wheels all turn by an angle and roll without slip, in the frame of the ground: their mean motion. */
+/* The motion of a base whose wheels all turn by an angle and roll without slip, in the frame of the ground, averaged over the wheels. */
 function rolled(wheels, ground, angle) {
   const moving = wheels.filter((wheel) => wheel.travel), back = inverse(ground);
   if (!moving.length) return IDENTITY;

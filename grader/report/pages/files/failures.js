@@ -1,5 +1,5 @@
 "use strict";
-/* A failure that has the focus or the pointer marks its link; its number turns the robot to it. */
+/* Highlight the link of the failure that has the focus or the pointer; a click on its number turns the robot to the link. */
 for (const badge of viewer ? document.querySelectorAll("[data-show]") : []) {
   const number = Number(badge.dataset.show), { link } = pageData.callouts.find((callout) => callout.number === number);
   const card = badge.closest("article");

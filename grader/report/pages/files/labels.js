@@ -1,5 +1,5 @@
 "use strict";
-/* Text over the canvas: numbers of what failed, letters of axes, the name of a link; and the pose of the chosen link in words. */
+/* Text over the canvas: numbers of failures, letters of axes, the name of a link; and the position of the selected link in words. */
 const MAX_LETTERED = 12; // frames
 
 function makeLabels(data, scene, canvas, holder, output) {
@@ -22,7 +22,7 @@ function makeLabels(data, scene, canvas, holder, output) {
     return found.filter(([, point]) => point);
   }
 
-  /* Numbers stand beside the ones before them. */
+  /* Put each number beside those that are already placed. */
   function place(found, seen) {
     const taken = [];
     while (holder.children.length < found.length) holder.append(document.createElement("span"));
@@ -44,7 +44,7 @@ function makeLabels(data, scene, canvas, holder, output) {
   function tell(state, poses) {
     const { links, frame } = data.robot, pose = poses.submission[state.link];
     const numbers = pose && pose.slice(9).map((value) => String(Math.round(value * 1e4) / 1e4 + 0)).join(" ");
-    const text = state.link < 0 ? "" : pose ? `at ${numbers} m in ${links[frame]}` : "has no place in the picture";
+    const text = state.link < 0 ? "" : pose ? `at ${numbers} m in ${links[frame]}` : "has no pose in the picture";
     if (output.textContent !== text) output.textContent = text;
   }
 

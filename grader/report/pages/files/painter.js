@@ -1,5 +1,5 @@
 "use strict";
-/* Draws solids with WebGL: opaque ones, then edges, then transparent ones from back to front, then what is seen through everything. */
+/* Draws solids with WebGL: opaque ones, then edges, then transparent ones from back to front, then what is visible through everything. */
 const VERTEX = `
 attribute vec3 position; attribute vec3 normal; attribute float side;
 uniform mat4 view; uniform mat4 model; uniform vec3 size; uniform vec2 pixel;
@@ -75,7 +75,7 @@ function makePainter(canvas) {
     gl.drawArrays(gl.TRIANGLES, 0, count);
   }
 
-  /* An item has kind, pose and size; rgba is the colour of its faces, `edge` of its edges. Seen through everything are edges with the
+  /* An item has kind, pose and size; rgba is the colour of its faces, `edge` of its edges. Visible through everything are edges with the
      colour `beneath`, edges and faces with the colour `through`, and faces with the colour `onTop`. */
   return function paint(items, camera, background, ratio) {
     gl.viewport(0, 0, canvas.width, canvas.height);

@@ -14,7 +14,7 @@
     if (busy) return;
     if (action !== "mark" && isChanged() && leaving !== action) {
       leaving = action;
-      say(`Not saved. The same key again leaves without saving (${action}).`);
+      say(`Not saved. Press the same key again to leave without saving (${action}).`);
       return;
     }
     busy = true;
@@ -29,7 +29,7 @@
       if (answer.newer) askToKeep(answer);
       else refuse(answer.error);
     } catch {
-      refuse("The review does not answer. Is its command still running? Nothing was saved.");
+      refuse("The review does not respond. Check that its command is still running, then try again.");
     }
     busy = false;
   }
@@ -126,7 +126,7 @@
   document.addEventListener("keydown", onKey);
   for (const button of document.querySelectorAll("[data-do]")) button.addEventListener("click", () => send(button.dataset.do));
   const status = find("status");
-  if (status?.textContent) {  // a live region is read when it changes
+  if (status?.textContent) {  // screen readers read a live region when it changes
     const text = status.textContent;
     status.textContent = "";
     setTimeout(() => { status.textContent = text; }, 100);

@@ -1,5 +1,5 @@
 "use strict";
-/* What is drawn of the robots at the positions of their joints: solids, the ground, arrows of wheels, frames. */
+/* What is drawn of the robots at given joint positions: solids, the ground, arrows of wheels, frames. */
 const AXES = [[[0.85, 0.16, 0.2], "x"], [[0, 0.54, 0.39], "y"], [[0.08, 0.41, 0.85], "z"]];
 const HIDDEN = 0.02; // a colour with less alpha shows edges only
 
@@ -17,7 +17,7 @@ function looksSame(one, other) {
   return one.kind === other.kind && distance(one.size, other.size) < 0.001 && distance(one.pose.slice(9), other.pose.slice(9)) < 0.001 && axes.every(parallel);
 }
 
-/* The middle and the radius of all that the robots show at rest, and half of the height in metres that a picture from START needs. */
+/* The centre and the radius of what the robots show at rest, and half of the height in metres that the view from START needs. */
 function enclosing(robots, resting) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const add = (pose, sizes) => [0, 1, 2].forEach((k) => {
@@ -57,7 +57,7 @@ function makeScene(data) {
     });
   }
 
-  /* Flat marks on the ground: where each wheel drives its base, or a cross. A way other than the reference's is red. */
+  /* Flat signs on the ground: the driving direction of each wheel, or a cross. A direction other than the reference's is red. */
   function arrows(name, poses, ground, state, colours) {
     return robots[name].wheels.map((wheel) => {
       const moved = compose(poses[wheel.parent] || IDENTITY, inverse(resting[name][wheel.parent] || IDENTITY));

@@ -83,7 +83,7 @@ function gridSolid() {
   return { faces: quad([-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [0, 0, 1]), edges };
 }
 
-/* The distance along a ray in a solid's own frame at which it meets the solid; Infinity where it does not. */
+/* The distance at which a ray, in the frame of a solid, enters it; Infinity if it does not. */
 const meeting = {
   box(start, way) {
     let near = -Infinity, far = Infinity;

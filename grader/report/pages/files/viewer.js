@@ -1,5 +1,5 @@
 "use strict";
-/* The robot in 3-D. It is drawn when something has changed; nothing runs in between. */
+/* The robot in 3-D. It is drawn only after a change. */
 const SPEED = 0.9; // radians in a second, of wheels that are driven
 const GLIDE = 280; // milliseconds
 
@@ -41,7 +41,7 @@ function makeViewer(data, section) {
     watchers.forEach((watcher) => watcher());
   }
 
-  /* The link that a pointer is on, or -1. */
+  /* The link under the pointer, or -1. */
   function pick(event) {
     if (!seen) return -1;
     const box = canvas.getBoundingClientRect(), way = sightline(seen, (event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
@@ -54,7 +54,7 @@ function makeViewer(data, section) {
     return nearest[1];
   }
 
-  /* Moves the camera; at once if less motion is preferred. */
+  /* Move the camera; at once if the system asks for reduced motion. */
   function glide(goal) {
     const from = { ...camera, target: camera.target }, began = performance.now(), to = { ...from, ...goal };
     const turn = Math.atan2(Math.sin(to.azimuth - from.azimuth), Math.cos(to.azimuth - from.azimuth));
@@ -70,7 +70,7 @@ function makeViewer(data, section) {
     step(began);
   }
 
-  /* Where the camera stands to see a point: on that side of the robot. */
+  /* The camera angles to see a point: from its side of the robot. */
   function aspect(point) {
     const away = point ? [0, 1].map((k) => point[k] - scene.centre[k]) : [0, 0];
     return Math.hypot(...away) > 0.15 * scene.radius ? { ...START, azimuth: Math.atan2(away[1], away[0]) + (away[1] > 0 ? -0.4 : 0.4) } : START;
@@ -83,7 +83,7 @@ function makeViewer(data, section) {
     notify();
   }
 
-  /* Turns to what is called out under a number. */
+  /* Select and face the link of a callout. */
   function show(number) {
     const { link, point } = numbered(number);
     choose(link);
@@ -102,7 +102,7 @@ function makeViewer(data, section) {
     notify();
   }
 
-  /* Turns all wheels slowly until it is stopped; by a step if less motion is preferred. */
+  /* Turn all wheels slowly until stopped; by one step if the system asks for reduced motion. */
   function drive(on) {
     let before = performance.now();
     cancelAnimationFrame(driving);
