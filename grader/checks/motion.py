@@ -60,10 +60,10 @@ def rolls_forward(
 def travel_of(
     robot: Configuration, link: str, joint: Joint, base: str, up: Vector
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
-    """Return the direction in which a small positive turn of a wheel drives its base, or None and why it does not roll.
+    """Return the direction in which a wheel drives its base at a small positive turn, or None and why it does not roll.
 
-    The direction is a unit vector in the base's frame, across the unit vector `up`. Raises MissingElement, NotDecided or UnknownShape
-    where that is not known.
+    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`. Raises MissingElement, NotDecided or
+    UnknownShape if it cannot be determined.
     """
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
     lowest = highest = poses[0]

@@ -1,4 +1,4 @@
-"""A document as lines of text, with its pages and the marks of its pictures."""
+"""A document as lines of text, with its pages and the positions of its pictures."""
 
 from bisect import bisect_right
 from typing import NamedTuple
@@ -12,7 +12,7 @@ CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
 
 
 class Document(NamedTuple):
-    """The first lines of a document. `pages` has the index of the first line of each page, and is empty where that is not known.
+    """The first lines of a document. `pages` contains the index of the first line of each page, or is empty if pages are not known.
 
     `limit` says what was not read of a document that is too long.
     """
@@ -40,7 +40,7 @@ class Document(NamedTuple):
         return [number for number, index in enumerate(self._marks) if start <= index < end]
 
     def picture_words(self, number: int) -> str:
-        """Return where the picture with a number is, for a person."""
+        """Return the location of a picture in words."""
         page = self.page(self._marks[number])
         return f"page {page} of {self.file.path}" if page else f"picture {number + 1} in {self.file.path}"
 
@@ -50,7 +50,7 @@ class Document(NamedTuple):
 
 
 class Unread(NamedTuple):
-    """A document that was not read, or not to its end, and why; the path is empty where several are meant."""
+    """A document that was not read completely, and why; the path is empty for several documents."""
 
     path: str
     reason: str

@@ -1,6 +1,6 @@
-"""Convert a Word or PDF file from standard input to its pictures on standard output, as the converter does to text.
+"""Extract the pictures of a Word or PDF file from standard input to standard output, as the converter extracts the text.
 
-Each picture has the number of its mark in that text.
+Each picture has the number of its position in that text.
 """
 
 import io
@@ -21,7 +21,7 @@ _PLAIN = {
     "/ASCII85Decode",
     "/ASCIIHexDecode",
     "/RunLengthDecode",
-}  # filters without a picture format
+}  # filters of raw samples
 _RELATIONSHIPS = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 _HEADER = struct.Struct(">II")  # before each picture: its number and its length
 _MAX_PICTURES, _MAX_BYTES = 60, 48 * 1024 * 1024  # in one document, and of all of them
@@ -29,7 +29,7 @@ _MAX_PALETTE = 3 * 256
 
 
 def main() -> int:
-    """Convert one document, with the arguments and limits of the converter beside this file: nothing else can be imported."""
+    """Convert one document, with the arguments and limits of the converter beside this file, the only module that can be imported."""
     converter = runpy.run_path(str(Path(__file__).with_name("converter.py")))
 
     def in_docx(data: bytes) -> bytes:
@@ -64,7 +64,7 @@ def _packed(pictures: Iterator[tuple[int, bytes]]) -> bytes:
 
 
 def _in_docx(document: Any, marks: Collection[str]) -> Iterator[tuple[int, bytes]]:
-    """Yield each picture with its number; what Word repeats in a paragraph for older versions is empty."""
+    """Yield each picture with its number; a copy that Word adds to a paragraph for older versions is empty."""
     number = 0
     for block in document.iter_inner_content():
         seen: set[str] = set()

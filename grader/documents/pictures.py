@@ -1,4 +1,4 @@
-"""Pictures that a browser shows safely. Their bytes decide what they are, never their names."""
+"""Pictures that a browser shows safely. Their type is determined from their bytes, never from their names."""
 
 import re
 from typing import NamedTuple
@@ -11,11 +11,11 @@ MAX_BYTES = 20 * 1024 * 1024
 MAX_PIXELS = 100_000_000  # a browser needs 4 bytes of memory for each
 _DIB_SIZES = frozenset(
     {12, 40, 52, 56, 64, 108, 124}
-)  # of the second header of a BMP file, which begins with "BM" only
+)  # of the second header of a BMP file: the signature "BM" alone is too short
 
 
 class ImageType(NamedTuple):
-    """A format that every browser shows: its name, its media type, and the ending of its files."""
+    """A format that every browser shows: its name, its media type, and its file name extension."""
 
     name: str
     media_type: str
@@ -64,12 +64,12 @@ class Picture(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Where it is, with its dimensions."""
+        """The location and the size in pixels."""
         return f"{self.where} ({self.width} x {self.height} pixels)"
 
 
 class NotShown(NamedTuple):
-    """A file or document of which no picture is shown, and why."""
+    """A file or document whose pictures are not shown, and why."""
 
     where: str
     reason: str
@@ -98,7 +98,7 @@ def read_picture(file: File) -> Picture | NotShown:
 
 
 def verified(data: bytes, where: str) -> Picture | NotShown:
-    """Return a picture whose format and size are known from its bytes, or why it is not shown."""
+    """Return a picture after its format and size are verified, or why it is not shown."""
     kind = image_type(data)
     if kind is None:
         what = next((words for signature, words in _NOT_SHOWN if signature.match(data[:_START])), "")

@@ -1,1 +1,1 @@
-"""What pictures show of a robot: shapes and frames by forward kinematics, the way its wheels drive, where criteria failed."""
+"""The content of pictures of a robot: shapes, frames, driving directions of wheels, failed criteria."""

@@ -1,6 +1,6 @@
-"""A shape that hides what is behind it: where a ray to the viewer enters it.
+"""A shape that hides what is behind it: the interval in which a ray to the viewer is inside.
 
-A shape is an intersection of slabs `|x| <= half` and of at most one round body, so a ray is in it between two bounds.
+A shape is an intersection of slabs `|x| <= half` and of at most one round body, so a ray is inside between two bounds.
 """
 
 from itertools import combinations
@@ -13,7 +13,7 @@ from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, cross, unit
 
 PARALLEL = 1e-9
-_SHRUNK = 1e-4  # metres: an edge that is less deep below a surface lies on it, as that of a wheel beside its base
+_SHRUNK = 1e-4  # metres: an edge less deep below a surface counts as on it, for example that of a wheel beside its base
 _SHARE = 0.01  # of the size of a shape that is smaller
 _NOTHING = (inf, -inf)
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -35,7 +35,7 @@ class Cover(NamedTuple):
 
     @classmethod
     def of(cls, shape: Shape, pose: Transform) -> "Cover":
-        """Return a shape with T_view_shape, shrunk a little, so that it does not cover edges on its surface."""
+        """Return the cover of a shape with T_view_shape, slightly shrunk, so that it does not cover edges on its surface."""
         inverse = pose.inverse()
         to_viewer = inverse.rotate(VIEWER)
         if isinstance(shape, Box):
@@ -52,14 +52,14 @@ class Cover(NamedTuple):
         return high >= low and high >= 0.0
 
     def depth(self, x: float, y: float) -> float | None:
-        """Return the z of the surface that the viewer sees at a place in the view; None beside the shape."""
+        """Return the z of the surface that the viewer sees at a point of the view; None beside the shape."""
         low, high = self._ray(self.T_shape_view.apply((x, y, 0.0)))
         return high if high >= low else None
 
     def planes(self) -> list[tuple[Vector, float]]:
         """Return normals n in the shape's frame with distances: something flat is covered only between the planes n.q = -+distance.
 
-        They are the flat faces, the planes to the viewer through the edges of the outline, and those around a round one.
+        They are the flat faces, and the planes through the outline that are parallel to the direction to the viewer.
         """
         v = self.to_viewer
         found = [(_AXES[axis], half) for axis, half in self.halves]
@@ -74,7 +74,7 @@ class Cover(NamedTuple):
         return found
 
     def _ray(self, q: Vector) -> tuple[float, float]:
-        """Return how far from a point to the viewer the shape begins and ends; the end is first where there is nothing."""
+        """Return the distances from a point toward the viewer at which the shape begins and ends; the end is less if the ray misses."""
         v = self.to_viewer
         low, high = -inf, inf
         for axis, half in self.halves:

@@ -1,7 +1,7 @@
-"""The pieces of an arc that a shape covers: those from which rays to the viewer enter the shape.
+"""The pieces of an arc that a shape covers: rays from them to the viewer enter the shape.
 
-Where an arc crosses a flat face or the straight outline of a shape is known exactly; its crossings with round surfaces are found
-by samples and bisection.
+Crossings of an arc with flat faces and straight outlines are computed exactly; crossings with round surfaces are found by samples
+and bisection.
 """
 
 from collections.abc import Iterator
@@ -55,7 +55,7 @@ def _crossings(arc: Arc, normal: Vector, distance: float) -> Iterator[float]:
 
 
 def _change(cover: Cover, local: Arc, low: float, high: float, *, was_covered: bool) -> float:
-    """Return the share between two at which an arc, in the shape's frame, begins or ceases to be covered."""
+    """Return the share between two at which an arc, in the shape's frame, starts or stops being covered."""
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
         low, high = (middle, high) if cover.covers(local.at(middle)) == was_covered else (low, middle)

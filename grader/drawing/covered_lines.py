@@ -1,4 +1,4 @@
-"""The piece of a straight edge that a shape covers: that from which rays to the viewer enter the shape.
+"""The piece of a straight edge that a shape covers: rays from it to the viewer enter the shape.
 
 The point at the share s of a line, moved by t to the viewer, is between two flat faces for t between two linear functions of s, and in
 a round body for `middle(s) -+ root(s)`. Some t of at least 0 must be in all of them. Comparing each lower bound with each upper one
@@ -26,7 +26,7 @@ def covered_line(cover: Cover, line: Line) -> list[Piece]:
 
 
 def _piece(cover: Cover, line: Line) -> Piece:
-    """Return the piece of a line that is covered; empty if its end is not above its start."""
+    """Return the piece of a line that is covered; it is empty if its end is not greater than its start."""
     q, v = cover.T_shape_view.apply(line.start), cover.to_viewer
     d = minus(cover.T_shape_view.apply(line.end), q)
     lows: list[_Linear] = [(0.0, 0.0)]
@@ -46,7 +46,7 @@ def _piece(cover: Cover, line: Line) -> Piece:
 
 
 def _round_pieces(cover: Cover, q: Vector, d: Vector, lows: list[_Linear], highs: list[_Linear]) -> Iterator[Piece]:
-    """Yield where a line is covered by the round body, and where by that and each slab at once."""
+    """Yield the piece that the round body covers, and the pieces that it and each slab cover at the same time."""
     v = cover.to_viewer
     a = cover.slope
     c = (cover.products(q, q) - cover.radius * cover.radius, 2.0 * cover.products(q, d), cover.products(d, d))
@@ -67,7 +67,7 @@ def _both(*pieces: Piece) -> Piece:
 
 
 def _where(linear: _Linear) -> Piece:
-    """Return where a linear function is not negative, between 0 and 1."""
+    """Return the interval between 0 and 1 in which a linear function is not negative."""
     value, slope = linear
     if slope == 0.0:
         return _EVERYWHERE if value >= 0.0 else _NOWHERE
@@ -76,7 +76,7 @@ def _where(linear: _Linear) -> Piece:
 
 
 def _where_root(under_root: tuple[float, float, float], linear: _Linear) -> Piece:
-    """Return where the root of a concave quadratic function is at least a linear one, between 0 and 1: one piece."""
+    """Return the interval between 0 and 1 in which the root of a concave quadratic function is at least a linear one."""
     a, b, c = under_root
     e, f = linear
     ends = {0.0, 1.0, *_roots(a, b, c), *_roots(a - e * e, b - 2.0 * e * f, c - f * f)}

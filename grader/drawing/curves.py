@@ -13,7 +13,7 @@ from grader.robot.transforms import Transform, Vector, cross, minus, unit
 Piece = tuple[float, float]  # shares of the length of a line, or of the angle of an arc
 Extents = tuple[tuple[float, float], ...]  # along x, y and z
 
-_EDGE_ON = 1e-9  # a face whose normal leans less to the viewer is seen from its edge
+_EDGE_ON = 1e-9  # a face whose normal points less to the viewer is seen edge-on
 _ALIGNED = (1.0, 0.0, 0.0)
 
 
@@ -40,7 +40,7 @@ class Line(NamedTuple):
 class Arc(NamedTuple):
     """A part of a circle: centre + cos(angle) major + sin(angle) minor, from `start` to `end` in radians.
 
-    In the view the two radii are the semi-axes of the ellipse: `major` is across the line of sight.
+    In the view the two radii are the semi-axes of the ellipse: `major` is perpendicular to the line of sight.
     """
 
     centre: Vector
@@ -71,14 +71,14 @@ Curve = Line | Arc
 
 
 class Edge(NamedTuple):
-    """An edge of a shape. `faces_viewer` is false where the shape itself hides it."""
+    """An edge of a shape. `faces_viewer` is false if the shape itself hides it."""
 
     curve: Curve
     faces_viewer: bool
 
 
 def edges(shape: Shape, pose: Transform) -> list[Edge]:
-    """Return the edges of a shape with T_view_shape, and the lines along which its curved surface turns away."""
+    """Return the edges of a shape with T_view_shape, and the silhouette lines of its curved surface."""
     match shape:
         case Box(size=size):
             return [*_box_edges(_columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)), pose)]
@@ -89,7 +89,7 @@ def edges(shape: Shape, pose: Transform) -> list[Edge]:
 
 
 def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
-    """Return the closed outline of a shape with T_view_shape: curves, each from the end of the one before."""
+    """Return the closed outline of a shape with T_view_shape: curves, each of which starts at the end of the one before."""
     match shape:
         case Box(size=size):
             corners = [*_zonogon(pose.translation, _columns(pose, size))]
@@ -105,7 +105,7 @@ def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
 class _Tube(NamedTuple):
     """A cylinder in a view: the centres of its caps, `near` the one that faces the viewer, and the radii of their rims.
 
-    `major` is across the line of sight, and `minor` points to the viewer, where the axis does not.
+    `major` is perpendicular to the line of sight; `minor` leans to the viewer, unless the axis points to the viewer.
     """
 
     near: Vector

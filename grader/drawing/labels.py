@@ -1,4 +1,4 @@
-"""Places for labels: near what they label, and none over another."""
+"""Positions for labels: near what they label, without overlaps."""
 
 from collections.abc import Iterable, Iterator
 from math import cos, hypot, sin, tau
@@ -37,7 +37,7 @@ class Rectangle(NamedTuple):
 
 
 class Labels:
-    """The labels of one cell. `taken` are the rectangles of labels, `marks` those of signs that labels rather leave free."""
+    """The labels of one cell. `taken` are the rectangles of labels, `marks` those of signs that labels should not cover."""
 
     def __init__(self, cell: Cell) -> None:
         self._room = Rectangle(cell.left, cell.top + TITLE, cell.left + cell.width, cell.top + cell.height)
@@ -45,11 +45,11 @@ class Labels:
         self._marks: list[Rectangle] = []
 
     def mark(self, places: Iterable[Place], margin: float = 2.0) -> None:
-        """Record a sign that labels should leave free."""
+        """Record a sign that labels should not cover."""
         self._marks.append(Rectangle.around(places, margin))
 
     def take(self, place: Place, width: float, height: float) -> bool:
-        """Put a label with its centre at a place, and return whether it is free."""
+        """Put a label with its centre at a place if it is free; return whether it is."""
         box = Rectangle.around([place], 0.0)
         box = Rectangle(box.left - width / 2, box.top - height / 2, box.right + width / 2, box.bottom + height / 2)
         if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
@@ -60,7 +60,7 @@ class Labels:
     def put_near(self, place: Place, size: float) -> Place:
         """Put a square label near a place and return its centre.
 
-        It overlaps no other label; of the free places it has the nearest one at which it and its leader line cover fewest signs.
+        The label overlaps no other label. Of the free places, the one with the lowest cost is taken: its distance, and the signs that it covers.
         """
         best, lowest = place, 1e6
         for ring, centre, box in self._free(place, size):

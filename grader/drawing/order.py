@@ -1,4 +1,4 @@
-"""The order in which shapes are painted: each after those that it hides."""
+"""The order in which shapes are painted: each shape after those that it hides."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from heapq import heapify, heappop, heappush
@@ -29,7 +29,7 @@ class Seen(NamedTuple):
 
     @classmethod
     def of(cls, body: Body, pose: Transform) -> "Seen":
-        """Return a body as it is seen in a view with T_view_shape."""
+        """Return a body in a view with T_view_shape."""
         extents = tuple(extent(body.shape, pose, axis) for axis in _AXES)
         return cls(body, pose, outline(body.shape, pose), extents, Cover.of(body.shape, pose))
 
@@ -62,7 +62,7 @@ def overlapping(seen: Sequence[Seen]) -> list[tuple[int, int]] | None:
 
 
 def painted(seen: Sequence[Seen], pairs: Iterable[tuple[int, int]]) -> list[int]:
-    """Return the positions of bodies from the back to the front; the pairs are those that overlap.
+    """Return the positions of bodies from back to front; `pairs` are the bodies that overlap.
 
     Where three bodies hide each other in turn, the one whose front is farthest comes first.
     """

@@ -1,4 +1,4 @@
-"""A graded robot as a picture shows it: the scene, where the reference differs, and which criteria failed where."""
+"""The content of a picture of a graded robot: the scene, differences from the reference, failed criteria."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -22,13 +22,13 @@ from grader.robot.transforms import Vector, minus
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 _FRAMES = ("relative_to", "base", "on", "of", "parent")  # and in whose frame
 _SAME = 0.001  # metres: shapes and frames that differ by less look equal
-_TURNED = 0.02  # radians, as well
+_TURNED = 0.02  # radians: the same for frames
 
 
 class Callout(NamedTuple):
     """The criteria that failed on a link, and the point that marks it in the picture, in metres in the scene's frame.
 
-    `point` is None where the link has no place in the picture; `link` is empty for criteria on the whole robot.
+    `point` is None if the link has no pose in the picture; `link` is empty for criteria on the whole robot.
     """
 
     number: int
@@ -41,9 +41,8 @@ class Callout(NamedTuple):
 class Picture:
     """What a picture of a graded robot shows.
 
-    `reference` is the reference solution in the same frame, None where there is none, or its rubric's hints must not tell it.
-    `outlines` are the bodies of the reference that links show which lost points, where they differ, and `frames` the links whose
-    frames differ there.
+    `reference` is the reference solution in the same frame; None if there is none, or if the hint level does not show it.
+    `outlines` and `frames` are what differs in the reference, for links that lost points: bodies, and links with another frame.
     """
 
     scene: Scene
@@ -54,7 +53,7 @@ class Picture:
 
 
 def picture_of(report: Report) -> Picture | None:
-    """Return the picture of a graded robot; None if there is no robot, or it can no longer be read."""
+    """Return the picture of a graded robot; None if there is no robot, or if it can no longer be read."""
     if report.submission.robot is None or not report.submission.robot.links:
         return None
     robot = Configuration(report.submission.robot)
@@ -76,7 +75,7 @@ def picture_of(report: Report) -> Picture | None:
 
 
 def _reference(rubric: Rubric) -> Configuration | None:
-    """Return the reference solution, unless the hints of the rubric do not say what should be."""
+    """Return the reference solution; None if the hint level does not show it."""
     if rubric.solution is None or rubric.hints in ("none", "place"):
         return None
     with suppress(InputError):
@@ -85,9 +84,9 @@ def _reference(rubric: Rubric) -> Configuration | None:
 
 
 def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
-    """Return the links of both robots in whose frames they are drawn: that in which the rubric measures most, else the roots.
+    """Return the links in whose frames both robots are drawn: the one that the rubric uses most as a frame, else the roots.
 
-    In that frame most links of the student's robot have a place.
+    Links in a larger tree of the student's robot come first, because more links have a pose there.
     """
     given = Counter(
         value
@@ -127,7 +126,7 @@ def _is_marked(result: Result) -> bool:
 
 
 def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configuration | None) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, the links in the order of the rubric."""
+    """Return the criteria by the link that they are about, in the order of the rubric."""
     found: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
@@ -152,7 +151,7 @@ def _differences(scene: Scene, reference: Scene, links: Sequence[str]) -> tuple[
 
 
 def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:
-    """Return whether a link of the scene shows a body where the reference does."""
+    """Return whether a link of the scene has the same body at the same place as the reference."""
     for body in scene.bodies:
         if body.link == wanted.link:
             found = mismatch(wanted.shape, reference.pose(wanted), body.shape, scene.pose(body), _SAME)
@@ -170,7 +169,7 @@ def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
 
 
 def _point(scene: Scene | None, link: str) -> Vector | None:
-    """Return the centre of what a link shows, or else the origin of its frame; None where it has no place."""
+    """Return the centre of the link's main visual, else the origin of its frame; None if it has no pose."""
     if scene is None or link not in scene.poses:
         return None
     pose = scene.poses[link]

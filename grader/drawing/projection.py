@@ -1,4 +1,4 @@
-"""A scene in one view: bodies from back to front, and their edges where they are seen and where they are hidden."""
+"""A scene in one view: bodies from back to front, and the visible and hidden pieces of their edges."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import hypot
@@ -16,16 +16,16 @@ _SHORT = 1e-5  # metres: shorter pieces are left out
 
 
 class Stroke(NamedTuple):
-    """A piece of an edge, and the colour on which it is seen: that of its body, or of the one in front of it."""
+    """A piece of an edge, and the colour behind it in the drawing: that of its body, or of the body that hides it."""
 
     curve: Curve
     rgba: Rgba
 
 
 class Projection(NamedTuple):
-    """What is seen of a scene in one view. `bodies` are from back to front; `hidden` strokes are behind or inside of bodies.
+    """The content of one view of a scene. `bodies` are from back to front; `hidden` strokes are behind or inside of bodies.
 
-    `is_complete` is false where so many bodies overlap that all edges which face the viewer count as visible.
+    `is_complete` is false if too many bodies overlap: then all edges that face the viewer count as visible.
     """
 
     view: View
@@ -36,7 +36,7 @@ class Projection(NamedTuple):
 
 
 def projection(scene: Scene, view: View) -> Projection:
-    """Return what is seen of a scene in a view."""
+    """Return the content of a view of a scene."""
     seen = seen_in(scene, scene.bodies, view)
     found = overlapping(seen)
     pairs = found or []
@@ -56,12 +56,12 @@ def projection(scene: Scene, view: View) -> Projection:
 
 
 def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
-    """Return bodies of a scene as they are seen in a view."""
+    """Return the bodies of a scene in a view."""
     return [Seen.of(body, view.T_view_frame @ scene.pose(body)) for body in bodies]
 
 
 def _add_strokes(seen: Seen, others: Sequence[Seen], visible: list[Stroke], hidden: list[Stroke]) -> None:
-    """Add the edges of a body: the pieces that other bodies cover are hidden, and those that it hides itself."""
+    """Add the edges of a body. Pieces that other bodies or the body itself cover are hidden."""
     own = seen.body.rgba
     for curve, faces_viewer in edges(seen.body.shape, seen.pose):
         extents = curve.extents()
@@ -115,7 +115,7 @@ def _length(curve: Curve) -> float:
 
 
 def _key(curve: Curve) -> tuple[object, ...]:
-    """Return what is equal for curves that look the same."""
+    """Return a key that is equal for curves that look the same."""
     if isinstance(curve, Line):
         return tuple(sorted((_rounded(curve.start), _rounded(curve.end))))
     return (_rounded(curve.centre), _rounded(curve.at(0.0)), _rounded(curve.at(0.5)), _rounded(curve.at(1.0)))

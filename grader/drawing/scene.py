@@ -1,4 +1,4 @@
-"""The content of a picture of a robot: shapes in their colours, frames, and the way its wheels drive."""
+"""The content of a picture of a robot: shapes in their colours, frames, and driving directions of wheels."""
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
 class Body(NamedTuple):
-    """A shape that a link shows: its place in the link's frame in metres, and its colour. Sizes are not negative."""
+    """A visible shape of a link: its pose in the link's frame in metres, and its colour. Sizes are not negative."""
 
     link: str
     shape: Shape
@@ -36,9 +36,9 @@ class Body(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre and the joint's unit axis, and the unit direction in which a positive turn drives.
+    """A wheel in the frame of a scene: its centre, the joint's unit axis, and the unit direction in which it drives at a positive turn.
 
-    `travel` is None where it does not roll.
+    `travel` is None if it does not roll.
     """
 
     link: str
@@ -50,10 +50,10 @@ class Wheel(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A robot as a picture shows it, in the frame of the link `frame`, whose z axis points up.
+    """The content of a picture of a robot, in the frame of the link `frame`, whose z axis points up.
 
-    `poses` are the T_frame_link of the links that have a place there, and `bodies` what these links show, in file order. `missing`
-    says in sentences what is not shown, and why.
+    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order. `missing` are
+    sentences that say what is not shown, and why.
     """
 
     robot: Configuration
@@ -69,14 +69,14 @@ class Scene:
 
     @property
     def ground(self) -> Transform | None:
-        """The frame of the root of the robot's tree, at whose z = 0 the robot stands; None if it has no place here."""
+        """The frame of the root of the robot's tree, at whose z = 0 the robot stands; None if it has no pose here."""
         return self.poses.get(self.robot.root_of(self.frame))
 
 
 def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
-    """Return what a picture of a robot shows in the frame of one of its links.
+    """Return the content of a picture of a robot, in the frame of one of its links.
 
-    `wheels` are links that are meant to roll; others count as wheels if they do and stand on the ground.
+    `wheels` are links that are meant to roll; other links count as wheels if they roll and stand on the ground.
     """
     poses, unplaced = _poses(robot, frame)
     shown, meshes, unshown = _bodies(robot, poses)
@@ -96,7 +96,7 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
 
 
 def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict[str, list[str]]]:
-    """Return the poses of the links that have one, and the other links that show something, by the reason."""
+    """Return the poses of links, and the links with visuals that have no pose, by reason."""
     poses: dict[str, Transform] = {}
     unplaced: dict[str, list[str]] = {}
     for link in robot.robot.links:
@@ -154,7 +154,7 @@ def _is_drawable(values: Vector) -> bool:
 
 
 def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
-    """Yield the links that are meant to roll, and those that turn without limit, show a round shape on the ground, and roll."""
+    """Yield the links that are meant to roll, and those with a continuous joint and a round shape on the ground that roll."""
     robot = scene.robot
     bottoms: dict[str, float] = {}
     for body in scene.bodies:
@@ -178,7 +178,7 @@ def _main_shape(robot: Configuration, link: str) -> object:
 
 
 def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
-    """Yield a link as a wheel, if a joint turns it and its shape and place are known."""
+    """Yield a link as a wheel, if a joint turns it and its shape and pose are known."""
     robot, frame = scene.robot, scene.frame
     try:
         joint: Joint = robot.moving_joint(link)

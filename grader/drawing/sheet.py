@@ -20,7 +20,7 @@ MARGIN = 40.0  # around the robot in each view, for labels
 TITLE = 18.0
 KEY_WIDTH = 226.0
 KEY_HEIGHT = 150.0
-_MAX_HEIGHT = 460.0  # of the robot in the views above each other
+_MAX_HEIGHT = 460.0  # of the top and the side view of the robot together
 _MAX_BAR = 90.0
 _SMALLEST = 0.02  # metres
 _MAX_FRAMES = 12
@@ -31,7 +31,7 @@ _UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
 
 
 class Cell(NamedTuple):
-    """A view on a sheet: its rectangle, where the frame's origin is, and pixels per metre."""
+    """A view on a sheet: its rectangle, the position of the frame's origin, and pixels per metre."""
 
     view: View
     left: float
@@ -42,21 +42,21 @@ class Cell(NamedTuple):
     scale: float
 
     def place(self, point: Vector) -> Place:
-        """Return where a point of the frame is on the sheet."""
+        """Return the position of a point of the frame on the sheet."""
         return self.on_sheet(self.view.T_view_frame.apply(point))
 
     def on_sheet(self, point: Vector) -> Place:
-        """Return where a point of the view is on the sheet."""
+        """Return the position of a point of the view on the sheet."""
         return self.origin[0] + self.scale * point[0], self.origin[1] - self.scale * point[1]
 
     def direction(self, direction: Vector) -> Vector:
-        """Return a direction of the frame on the sheet, with y down; the third number is its part to the viewer."""
+        """Return a direction of the frame on the sheet, with y down; the third number is its component to the viewer."""
         x, y, z = self.view.T_view_frame.rotate(direction)
         return (x, -y, z)
 
 
 class Sheet(NamedTuple):
-    """The cells of the three views, where the key is, the height that they need, and pixels per metre."""
+    """The cells of the three views, the position of the key, the total height, and pixels per metre."""
 
     cells: tuple[Cell, ...]
     key: Place
@@ -65,7 +65,7 @@ class Sheet(NamedTuple):
 
     @property
     def bar(self) -> tuple[float, str]:
-        """The length of the scale bar in pixels, and what it means: 1, 2 or 5 times a power of ten."""
+        """The length of the scale bar in pixels, and its label: 1, 2 or 5 times a power of ten."""
         longest = _MAX_BAR / self.scale
         power = 10.0 ** floor(log10(longest))
         length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
@@ -74,7 +74,7 @@ class Sheet(NamedTuple):
 
 
 def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
-    """Return the sheet for a picture, whose cells begin at `top`."""
+    """Return the sheet for a picture; its cells begin at `top`."""
     low, high = _bounds(picture)
     x, y, z = (max(most - least, _SMALLEST) for least, most in zip(low, high, strict=True))
     room = WIDTH - 4.0 * MARGIN
@@ -91,7 +91,7 @@ def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
 
 
 def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Cell:
-    """Return a view of a picture alone, in a rectangle of this size in pixels."""
+    """Return the cell of a single view, in a rectangle of this size in pixels."""
     low, high = _bounds(picture)
     (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
     scale = min(
@@ -101,7 +101,7 @@ def single_cell(picture: Picture, view: View, width: float, height: float, margi
 
 
 def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Cell:
-    """Return a cell with the middle of the robot in its middle, below its title."""
+    """Return a cell with the robot centred below the title."""
     u, v, _ = view.T_view_frame.apply(middle)
     origin = corner[0] + size[0] / 2.0 - scale * u, corner[1] + (title + size[1]) / 2.0 + scale * v
     return Cell(view, *corner, *size, origin, scale)
@@ -139,9 +139,9 @@ def _corners(scene: Scene, bodies: Iterable[Body]) -> Iterator[Vector]:
 
 
 def framed_links(picture: Picture) -> list[str]:
-    """Return the links whose frames are shown: those with visuals or callouts, and all if there are no visuals.
+    """Return the links whose frames are shown: those with visuals or callouts, or all links if there are no visuals.
 
-    Of very many links only those with callouts.
+    If there are too many links, only those with callouts.
     """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]

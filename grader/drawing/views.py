@@ -9,7 +9,7 @@ from grader.robot.transforms import Rotation, Transform, Vector
 
 
 class View(NamedTuple):
-    """A direction of projection: its name, where it is seen from, and T_view_frame, which has no translation."""
+    """A direction of projection: its name, the axis of the viewer, and T_view_frame, which has no translation."""
 
     name: str
     origin: str

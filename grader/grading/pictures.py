@@ -1,4 +1,4 @@
-"""The pictures that a person needs for a criterion: those of its evidence, and those in a written answer."""
+"""The pictures for manual grading of a criterion: those of its evidence, and those in a written answer."""
 
 from collections.abc import Iterable, Iterator
 
@@ -17,10 +17,10 @@ _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 
 
 def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotShown, ...]:
-    """Return the pictures of a criterion that needs manual grading, and the files of which none is shown.
+    """Return the pictures of a criterion that needs manual grading, and the files that are not shown.
 
-    A picture in a document is below the heading that names the evidence, or in the answer. Where no heading does, all are returned,
-    and all files where none is named for the evidence.
+    In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a heading all
+    pictures. If no file is named for the evidence, all files of evidence are searched.
     """
     paths = _files(result) or tuple(proof.file.path for proof in submission.proofs if _is_evidence(result))
     return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
@@ -36,7 +36,7 @@ def _is_evidence(result: Result) -> bool:
 
 
 def _files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files that an outcome names."""
+    """Return the paths of the files in an outcome."""
     outcome = result.outcome
     if isinstance(outcome.measured, tuple):
         return tuple(map(str, outcome.measured))
@@ -69,7 +69,7 @@ def _in_document(file: File, result: Result, documents: DocumentCollection) -> I
         yield NotShown(file.path, str(error))
         return
     for number, data in found:
-        if data:  # not shown already
+        if data:  # else a copy of a picture that is shown
             yield verified(data, document.picture_words(number))
     if numbers != {number for number, _ in found} or not numbers:
         reason = "it has pictures that cannot be extracted" if numbers else "no picture was found in it"
@@ -77,7 +77,7 @@ def _in_document(file: File, result: Result, documents: DocumentCollection) -> I
 
 
 def _spans(document: Document, result: Result, documents: DocumentCollection) -> list[tuple[int, int]]:
-    """Return the lines below which pictures belong to a criterion, as the first one and the one after the last."""
+    """Return the ranges of lines whose pictures belong to a criterion: the first line, and the line after the last."""
     criterion, outcome = result.criterion, result.outcome
     if isinstance(outcome.measured, str) and outcome.location is not None:
         start = outcome.location.line - 1
@@ -90,7 +90,7 @@ def _spans(document: Document, result: Result, documents: DocumentCollection) ->
 
 
 def _last(document: Document, head: Heading) -> int:
-    """Return the end of what is below a heading without empty lines, which may be on the next page."""
+    """Return the end of the lines below a heading, without empty lines at the end, which may be on the next page."""
     end = head.end
     while end > head.start + 1 and not document.lines[end - 1].strip():
         end -= 1
@@ -98,7 +98,7 @@ def _last(document: Document, head: Heading) -> int:
 
 
 def _limited(found: Iterable[Picture | NotShown]) -> Iterator[Picture | NotShown]:
-    """Yield what was found up to the limits for one criterion; then say that there is more."""
+    """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
     for count, one in enumerate(found):
         left -= len(one.data) if isinstance(one, Picture) else 0

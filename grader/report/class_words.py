@@ -1,4 +1,4 @@
-"""What is said of a class in every format for people: its counts, grades, criteria, edits and identical work."""
+"""The sentences about a class in every format for people: counts, grades, criteria, edits, identical work."""
 
 from collections.abc import Iterator, Sequence
 from decimal import ROUND_FLOOR, Decimal

@@ -19,11 +19,11 @@ Need = Literal["", "console", "base", "identity", "picture"]
 
 
 class Format(StrEnum):
-    """A format of a report: its name, the ending of its files, `module:function` in this package, and what that needs.
+    """A format of a report: its name, the ending of its files, `module:function` in this package, and what that function needs.
 
     The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base` is where
-    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment; `picture` is the address of
-    the robot's drawing that is saved beside the report.
+    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment; `picture` is the relative address
+    of the robot's drawing that is saved with the report.
     """
 
     ending: str

@@ -1,4 +1,4 @@
-"""A report as a picture: SVG with the three views of the graded robot, and the criteria that failed where they did."""
+"""A report as an SVG: three views of the graded robot, with its failed criteria."""
 
 from lxml import etree
 
@@ -18,7 +18,7 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 
 def render_svg(report: Report) -> str:
-    """Return the drawing of the graded robot as a file; without a robot it says why in a line."""
+    """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     return _file(
         picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), why_no_picture(report)
     )

@@ -1,4 +1,4 @@
-"""SVG elements: their looks in light and dark mode, curves as path data, text that is only text.
+"""SVG elements: their looks in light and dark mode, curves as path data, escaped text.
 
 The looks for light mode and print are presentation attributes, which need no style sheet; a style sheet changes the colours of
 classes in dark mode.
@@ -23,7 +23,7 @@ _LINE = {"fill": "none", "stroke-linecap": "round", "stroke-linejoin": "round"}
 _AXIS = {**_LINE, "stroke-width": "1.8"}
 _INK, _PAPER = "#1c1f23", "#ffffff"
 _DARK_INK, _DARK_PAPER = "#e8eaed", "#16191d"
-# The looks of each class: presentation attributes, and the colours that dark mode changes. No sign is told by its hue alone.
+# The looks of each class: presentation attributes, and the colours that dark mode changes. No sign depends on colour alone.
 LOOKS: Mapping[str, tuple[Mapping[str, str], Mapping[str, str]]] = {
     "paper": ({"fill": _PAPER}, {"fill": _DARK_PAPER}),
     "rule": ({**_LINE, "stroke": "#c9ced6"}, {"stroke": "#3a4048"}),
@@ -74,7 +74,7 @@ DARK_RULES = "".join(
 
 
 def put(parent: Any, tag: str, look: str = "", attributes: Mapping[str, object] = {}, text: str = "") -> Any:
-    """Add an element with the looks of a class, and return it. Its text is printable, whatever a student wrote."""
+    """Add an element with the looks of a class, and return it. Its text is made printable."""
     looks = {"class": look, **LOOKS[look][0]} if look else {}
     values = {name: number(value) if isinstance(value, float) else str(value) for name, value in attributes.items()}
     element = etree.SubElement(parent, f"{{{SVG}}}{tag}", {**looks, **values})
@@ -96,7 +96,7 @@ def colour(rgba: Rgba) -> dict[str, str]:
 
 
 def edge_look(rgba: Rgba) -> str:
-    """Return the class of edges that are seen on a colour: dark on light ones, light on dark ones."""
+    """Return the class of edges on a colour: dark edges on light colours, light edges on dark ones."""
     red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
     if alpha < 0.5:
         return "edge"
@@ -107,7 +107,7 @@ def edge_look(rgba: Rgba) -> str:
 
 
 def path_data(cell: Cell, curves: Iterable[Curve], *, closed: bool = False) -> str:
-    """Return curves of a view as path data on the sheet; a new piece begins wherever one does not continue the one before."""
+    """Return curves of a view as path data on the sheet; a curve that does not continue the one before begins a new subpath."""
     parts: list[str] = []
     last: _Point | None = None
     for curve in curves:
@@ -130,7 +130,7 @@ def _line(start: _Point, end: _Point) -> str:
 
 
 def _arc(cell: Cell, arc: Arc, start: _Point, end: _Point) -> str:
-    """Return an elliptical arc of at most half a turn; a line if it is seen from its edge."""
+    """Return an elliptical arc of at most half a turn; a line if it is seen edge-on."""
     rx, ry = (number(cell.scale * hypot(*radius[:2])) for radius in (arc.major, arc.minor))
     if "0" in (rx, ry):
         return _line(start, end)

@@ -1,4 +1,4 @@
-"""Lines of text in SVG, whose width only the viewer's font decides: it is estimated by a wide one."""
+"""Lines of text in SVG. Their width depends on the viewer's font, so it is estimated with a wide font."""
 
 from typing import Any
 from unicodedata import east_asian_width
@@ -14,7 +14,7 @@ _MAX_LENGTH = 1000  # characters: more do not fit into three lines
 
 
 def put_lines(group: Any, left: float, top: float, width: float, text: str, most: int = _MAX_LINES) -> float:
-    """Add a text in lines, the first of which is on `top`; return where the next one is."""
+    """Add a text in lines, the first of them at `top`; return the position of the next line."""
     lines = wrapped(text, width, most)
     paragraph = put(group, "text")
     for number, line in enumerate(lines):
@@ -38,7 +38,7 @@ def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
 
 
 def cut(text: str, width: float) -> str:
-    """Return a text; of a wider one the beginning, with "..."."""
+    """Return a text, cut with "..." if it is wider."""
     return text if text_width(text) <= width else _shortened(text, width)
 
 
@@ -49,7 +49,7 @@ def _shortened(text: str, width: float) -> str:
 
 
 def text_width(text: str) -> float:
-    """Return about how wide a text is in DejaVu Sans, which is wider than most fonts."""
+    """Return the estimated width of a text in DejaVu Sans, which is wider than most fonts."""
     return SIZE * sum(map(_letter_width, text))
 
 

@@ -16,13 +16,13 @@ from grader.text import without_commands
 from grader.usecases.report_names import CLASS_PAGE
 from grader.usecases.writing import save
 
-_MAX_ATTENTION = 100  # students who are named
+_MAX_ATTENTION = 100  # students in the list
 _MAX_TRIED = 3  # students whose submissions may have changed since they were graded
 
 
 def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
-    """Write the page into the folder of the students' pages. A submission that is gone has no link."""
-    from grader.report.pages.class_page import MAX_DRAWINGS, render_class_page  # late: they need a library of templates
+    """Write the page into the folder of the students' pages. Students whose submissions were removed have no link."""
+    from grader.report.pages.class_page import MAX_DRAWINGS, render_class_page  # late: they import jinja2
 
     with Gradebook(book) as opened:
         grades = Grades(opened, due)
@@ -39,14 +39,14 @@ def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[s
 
 
 def _drawings(executor: Executor, book: Path, examples: Mapping[CommonFix, Sequence[str]]) -> dict[str, str]:
-    """Return a picture as SVG of a robot that needs each edit, by the action; none where it can no longer be read.
+    """Return a picture of a robot that needs each edit, as SVG, by action; none if no robot can be read any more.
 
-    `examples` are students who need the edit, those first whose robots have the fewest other mistakes.
+    `examples` are students who need the edit, the highest score first.
     """
     tasks = {fix.action: executor.submit(_draw, str(book), keys, fix.criteria) for fix, keys in examples.items()}
     found = {}
     for action, task in tasks.items():
-        with suppress(Exception):  # whatever a robot does to its picture: the page is complete without it
+        with suppress(Exception):  # a crash affects only this picture
             found[action] = task.result()
     return found
 

@@ -28,7 +28,7 @@ _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
-    """Raise InputError for a folder that reports cannot be written to, or that the next run would take for a submission."""
+    """Raise InputError for a folder that reports cannot be written to, or that the next run would read as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
@@ -47,7 +47,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
 def write_reports(
     executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None, warn: Warn
 ) -> None:
-    """Write a report for every student who has a result; with the format HTML also the class's page. Raises InputError."""
+    """Write a report for every student with a result; with the format HTML, also the class's page. Raises InputError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The files of the reports of a class: a name for each student that is safe on every system, and the list of who has which."""
+"""The files of the reports of a class: a file name for each student that is safe on every system, and the index of names and students."""
 
 import hashlib
 import re
@@ -15,7 +15,7 @@ from grader.usecases.writing import save
 INDEX = "index.csv"  # the student of each report
 CLASS_PAGE = "index.html"
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
-# Device names of Windows, and the name of the class's page, also as a file system folds it.
+# Device names of Windows, and the name of the class's page, in upper and lower case.
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?|index")
 _DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
 _MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it stays below the 255 of a file system
@@ -44,7 +44,7 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 
 
 def update_index(folder: Path, names: dict[str, str]) -> list[str]:
-    """Record the student of each report, and return the names of earlier reports whose students have none now.
+    """Record the student of each report, and return the names of earlier reports of students who have no report now.
 
     Raises InputError if the report of another student would be overwritten.
     """

@@ -1,4 +1,4 @@
-"""Write the pictures of everything that needs manual grading as files, for a review without a browser."""
+"""Write the pictures of all items that need manual grading to files, for a review without a browser."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -19,7 +19,7 @@ PicturesOfItems = dict[QueuedCriterion, list[str]]
 def write_pictures(
     session: ReviewSession, book: Gradebook, folder: Path, show: Callable[[str], None]
 ) -> PicturesOfItems:
-    """Write each picture as FOLDER/CRITERION/STUDENT.NUMBER.ENDING, and show which is whose; return the lines of each item.
+    """Write each picture as FOLDER/CRITERION/STUDENT.NUMBER.ENDING, and print the student of each; return the lines of each item.
 
     The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
     Raises InputError.
@@ -44,7 +44,7 @@ def write_pictures(
 
 
 def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
-    """Write one picture and return the line about it; of what is not shown, only the line."""
+    """Write a picture and return the line about it; a picture that is not shown has only the line."""
     if isinstance(found, NotShown):
         return printable(str(found))
     path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")

@@ -1,4 +1,4 @@
-"""The files that `--save` names, and the pictures among them that other reports name."""
+"""The files of `--save`, and the pictures among them that other reports link to."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -33,7 +33,7 @@ def _read_save(text: str) -> tuple[Format, Path]:
 def picture_beside(file: Path, saves: Saves) -> str:
     """Return the address, relative to a file, of the SVG that the same run saves; empty if there is none.
 
-    A file in a folder that has only the root of the file system in common with the other one is not found from there.
+    It is also empty if both files have only the root of the file system in common.
     """
     for kind, picture in saves:
         if kind is Format.SVG and _is_regular(picture) and _is_regular(file):
@@ -48,12 +48,12 @@ def picture_beside(file: Path, saves: Saves) -> str:
 
 
 def address(path: str) -> str:
-    """Return a relative path as an address, in which no character has a meaning of its own."""
+    """Return a relative path as an address, with special characters escaped."""
     return quote(os.fsencode(path.replace(os.sep, "/")))
 
 
 def saved_pictures(saves: Saves) -> Iterator[str]:
-    """Yield the files with pictures that a run saves, without folders above the current one."""
+    """Yield the files with pictures that a run saves; of paths outside the current folder, only the name."""
     for kind, file in saves:
         if kind in _PICTURES and _is_regular(file):
             yield file.name if file.is_absolute() or ".." in file.parts else file.as_posix()

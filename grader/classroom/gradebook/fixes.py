@@ -19,9 +19,9 @@ _MAX_FIXES = 20
 
 @dataclass(frozen=True, slots=True)
 class CommonFix:
-    """A change that several students need, by their keys.
+    """A change that several students need; `students` are their keys.
 
-    `criteria` pass with it and `points` are gained, mostly. `example` are the edits of one student, without the names of their files.
+    `criteria` that pass and `points` gained are those of most students. `example` contains the edits of one student, without file names.
     """
 
     action: str

@@ -30,7 +30,7 @@ class Mark(NamedTuple):
 
 
 class AddedMark(NamedTuple):
-    """The id of a new mark, and the mark that was the newest before it, if there was one."""
+    """The id of a new mark, and the newest mark before it, if there is one."""
 
     id: int
     before: Mark | None
@@ -53,7 +53,7 @@ class QueuedCriterion(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class QueuedResult:
-    """A queued criterion in its current state, with its newest mark, also one that takes an earlier one back."""
+    """A queued criterion in its current state, with its newest mark, which may take an earlier one back."""
 
     grade: StudentGrade
     result: Result
@@ -105,7 +105,7 @@ def mark(
 
     `points` are None to take the newest mark back; `by` is the name that reports show, `why` the comment. `shown` is the id of the
     newest mark that the person has seen, 0 for none: if there is a newer one, nothing is written and NewerMarkError holds it.
-    `author` is for the audit, where it is not `by`. Raises InputError for a student who has submitted nothing.
+    `author` is the name for the audit, if it differs from `by`. Raises InputError for a student who has submitted nothing.
     """
     if grade.result is None:
         raise InputError(f"{grade.student.key} has submitted nothing that could be marked")
@@ -183,7 +183,7 @@ def queued_result(grades: Grades, queued: QueuedCriterion) -> QueuedResult | Non
 
 
 def reusable_comments(book: Gradebook, criterion: str, most: int) -> list[str]:
-    """Return the comments that marks of a criterion have, without repetitions, the most frequent first."""
+    """Return the comments of a criterion's marks, without duplicates, the most frequent first."""
     query = "SELECT comment FROM manual_mark WHERE criterion = ? AND comment <> '' GROUP BY comment"
     rows = book.rows(f"{query} ORDER BY count(*) DESC, min(id) LIMIT ?", criterion, most)
     return [str(comment) for (comment,) in rows]

@@ -1,4 +1,4 @@
-"""The students behind the figures of a class: those with a grade in a tenth, without points of a criterion, with a mistake."""
+"""Which students the figures of a class count: those with a grade in a tenth, with lost points in a criterion, with a mistake."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from grader.grading.rubric import Rubric
 
 
 class Member(NamedTuple):
-    """Where a graded student is counted.
+    """The figures in which a graded student is counted.
 
     `tenth` is None for a grade that is not in the statistics; `lost` are the positions of criteria with fewer points than the maximum,
     `mistakes` those of the common mistakes.
@@ -25,7 +25,7 @@ class Member(NamedTuple):
 
 
 def members(book: Gradebook, rubric: Rubric, statistics: ClassStatistics) -> Mapping[str, Member]:
-    """Return where each student is counted in the statistics of a rubric, by the key."""
+    """Return the figures in which each student is counted in the statistics of a rubric, by key."""
     most = int(statistics.out_of * UNITS_PER_POINT)
     counts = failure_counts(book, rubric)
     causes = groups_of(counts)

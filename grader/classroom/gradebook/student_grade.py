@@ -22,7 +22,7 @@ from grader.text import counted, counted_points
 class SubmissionFiles(NamedTuple):
     """Where a submission was when it was graded: paths below the class `root`, and the fingerprint and digest of the files.
 
-    The fingerprint is empty for files that were written just before, and changes if they are copied; the digest is that of their contents.
+    The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The digest is of the contents.
     """
 
     root: str

@@ -1,4 +1,4 @@
-"""A class at a glance: what the terminal, the JSON and the class's page say of it."""
+"""The summary of a class, for the terminal, the JSON and the class's page."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ _MAX_LISTED = 20
 class ClassSummary(NamedTuple):
     """The figures of a class under the newest rubric.
 
-    `fixes` are empty unless they were asked for. `evidence_only` counts the submissions with pictures or documents, but no URDF.
+    `fixes` is empty unless requested. `evidence_only` counts the submissions with pictures or documents, but no URDF.
     """
 
     rubric: Rubric

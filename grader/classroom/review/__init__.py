@@ -1,1 +1,1 @@
-"""Manual grading: the queue of what a person grades, and the pictures that belong to it."""
+"""Manual grading: the queue of items, and their pictures."""

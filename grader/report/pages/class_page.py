@@ -1,4 +1,4 @@
-"""The class's page: what an instructor sees of a class, with a table of students that links to their pages."""
+"""The class's page: statistics for graders, and a table of students with links to their pages."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -43,10 +43,10 @@ def render_class_page(
     """Return the class's page.
 
     Args:
-        summary: What is said of the class, with its edits.
+        summary: The summary of the class, with its edits.
         grades: The grades of the students.
-        links: The address of each student's page, by the key; relative to this page.
-        drawings: A picture of a robot that needs an edit, by the action of the edit: SVG that the grader has drawn.
+        links: The address of each student's page by key, relative to this page.
+        drawings: A picture of a robot that needs an edit, as SVG, by the action of the edit.
     """
     everybody = list(grades.all())
     counted_in = members(grades.book, summary.rubric, summary.statistics)
@@ -81,7 +81,7 @@ def render_class_page(
 
 
 def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
-    """Return what the script reads: for each group its label, its word, and the numbers of its rows."""
+    """Return the data of the script: for each group its label, its search word, and the numbers of its rows."""
     numbers = {row.key: number for number, row in enumerate(rows)}
     return {
         "groups": {

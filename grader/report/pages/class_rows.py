@@ -10,11 +10,11 @@ from grader.grading.rubric import Criterion
 from grader.report.class_words import VERDICTS, span
 from grader.text import counted, enumerated, format_points
 
-_MAX_LOST = 3  # criteria that are named in a row
+_MAX_LOST = 3  # criteria in a row
 
 
 class StudentRow(NamedTuple):
-    """A student in the table: the cells as text, empty where there is nothing to say; `link` leads to the report."""
+    """A student in the table: the cells as text, which may be empty; `link` is the address of the student's page."""
 
     key: str
     name: str
@@ -29,7 +29,7 @@ class StudentRow(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Students whom the table can show: what they have in common, their keys, and the word by which a search finds them."""
+    """A group of students that the table can show: its label, their keys, and the word by which a search finds them."""
 
     label: str
     keys: Collection[str]
@@ -39,7 +39,7 @@ class Group(NamedTuple):
 def student_rows(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member], links: Mapping[str, str]
 ) -> list[StudentRow]:
-    """Return a row for each student, sorted by the name."""
+    """Return a row for each student, sorted by name."""
     rows = [_row(grade, summary, members.get(grade.student.key), links) for grade in grades]
     return sorted(rows, key=lambda row: (row.name.casefold(), row.key))
 
@@ -71,7 +71,7 @@ def _costliest(summary: ClassSummary, member: Member | None) -> list[Criterion]:
 def groups(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member]
 ) -> Iterator[tuple[str, Group]]:
-    """Yield the groups of students that the page names, each with the id by which its buttons find it."""
+    """Yield the groups of students on the page, each with the id that its buttons use."""
     statistics = summary.statistics
     for verdict, words in VERDICTS.items():
         yield f"status-{verdict}", Group(words, [one.student.key for one in grades if one.verdict == verdict])

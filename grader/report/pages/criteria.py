@@ -1,4 +1,4 @@
-"""One criterion as a page shows it: what is wrong, where, what to do. All of it is text, which the template escapes."""
+"""The content of one criterion on a page: what is wrong, where, what to do. All of it is text, which the template escapes."""
 
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ SYMBOLS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending
 
 
 class SourceLines(NamedTuple):
-    """The lines of a file around a place, each with its number; the marked part of the one that is meant."""
+    """The lines of a file around a location, each with its number; one line has a marked part."""
 
     before: tuple[tuple[int, str], ...]
     number: int
@@ -28,14 +28,14 @@ class SourceLines(NamedTuple):
 
 
 class Change(NamedTuple):
-    """A hint: a sentence, and the lines of its diff, if it may show them."""
+    """A hint: a sentence, and the lines of its diff if the hint level shows them."""
 
     message: str
     lines: tuple[str, ...]
 
 
 class Card(NamedTuple):
-    """A criterion with everything that is said of it. `cost` is empty unless it lost points; `feedback` is the rubric's advice."""
+    """The content of a criterion. `cost` is empty unless it lost points; `feedback` is the rubric's advice."""
 
     id: str
     title: str
@@ -51,7 +51,7 @@ class Card(NamedTuple):
 
 
 def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
-    """Return a criterion that failed, with what is skipped because of it; feedback only where no hint says more, and once."""
+    """Return a failed criterion, with what is skipped because of it. Feedback is included once, and only without hints."""
     result, skipped = failure
     card = card_of(result, report)
     cost = signed_points(-failure.lost) if failure.lost else "0"
@@ -65,7 +65,7 @@ def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
 
 
 def card_of(result: Result, report: Report) -> Card:
-    """Return a criterion, whatever its status."""
+    """Return a criterion of any status."""
     details = result_details(result, report)
     criterion, where = result.criterion, details.location
     source = report.submission.source(where.path) if where is not None else None
@@ -83,9 +83,9 @@ def card_of(result: Result, report: Report) -> Card:
 
 
 def source_lines(source: Source, where: Location) -> SourceLines | None:
-    """Return the lines around a place, without the indentation that they share; None where its line is empty.
+    """Return the lines around a location, without their common indentation; None if its line is empty.
 
-    Of a very long line it returns the part around what is marked.
+    For a very long line, it returns the part around the marked text.
     """
     line = source.line(where.line)
     if not line.strip():

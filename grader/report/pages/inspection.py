@@ -16,7 +16,7 @@ _MAX_SHOWN = 500  # links of the tree, and problems
 
 
 def inspection_html(inspection: Inspection) -> str:
-    """Return the inspection as a page, with the joints at the given positions."""
+    """Return the inspection as an HTML page, with the joints at the given positions."""
     reading, robot = inspection.reading, inspection.robot
     picture = None
     if robot is not None and inspection.relative_to is not None:

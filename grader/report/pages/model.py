@@ -1,4 +1,4 @@
-"""A robot as the script of a page reads it: links, joints, shapes and wheels, from which it computes all poses itself."""
+"""The data of a robot for the script of a page: links, joints, shapes and wheels, from which the script computes all poses."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -20,7 +20,7 @@ _DIGITS = 9
 
 
 def picture_data(picture: Picture) -> dict[str, Any]:
-    """Return what the script shows: the robot, the reference, and where criteria failed."""
+    """Return the data of the script: the robot, the reference, and the callouts."""
     scene, reference = picture.scene, picture.reference
     links, others = _indices(scene), _indices(reference) if reference is not None else {}
     return {
@@ -40,7 +40,7 @@ def picture_data(picture: Picture) -> dict[str, Any]:
 
 
 def _indices(scene: Scene) -> dict[str, int]:
-    """Return the number of each link; of two with one name there is one."""
+    """Return the number of each link; links with the same name have one number."""
     return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
 
 
@@ -76,7 +76,7 @@ def _top_down(robot: Configuration, links: Mapping[str, int]) -> list[str]:
 
 
 def _joint(joint: Joint, robot: Configuration, links: Mapping[str, int], named: Mapping[str, int]) -> Data:
-    """Return a joint; one that no slider moves is fixed where it is."""
+    """Return a joint; a joint without a slider is fixed at its position."""
     found: dict[str, Any] = {"name": joint.name, "parent": links.get(joint.parent, -1)}
     origin = placed_by(IDENTITY, joint.origin) if joint.origin is not None else None
     if joint.type in _SLIDING:
@@ -102,7 +102,7 @@ def _axis(joint: Joint) -> list[float] | bool | None:
 
 
 def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]:
-    """Return link, kind, extents, pose, colour, and whether marks show that it turns."""
+    """Return link, kind, extents, pose, colour, and whether spokes are drawn to show that it turns."""
     match body.shape:
         case Box(size=size):
             kind, extents = "box", size
@@ -116,7 +116,7 @@ def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]
 
 
 def _wheel(wheel: Wheel, scene: Scene, links: Mapping[str, int], expected: Scene | None) -> Data:
-    """Return a wheel; `right` is whether it drives as the reference's."""
+    """Return a wheel; `right` is whether it drives in the same direction as the reference's wheel."""
     joint = scene.robot.joint(wheel.joint)
     pairs = [other for other in expected.wheels if other.link == wheel.link] if expected is not None else []
     wanted = pairs[0].travel if pairs else None
@@ -139,6 +139,6 @@ def _pose(pose: Transform) -> list[float] | None:
 
 
 def _numbers(values: Any) -> list[float]:
-    """Return numbers as short as JSON can hold them: 1e-9 is enough for a picture."""
+    """Return numbers rounded to 1e-9, which is enough for a picture, so that JSON is short."""
     rounded = (round(value, _DIGITS) + 0.0 for value in values)
     return [int(value) if value == int(value) else value for value in rounded]

@@ -17,7 +17,7 @@ _DECIMALS = Decimal("0.0001")
 
 
 class Place(NamedTuple):
-    """The place of an item in the queue, counted from 1, and whether this review has marked it, and anything."""
+    """The number of an item in the queue, from 1; whether this review has marked it; whether it has marked any item."""
 
     number: int
     total: int
@@ -28,7 +28,7 @@ class Place(NamedTuple):
 def item_page(
     item: QueuedResult, place: Place, found: Sequence[Picture | NotShown], comments: Sequence[str], notice: str
 ) -> str:
-    """Return the page of an item. Its pictures have the addresses NUMBER/picture/1 and so on."""
+    """Return the page of an item. The addresses of its pictures are NUMBER/picture/1 and so on."""
     criterion, outcome = item.result.criterion, item.result.outcome
     given = item.result.manual_mark
     answer = outcome.measured if isinstance(outcome.measured, str) else ""
@@ -61,7 +61,7 @@ def item_page(
 
 
 def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:
-    """Return the page after the last item: how many were marked and are left, and the next command."""
+    """Return the page after the last item: the numbers of marked and remaining items, and the next command."""
     values = {
         "title": "Nothing needs manual grading" if not left else f"{counted(left, 'item')} left",
         "summary": f"{counted(marked, 'item')} marked in this review.",

@@ -1,4 +1,4 @@
-"""The robot on a page: three views, the model that is shown in 3-D with its controls, and both in words."""
+"""The robot on a page: three views, the 3-D model with its controls, and a description."""
 
 from collections.abc import Iterator, Mapping
 from math import degrees
@@ -26,7 +26,7 @@ RULES = f"@media screen and (prefers-color-scheme: dark) {{{DARK_RULES}}}"  # of
 
 
 class LinkRow(NamedTuple):
-    """A link in words: what it shows, where its frame is, and its parent joint."""
+    """A link in words: its shapes, the pose of its frame, and its parent joint."""
 
     name: str
     shows: str
@@ -35,7 +35,7 @@ class LinkRow(NamedTuple):
 
 
 class RobotView(NamedTuple):
-    """What a page shows of a robot. `words` says it to a screen reader."""
+    """The content of a page about a robot. `words` is the description for screen readers."""
 
     data: Mapping[str, Any]
     sliders: tuple[Slider, ...]
@@ -56,7 +56,7 @@ def views(picture: Picture) -> Markup:
 
 
 def robot_view(picture: Picture) -> RobotView:
-    """Return what a page shows of the robot of a picture."""
+    """Return the content of a page about the robot of a picture."""
     scene = picture.scene
     sliders = tuple(sliders_of(scene))
     starts = [{"joint": one.name, "value": one.value * one.scale} for one in sliders if not one.follows]
@@ -90,7 +90,7 @@ def _rows(scene: Scene) -> Iterator[LinkRow]:
 
 
 def _why_none(scene: Scene, link: str) -> str:
-    """Return why a link has no place in the picture."""
+    """Return why a link has no pose in the picture."""
     try:
         scene.robot.pose(link, relative_to=scene.frame)
     except (MissingElement, NotDecided) as reason:
@@ -116,7 +116,7 @@ def _pose_words(pose: Transform) -> str:
 
 
 def _words(picture: Picture) -> str:
-    """Return the text alternative: what the robot consists of, and which criteria failed where."""
+    """Return the description for screen readers: the parts of the robot, and the failed criteria of each link."""
     robot: Configuration = picture.scene.robot
     moving = sum(1 for _ in sliders_of(picture.scene))
     words = f"{counted(len(robot.robot.links), 'link')}, {counted(moving, 'joint')} that can be moved."

@@ -1,4 +1,4 @@
-"""What every page has in common: templates that escape all text, one file without requests, a content security policy."""
+"""The common parts of all pages: templates that escape all text, one file without requests, a content security policy."""
 
 import hashlib
 import json
@@ -31,11 +31,11 @@ def render_page(
 
     Args:
         template: The name of the template. It extends base.html and gets the `values`. Text is escaped, and made printable.
-        values: What the template shows; markup only as `Markup`.
-        data: What the script reads, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
-        style: The names of the styles besides base.css, with spaces between.
-        script: The names of the scripts, with spaces between.
-        rules: More rules of style, of our own.
+        values: The values of the template; markup only as `Markup`.
+        data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
+        style: The names of the styles besides base.css, separated by spaces.
+        script: The names of the scripts, separated by spaces.
+        rules: More CSS rules, from the grader only.
         sources: Directives for the policy of a page that is served: "img-src 'self'".
     """
     styles, scripts = (
@@ -73,7 +73,7 @@ def _environment() -> Environment:
 
 
 def _printable(value: object) -> object:
-    """Return a text without control characters: a value that is shown has one line."""
+    """Return a text in one line, without control characters."""
     return printable(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
@@ -88,6 +88,6 @@ def _hash(text: str) -> str:
 
 
 def _json(data: Mapping[str, Any]) -> Markup:
-    """Return JSON that cannot end the element that it is in. Raises ValueError for NaN, which is no JSON."""
+    """Return JSON that cannot close its script element. Raises ValueError for NaN, which is no JSON."""
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return Markup(text.translate(_UNSAFE))  # noqa: S704  no character of it is markup

@@ -1,4 +1,4 @@
-"""The sliders that move the joints of a robot on a page, and which joints stay where they are."""
+"""The sliders of a robot's joints on a page, and the joints that cannot be moved."""
 
 from collections.abc import Iterator
 from math import isfinite, pi
@@ -10,7 +10,7 @@ from grader.text import quoted
 
 _HALF_TURN = 180.0
 _MAX_SLIDE = 1.0  # metres, of a joint without limits
-_MAX_RANGE = 1e5  # radians or metres: more is no limit
+_MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 
 
 class Slider(NamedTuple):
@@ -32,7 +32,7 @@ class Slider(NamedTuple):
 
 
 def sliders_of(scene: Scene) -> Iterator[Slider]:
-    """Yield a slider for each joint that turns or slides and holds a link with a place in the picture."""
+    """Yield a slider for each joint that turns or slides, and whose child link has a pose in the picture."""
     for number, joint in _moved(scene):
         if joint.type not in ("revolute", "continuous", "prismatic"):
             continue
@@ -49,7 +49,7 @@ def sliders_of(scene: Scene) -> Iterator[Slider]:
 
 
 def _range(joint: Joint) -> tuple[float, float]:
-    """Return the range of a joint in radians or metres; without usable limits half a turn, or a metre, to both sides."""
+    """Return the range of a joint in radians or metres; without usable limits, half a turn or a metre in both directions."""
     limit = joint.limit
     most = _MAX_SLIDE if joint.type == "prismatic" else pi
     if joint.type == "continuous" or limit is None or not 0.0 < limit.upper - limit.lower < _MAX_RANGE:
@@ -58,14 +58,14 @@ def _range(joint: Joint) -> tuple[float, float]:
 
 
 def unmoved(scene: Scene) -> Iterator[str]:
-    """Yield in words which joints could move, but not here."""
+    """Yield a sentence for each joint that moves in the robot, but not on the page."""
     for _, joint in _moved(scene):
         if joint.type in ("planar", "floating") and joint.name not in scene.robot.positions:
             yield f"{quoted(joint.name)} is {joint.type}: it stays at 0 here."
 
 
 def _moved(scene: Scene) -> Iterator[tuple[int, Joint]]:
-    """Yield the joints that hold a link with a place in the picture; of those with one name the first."""
+    """Yield the joints whose child link has a pose in the picture; of joints with the same name, the first."""
     names: set[str] = set()
     for number, joint in enumerate(scene.robot.robot.joints):
         if (

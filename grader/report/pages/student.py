@@ -1,4 +1,4 @@
-"""A report as one HTML page for the student: the score, the failures with what to do, the robot, and everything else."""
+"""A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -19,7 +19,7 @@ from grader.text import format_points, printable
 
 
 class Row(NamedTuple):
-    """A criterion in the list of all: its title is a fact only if it passed."""
+    """A criterion in the list of all criteria. `title` is empty unless it passed."""
 
     id: str
     title: str
@@ -29,7 +29,7 @@ class Row(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """The criteria about one thing, with their points together."""
+    """A group of criteria, with the sum of their points."""
 
     title: str
     points: str

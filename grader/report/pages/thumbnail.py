@@ -1,4 +1,4 @@
-"""A small picture of a robot that needs an edit: only what the edit changes differs from the reference."""
+"""A small picture of a robot that needs an edit: it shows only the differences that the edit removes."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -16,7 +16,7 @@ _SAME_WAY = 0.9  # cosine
 
 
 def thumbnail(report: Report, criteria: Collection[str]) -> str:
-    """Return a picture of a graded robot as SVG, with what some criteria are about.
+    """Return a picture of a graded robot as SVG, with the differences that some criteria are about.
 
     It is empty if none of them is about a link, or if the robot can no longer be read.
     """
@@ -50,7 +50,7 @@ def _about(picture: Picture, criteria: Collection[str]) -> Picture:
 
 
 def _drives_elsewhere(picture: Picture) -> bool:
-    """Return whether a wheel drives another way than that of the reference, which is seen from above."""
+    """Return whether a wheel drives in another direction than the reference's, which is visible from above."""
     expected = _travels(picture.reference) if picture.reference is not None else {}
     return any(
         wheel.travel is None or dot(wheel.travel, expected[wheel.link]) < _SAME_WAY
