@@ -57,7 +57,7 @@ def render_class_page(
         "title": summary.rubric.title,
         "rubric": summary.rubric,
         "counts": [(f"status-{verdict}", words) for verdict, words in VERDICTS.items()],
-        "others": [("pending", "need manual grading"), ("late", "late")],
+        "others": [("pending", "to grade manually"), ("late", "late")],
         "earlier": earlier_line(summary.statistics),
         "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
         "reasons": summary.statistics.reasons[1:],
