@@ -1,4 +1,4 @@
-"""Draw the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser` installed."""
+"""Take the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser` installed."""
 
 import shutil
 import subprocess
@@ -22,7 +22,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 @contextmanager
 def browser() -> Iterator["Browser"]:
-    """Start a headless browser that draws WebGL without a graphics card."""
+    """Start a headless browser that renders WebGL without a graphics card."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -60,7 +60,7 @@ def samples_of_lab6(folder: Path) -> Path:
 
 
 def main() -> None:
-    """Draw all of them."""
+    """Take all screenshots."""
     FOLDER.mkdir(exist_ok=True)
     with TemporaryDirectory() as folder, browser() as started:
         for name in STUDENTS:

@@ -22,7 +22,10 @@ def review(
     ] = None,
     html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
     port: Annotated[
-        int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help="The port of the page; default: any.")
+        int,
+        typer.Option(
+            metavar="N", min=0, max=65535, show_default=False, help="The port of the page; default: any free port."
+        ),
     ] = 0,
 ) -> int:
     """Grade what needs manual grading, one item at a time.

@@ -12,12 +12,12 @@ from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
 _AXIS = 20.0  # pixels
-_LONG_AXIS = 32.0  # of a frame of the reference, which is seen beside the robot's own
+_LONG_AXIS = 32.0  # of a frame of the reference, so that it is visible beside the robot's own
 _LETTER = 7.0  # behind the tip of an axis
 _ARROW = 30.0
 _HEAD = 6.0
 _RADIUS = 9.0  # of a number
-_END_ON = 0.2  # of its length: an axis that is seen shorter is a dot
+_END_ON = 0.2  # of its length: an axis that appears shorter is a dot
 _SAME = 0.001  # metres
 _AXES: tuple[tuple[str, Vector], ...] = (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0)))
 _NO_HALO = ("ground", "dot-x", "dot-y", "dot-z")
@@ -145,7 +145,7 @@ def _add_letter(signs: Signs, labels: Labels, start: Place, tip: Place, name: st
 
 
 def _tip(cell: Cell, start: Place, axis: Vector, length: float = _AXIS) -> tuple[Place, float]:
-    """Return where an axis ends on the sheet, and the part of its length that is seen."""
+    """Return the end of an axis on the sheet, and its apparent share of its length."""
     x, y, _ = cell.direction(axis)
     return (start[0] + length * x, start[1] + length * y), hypot(x, y)
 

@@ -89,7 +89,8 @@ def render(
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
     `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal` shows
-    everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises InputError if the environment does not say whose result it is (Classroom 50).
+    everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises InputError if the
+    environment does not say whose result it is (Classroom 50).
     """
     function = _function(kind)
     if kind.needs == "console":
