@@ -107,7 +107,7 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def pictures(self, file: File) -> list[tuple[int, bytes]]:
-        """Return the pictures in a Word or PDF file, each with the number of its mark in the text. Raises InputError."""
+        """Return the pictures in a Word or PDF file, each with the number of its position in the text. Raises InputError."""
         return list(embedded_pictures.unpacked(self._convert(file, embedded_pictures)))
 
     def _convert(self, file: File, script: ModuleType = converter) -> bytes:

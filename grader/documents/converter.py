@@ -91,7 +91,7 @@ def _limit(seconds: int) -> None:
 
 
 def opened(data: bytes) -> Any:
-    """Return a Word document. Raises ValueError if it unpacks to more than one."""
+    """Return a Word document. Raises ValueError if its unpacked size exceeds the limit."""
     import zipfile
 
     import docx

@@ -111,7 +111,7 @@ def _may_match(wanted: Label, proof: Proof) -> bool:
 
 
 def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
-    """Return the headings of documents with the first of these labels that any has."""
+    """Return the headings of documents with the first of these labels that occurs."""
     return [(document, head) for document, head, _ in _headed(documents, [read_label(name) for name in names])]
 
 
@@ -123,7 +123,7 @@ def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tupl
 
 
 def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
-    """Yield the headings of documents with the first of the labels that any has, and whether each is certain."""
+    """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
     for document, head, label in _headed(documents, wanted):
         yield _below(document, head), _is_certain(label, document, head)
 

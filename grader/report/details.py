@@ -85,7 +85,7 @@ def status_of(result: Result) -> str:
 
 
 def group_status(group: Group) -> str:
-    """Return the status of a group: that of its worst criterion; what has its points by a mark or carried forward passed."""
+    """Return the status of a group: that of its worst criterion. Criteria with all points by a mark or carried forward count as passed."""
     open_or_lost = [result for result in group.results if result.points < result.criterion.points]
     if any(is_failure(result) for result in open_or_lost):
         return "failed"

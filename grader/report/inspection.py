@@ -116,7 +116,7 @@ def effect(reading: Reading) -> str:
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
-    """Yield every link after its parent: lines that lead to it, its name, and its parent joint in words."""
+    """Yield every link after its parent: the branches before it, its name, and its parent joint in words."""
     children: dict[str, list[Joint]] = {}
     for joint in robot.parent_joints.values():
         children.setdefault(joint.parent, []).append(joint)

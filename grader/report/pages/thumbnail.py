@@ -31,7 +31,7 @@ def thumbnail(report: Report, criteria: Collection[str]) -> str:
 def _about(picture: Picture, criteria: Collection[str]) -> Picture:
     """Return a picture with only those differences from the reference that some criteria are about.
 
-    A frame is shown only where neither a shape nor an arrow shows the difference.
+    A frame is shown only if neither a shape nor an arrow shows the difference.
     """
     callouts = tuple(
         callout for callout in picture.callouts if any(result.criterion.id in criteria for result in callout.results)
