@@ -48,10 +48,10 @@ def render_class_page(
         links: The address of each student's page by key, relative to this page.
         drawings: A picture of a robot that needs an edit, as SVG, by the action of the edit.
     """
-    everybody = list(grades.all())
+    all_grades = list(grades.all())
     counted_in = members(grades.book, summary.rubric, summary.statistics)
-    rows = student_rows(everybody, summary, counted_in, links)
-    found = {name: group for name, group in groups(everybody, summary, counted_in) if group.keys}
+    rows = student_rows(all_grades, summary, counted_in, links)
+    found = {name: group for name, group in groups(all_grades, summary, counted_in) if group.keys}
     values = {
         "version": __version__,
         "title": summary.rubric.title,
