@@ -46,7 +46,7 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
         if not _put_view(put(root, "g"), cell, picture):
             notes = (*picture.scene.missing, _CROWDED)  # said once
-    put_key(put(root, "g"), sheet, picture)
+    put_key(put(root, "g"), sheet, picture, legend=legend)
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 

@@ -19,26 +19,29 @@ _INDENT = 26.0
 _Draw = Callable[[Signs, Place], None]
 
 
-def put_key(group: Any, sheet: Sheet, picture: Picture) -> None:
-    """Add the scale bar, and each sign that the drawing has with its meaning."""
+def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None:
+    """Add the scale bar, and each sign that the drawing has with its meaning; with a `legend` the criteria are below it."""
     left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
     signs = Signs()
     length, words = sheet.bar
     ends = (((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))
     signs.line("ground", segments([((left, top), (left + length, top)), *ends]))
     signs.text("text", (left + length + 8.0, top + 4.0), words)
-    for row, (draw, meaning) in enumerate(_meanings(picture), 1):
+    for row, (draw, meaning) in enumerate(_meanings(picture, legend=legend), 1):
         place = left, top + 6.0 + row * _ROW
         draw(signs, place)
         signs.text("faint", (left + _SIGN, place[1] + 4.0), meaning)
     signs.put(group)
 
 
-def _meanings(picture: Picture) -> Iterator[tuple[_Draw, str]]:
+def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     """Yield the signs of a drawing with their meanings."""
     scene, reference = picture.scene, picture.reference
     if any(callout.point is not None for callout in picture.callouts):
-        yield lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1), "points lost: see below"
+        yield (
+            lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1),
+            f"points lost{': see below' if legend else ''}",
+        )
     grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
     is_elsewhere = grounds[0] is not None and grounds[1] is not None and is_lifted(grounds[0], grounds[1])
     if picture.outlines or picture.frames or is_elsewhere:

@@ -1,6 +1,6 @@
 """Write the class's page beside the pages of its students."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
 from datetime import datetime
@@ -27,19 +27,23 @@ def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[s
     with Gradebook(book) as opened:
         grades = Grades(opened, due)
         summary = summary_of(grades, with_fixes=True, listed=_MAX_ATTENTION)
-        links = {
-            grade.student.key: quote(f"{names[grade.student.key]}.{Format.HTML.ending}")
-            for grade in grades.all()
-            if grade.student.key in names and not grade.is_gone
+        there = {grade.student.key: grade for grade in grades.all() if grade.student.key in names and not grade.is_gone}
+        links = {key: quote(f"{names[key]}.{Format.HTML.ending}") for key in there}
+        examples = {
+            fix: sorted((key for key in fix.students if key in there), key=lambda key: -there[key].score)[:_MAX_TRIED]
+            for fix in summary.fixes[:MAX_DRAWINGS]
         }
-        drawings = _drawings(executor, book, summary.fixes[:MAX_DRAWINGS])
+        drawings = _drawings(executor, book, examples)
         page = render_class_page(summary, grades, links, drawings)
     save(folder / CLASS_PAGE, without_commands(page))
 
 
-def _drawings(executor: Executor, book: Path, fixes: Collection[CommonFix]) -> dict[str, str]:
-    """Return a picture as SVG of a robot that needs each edit, by the action; none where it can no longer be read."""
-    tasks = {fix.action: executor.submit(_draw, str(book), fix.students[:_MAX_TRIED], fix.criteria) for fix in fixes}
+def _drawings(executor: Executor, book: Path, examples: Mapping[CommonFix, Sequence[str]]) -> dict[str, str]:
+    """Return a picture as SVG of a robot that needs each edit, by the action; none where it can no longer be read.
+
+    `examples` are students who need the edit, those first whose robots have the fewest other mistakes.
+    """
+    tasks = {fix.action: executor.submit(_draw, str(book), keys, fix.criteria) for fix, keys in examples.items()}
     found = {}
     for action, task in tasks.items():
         with suppress(Exception):  # whatever a robot does to its picture: the page is complete without it

@@ -17,7 +17,7 @@ from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
-from grader.usecases.report_names import report_names, update_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
 from grader.usecases.writing import refuse_symlinks, save
 
@@ -27,7 +27,7 @@ REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
 _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
-def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
+def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
     """Raise InputError for a folder that reports cannot be written to, or that the next run would take for a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
@@ -39,6 +39,9 @@ def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
                 f"cannot write reports to {shown}: the next run would take them for a submission; "
                 "choose a folder outside of the class folder"
             )
+    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
+        page = printable_path(folder / CLASS_PAGE)
+        raise InputError(f"cannot write {page}: a file that is not of this grader has the name; choose another folder")
 
 
 def write_reports(

@@ -18,7 +18,7 @@ def export_pages(gradebook: Path, folder: Path | None, due: str | None, progress
         raise GraderError("export html writes a folder of pages: name it with --output DIR")
     deadline = read_deadline(due)
     with Gradebook(gradebook) as book:
-        refuse_report_folder(folder, sorted({Path(run.source) for run in book.runs()}))
+        refuse_report_folder(folder, (Format.HTML,), sorted({Path(run.source) for run in book.runs()}))
         search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=True)
     with Processes(processors(), REPORT_SECONDS) as executor:
         write_reports(executor, gradebook, folder, (Format.HTML,), deadline, warn)

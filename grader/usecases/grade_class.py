@@ -186,7 +186,7 @@ def _refuse_targets(request: ClassRequest) -> None:
     for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
     if reports is not None:
-        refuse_report_folder(reports, (root,))
+        refuse_report_folder(reports, request.report_formats, (root,))
     if csv is not None and not csv.resolve().parent.is_dir():
         raise missing_folder(csv)
     if csv is not None:

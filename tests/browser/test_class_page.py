@@ -118,7 +118,7 @@ def test_without_javascript(browser: object, pages: Path) -> None:
 
 
 def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
-    """Every row is sorted and searched."""
+    """Every row is sorted and searched; of many the first 200 are shown until all are asked for."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
         signs = ("ppppp", "pfspp", "fsspp", "ppp?p")
@@ -127,6 +127,7 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
         page = render_class_page(summary_of(grades, with_fixes=True), grades, {}, {})
     (tmp_path / "index.html").write_text(page, encoding="utf-8")
     opened = open_page(tmp_path / "index.html")
+    assert len(names(opened)) == 200
     opened.page.locator("#students th[data-column=score] button").click()
     assert names(opened)[:3] == ["s0002", "s0006", "s0010"]
     opened.page.locator("#find").fill("99 loads")
@@ -134,3 +135,8 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
     opened.page.locator("[data-group=criterion-0] button").click()
     opened.page.locator("#find").fill("")
     assert opened.page.get_by_role("status").inner_text() == "250 of 1000 students: lost points in loads"
+    assert len(names(opened)) == 200
+    opened.page.locator("#more").click()
+    assert len(names(opened)) == 250
+    opened.page.keyboard.press("Escape")
+    assert len(names(opened)) == 1000

@@ -13,6 +13,7 @@ from grader.drawing.picture import Picture
 from grader.drawing.scene import scene_of
 from grader.errors import MissingElement, NotDecided
 from grader.report.pages.model import picture_data
+from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.reader import read_urdf
@@ -66,15 +67,21 @@ def robots() -> Iterator[tuple[str, Robot]]:
 
 def cases(name: str, robot: Robot, random: Random) -> Iterator[dict[str, Any]]:
     """Yield a robot's data with random positions and the poses that Python computes, in the frames of its root and of its last link."""
-    rest = Configuration(robot)
+    sizes = {"planar": 3, "floating": 6}  # the page leaves these joints where they are
+    placed: dict[str, Position] = {
+        joint.name: [random.uniform(-1, 1) for _ in range(sizes[joint.type])]
+        for joint in robot.joints
+        if joint.type in sizes
+    }
+    rest = Configuration(robot, placed)
     for frame in dict.fromkeys((rest.main_tree[0], rest.main_tree[-1])):
         data = picture_data(Picture(scene_of(rest, frame), None, (), (), ()))["robot"]
         for _ in range(TIMES):
             movable = [joint for joint in robot.joints if joint.type in ("revolute", "continuous", "prismatic")]
             free = [joint for joint in movable if joint.mimic is None or random.random() < 0.2]
-            given = {joint.name: random.uniform(-3, 3) for joint in free}
-            moved = Configuration(robot, given, holding=rest.parent_joints)
-            poses = [_pose(moved, link, frame) for link in data["links"]]
+            given: dict[str, Position] = {joint.name: random.uniform(-3, 3) for joint in free}
+            moved = Configuration(robot, placed | given, holding=rest.parent_joints)
+            poses = [_pose(moved, link, frame) for link in dict.fromkeys(link.name for link in robot.links)]
             yield {"name": name, "robot": data, "given": [*given.items()], "expected": poses}
 
 

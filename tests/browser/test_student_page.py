@@ -144,6 +144,38 @@ def test_wheels_drive_and_stop(fresh: Any) -> None:
     assert abs(drift[0] - 1) > 1e-3  # it has turned
     assert abs(drift[9]) < 0.01  # and not gone ahead: a wheel rolls 26 mm
     assert fresh.evaluate("() => viewer.isDriving()") is False
+    fresh.emulate_media(reduced_motion="no-preference")
+    button = fresh.get_by_role("button", name="Drive")
+    button.click()
+    fresh.wait_for_function("() => [...viewer.given.values()][0] > 0.3")
+    assert button.get_attribute("aria-pressed") == "true"
+    button.click()
+    assert (button.get_attribute("aria-pressed"), fresh.evaluate("() => viewer.isDriving()")) == ("false", False)
+    fresh.emulate_media(reduced_motion="reduce")
+
+
+def test_frames_and_names(fresh: Any) -> None:
+    """`Frames` shows the axes of every frame; a link has its name under the pointer, and in the list its pose."""
+    letters = fresh.locator(".labels .axis:visible")
+    fresh.evaluate("() => viewer.draw()")
+    assert letters.count() == 3  # of the root
+    fresh.get_by_role("button", name="Frames").click()
+    fresh.evaluate("() => viewer.draw()")
+    assert letters.count() == 18
+    fresh.get_by_role("button", name="Frames").click()
+    fresh.get_by_label("Link", exact=True).select_option("lidar")
+    fresh.evaluate("() => viewer.draw()")
+    assert fresh.locator(".labels .name").inner_text() == "lidar"
+    assert fresh.locator("[data-part=pose]").inner_text() == "at 0.15 0 0.2 m in base_link"
+
+
+def test_new_text_is_copied(open_page: Open, tmp_path: Path) -> None:
+    """The button of a hint copies the new lines."""
+    allowed = {"permissions": ["clipboard-read", "clipboard-write"]}
+    page = open_page(write(tmp_path, "grade", SAMPLES["axis-negated"].path), **allowed).page
+    page.get_by_role("button", name="Copy the new text").first.click()
+    page.get_by_role("button", name="Copied").wait_for()
+    assert page.evaluate("() => navigator.clipboard.readText()").strip() == '<axis xyz="0 0 1"/>'
 
 
 def test_nothing_is_drawn_without_a_change(fresh: Any) -> None:
@@ -166,7 +198,7 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     light = fresh.evaluate(PIXELS)
     fresh.emulate_media(color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(13, 17, 23)"
-    assert fresh.evaluate(PIXELS) != light
+    fresh.wait_for_function(f"light => ({PIXELS})() !== light", arg=light)
     assert fresh.pdf()[:5] == b"%PDF-"
     fresh.emulate_media(media="print", color_scheme="dark")
     assert fresh.evaluate("() => getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
@@ -177,6 +209,7 @@ def test_dark_mode_and_print(fresh: Any) -> None:
     assert not fresh.locator("canvas").is_visible()
     assert fresh.locator("details td").first.is_visible()
     fresh.emulate_media(media="screen", color_scheme="light")
+    fresh.wait_for_function(f"light => ({PIXELS})() === light", arg=light)
 
 
 @pytest.mark.parametrize("width", [360, 800, 1400])
@@ -290,3 +323,28 @@ def test_odd_robots_are_shown(open_page: Open, tmp_path: Path) -> None:
         for slider in opened.page.locator("input[type=range]:enabled").all():
             slider.evaluate("node => { node.value = node.max; node.dispatchEvent(new Event('input')); viewer.draw(); }")
             assert slider.locator("..").locator("output").inner_text()[0] in "0123456789-"
+
+
+def test_two_fingers_zoom(open_page: Open, tmp_path: Path) -> None:
+    """On a touch screen one finger rotates and two zoom."""
+    file = write(tmp_path, "inspect", SAMPLES["lidar-buried"].path)
+    page: Any = open_page(file, viewport={"width": 400, "height": 900}, has_touch=True, is_mobile=True).page
+    page.locator("canvas").scroll_into_view_if_needed()
+    box, session = page.locator("canvas").bounding_box(), page.context.new_cdp_session(page)
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def touch(*places: tuple[float, ...]) -> list[float]:
+        """Move fingers through places on the x axis, and return azimuth and zoom."""
+        for kind, place in zip(
+            ("touchStart", *["touchMove"] * (len(places) - 1), "touchEnd"), (*places, ()), strict=True
+        ):
+            points = [{"x": x + off, "y": y, "id": number} for number, off in enumerate(place)]
+            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        found: list[float] = page.evaluate("() => [viewer.camera.azimuth, viewer.camera.zoom]")
+        return found
+
+    start = touch((0,))
+    turned = touch((0,), (20,), (40,), (60,))
+    assert turned[0] < start[0]
+    assert turned[1] == start[1]
+    assert touch((-30, 30), (-40, 40), (-60, 60))[1] > 1.5 * start[1]

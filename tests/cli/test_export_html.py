@@ -141,10 +141,22 @@ def test_no_page_is_written_into_the_class(top: Path) -> None:
 
 def test_an_index_that_cannot_be_written(top: Path) -> None:
     """The pages are there, and no half of the index."""
-    (top / "pages/index.html").mkdir(parents=True)
+    export(top)
+    (top / "pages/index.html").unlink()
+    (top / "pages/index.html").mkdir()
     why = refusal(grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages"))
     assert why == f"cannot write {top}/pages/index.html: Is a directory"
     assert not list((top / "pages").glob(".*"))
+
+
+def test_a_foreign_index_is_not_replaced(top: Path) -> None:
+    """The folder may be a web site."""
+    (top / "pages").mkdir()
+    (top / "pages/index.html").write_text("mine")
+    why = refusal(grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages"))
+    assert why.startswith(f"cannot write {top}/pages/index.html: a file that is not of this grader has the name")
+    assert refusal(batch(top, "--reports", top / "pages", "--report-format", "html")) == why
+    assert contents(top / "pages") == {"index.html": b"mine"}
 
 
 def test_a_gradebook_without_a_run(tmp_path: Path) -> None:

@@ -7,10 +7,13 @@ import pytest
 from grader.drawing.picture import Picture, picture_of
 from grader.drawing.scene import scene_of
 from grader.grading.grade import grade
+from grader.grading.report import GradedSubmission, Report
 from grader.grading.rubric import load_rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
+from grader.source import Source
 from grader.submission.opening import open_submission
+from grader.submission.urdf import Urdf
 
 ROOT = Path(__file__).parents[2]
 
@@ -108,3 +111,22 @@ def test_only_round_links_on_the_ground_are_wheels() -> None:
     rover = read_urdf((ROOT / "submissions/axis-negated/my_robot.urdf").read_bytes(), "r.urdf").robot
     assert rover is not None
     assert {wheel.link for wheel in scene_of(Configuration(rover), "base_link").wheels} == {"left_wheel", "right_wheel"}
+
+
+class Unsafe:
+    """Files that must not be opened again."""
+
+    @property
+    def urdf(self) -> Urdf:
+        """Fail, as the process that graded them did."""
+        raise MemoryError
+
+    def source(self, path: str) -> Source | None:
+        """Fail as well."""
+        raise MemoryError(path)
+
+
+def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
+    """It may be one that crashed the process that graded it."""
+    submission = GradedSubmission("ash", originals=Unsafe())
+    assert picture_of(Report(submission, load_rubric("lab6"), (), ())) is None

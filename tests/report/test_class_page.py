@@ -8,9 +8,10 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.summary import summary_of
 from grader.report.pages.class_page import render_class_page
 from grader.text import without_commands
+from tests.classroom.class_runs import grader
 from tests.classroom.gradebooks import graded_as, lab, record_run
 from tests.report.class_pages import ClassPageReader
-from tests.report.hostile_class import CORPUS, export_hostile_class
+from tests.report.hostile_class import CORPUS, LIDAR, export_hostile_class
 
 ELEMENTS = {
     "html", "head", "meta", "title", "style", "body", "script", "header", "main", "footer", "nav", "section", "article", "div",
@@ -64,3 +65,18 @@ def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
     assert page.members("attention") == ["birch"]
     assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
     assert page.links() == ["birch.html"]
+
+
+def test_a_picture_shows_the_robot_with_the_fewest_other_mistakes(tmp_path: Path) -> None:
+    """So that it shows the one that the edit is about."""
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class/ash.urdf").write_text(LIDAR.replace("0 0.6 0 1", "0 0 1 1"), encoding="utf-8")
+    (tmp_path / "class/birch.urdf").write_text(LIDAR, encoding="utf-8")
+    book = tmp_path / "g.db"
+    for command in (("batch", tmp_path / "class"), ("export", "html", "--output", tmp_path / "pages")):
+        assert grader(*command, "--gradebook", book).returncode == 0
+    page = ClassPageReader(tmp_path / "pages/index.html")
+    (lidar,) = page.root.xpath("//article[contains(h3, 'lidar')]//*[local-name()='svg']")
+    assert page.members("edit-0") == ["ash", "birch"]
+    assert {path.get("fill") for path in lidar.iter("path")} >= {"#009900"}
+    assert "#0000ff" not in {path.get("fill") for path in lidar.iter("path")}

@@ -85,3 +85,11 @@ def test_policy_names_the_scripts_of_the_students_page(name: str) -> None:
     hashes = [b64encode(hashlib.sha256("".join(pair).encode()).digest()).decode() for pair in inline]
     assert named == hashes
     assert len(hashes) > 3
+
+
+@pytest.mark.parametrize("file", sorted(FILES.glob("*.js")), ids=lambda file: file.name)
+def test_scripts_make_no_markup_and_run_no_text(file: Path) -> None:
+    """Text of a submission reaches the page as text only."""
+    assert not re.search(
+        r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|\bFunction\(|import\(", file.read_text()
+    )

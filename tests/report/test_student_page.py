@@ -78,6 +78,7 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     pins = {pin.get("data-show") for pin in page.find_class("pin")}
     assert pins == {text.text for text in page.xpath("//*[@class='number']//*[text()]")}
     assert len(pins) == 5
+    assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
 
 
 def test_page_says_why_it_has_no_picture() -> None:
@@ -134,3 +135,32 @@ def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None
     data = json.loads(page.get_element_by_id("data").text)
     assert (data["reference"] is not None) == is_shown
     assert bool(page.xpath("//button[@data-mode='reference']")) == is_shown
+
+
+JOINTS = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/><link name="f"/><link name="g"/>
+<joint name="turn" type="revolute"><parent link="a"/><child link="b"/><limit lower="-0.5" upper="1" effort="1" velocity="1"/></joint>
+<joint name="slide" type="prismatic"><parent link="a"/><child link="c"/><limit lower="0.1" upper="0.2" effort="1" velocity="1"/></joint>
+<joint name="spin" type="continuous"><parent link="a"/><child link="d"/></joint>
+<joint name="copy" type="continuous"><parent link="a"/><child link="e"/><mimic joint="turn" offset="0.1"/></joint>
+<joint name="endless" type="revolute"><parent link="a"/><child link="f"/><limit lower="-1e308" upper="1e308" effort="1" velocity="1"/></joint>
+<joint name="plane" type="planar"><parent link="a"/><child link="g"/></joint></robot>"""
+
+
+def test_sliders_have_the_range_of_their_joint(tmp_path: Path) -> None:
+    """Degrees or mm within the limits and 0; half a turn without usable limits; a mimic joint follows; a planar joint stays."""
+    (tmp_path / "r.urdf").write_text(JOINTS)
+    page = inspected(tmp_path / "r.urdf")
+    found = {
+        slider.getparent().find_class("joint-name")[0].text_content(): [
+            slider.get(key) for key in ("min", "max", "value", "data-unit", "disabled")
+        ]
+        for slider in page.xpath("//input[@type='range']")
+    }
+    assert found == {
+        "turn": ["-28.64789", "57.29578", "0.0", "\u00b0", None],
+        "slide": ["0.0", "200.0", "0.0", "mm", None],
+        "spin": ["-180.0", "180.0", "0.0", "\u00b0", None],
+        "copy (follows turn)": ["-180.0", "180.0", "5.729578", "\u00b0", "disabled"],
+        "endless": ["-180.0", "180.0", "0.0", "\u00b0", None],
+    }
+    assert "'plane' is planar: it stays at 0 here." in page.text_content()

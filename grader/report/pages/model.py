@@ -11,6 +11,7 @@ from grader.robot.frames import motion_of, placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint, Sphere
 from grader.robot.transforms import IDENTITY, Transform, dot, unit
+from grader.text import printable
 
 Data = Mapping[str, Any]
 
@@ -50,7 +51,7 @@ def _robot(scene: Scene, expected: Scene | None = None) -> Data:
     parents = robot.parent_joints
     turning = {wheel.link for wheel in scene.wheels}
     return {
-        "links": [*links],
+        "links": [*map(printable, links)],
         "parent": [joints[id(parents[name])] if name in parents else -1 for name in links],
         "order": [links[name] for name in _top_down(robot, links)],
         "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],

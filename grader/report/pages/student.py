@@ -6,12 +6,12 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.drawing.picture import picture_of
-from grader.grading.report import Report
+from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import group_status, status_of
 from grader.report.evidence import evidence
-from grader.report.order import alike, groups, in_order
-from grader.report.pages.criteria import SYMBOLS, Card, card_of, failure_card
+from grader.report.order import alike, failures, groups, in_order
+from grader.report.pages.criteria import SYMBOLS, card_of, failure_card
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
@@ -39,44 +39,63 @@ class Rows(NamedTuple):
 
 def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
-    order, shown = in_order(report), set[str]()
-    command = content.next_command(report)
     picture = picture_of(report)
-    robot = robot_view(picture) if picture is not None else None
-    values = {
+    callouts = picture.callouts if picture is not None else ()
+    called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
+    values = {**_summary(report), **_criteria(report), **_others(report), "called": called}
+    if picture is None:
+        values |= {"robot": None, "views": "", "no_picture": content.why_no_picture(report)}
+        return render_page("student.html", values, {}, f"{STYLE} student.css", "student.js")
+    robot = robot_view(picture)
+    values |= {"robot": robot, "views": views(picture)}
+    costly = [called[one.result.criterion.id] for one in failures(report) if one.result.criterion.id in called]
+    data = {**robot.data, "costly": costly}
+    return render_page(
+        "student.html", values, data, f"{STYLE} student.css", f"{SCRIPTS} failures.js student.js", rules=RULES
+    )
+
+
+def _summary(report: Report) -> dict[str, object]:
+    command = content.next_command(report)
+    return {
         "version": report.version,
         "title": f"{content.score_text(report)}: {printable(report.rubric.title)}",
-        "report": report,
-        "symbols": SYMBOLS,
+        "heading": report.rubric.title,
         "score": format_points(report.score),
         "maximum": format_points(report.max_score),
         "shares": _shares(report),
         "summary": [*filter(None, (content.summary(report), content.package_line(report)))],
         "pending": content.pending_line(report),
         "notes": content.notes(report),
+        "next": command,
+        "left": "" if command else content.what_is_left(report),
+        "provenance": provenance(report),
+    }
+
+
+def _criteria(report: Report) -> dict[str, object]:
+    order, shown = in_order(report), set[str]()
+    skipped = alike(order.skipped, lambda result: result.because or "")
+    return {
+        "symbols": SYMBOLS,
         "failures": [failure_card(failure, report, shown) for failure in order.failures],
-        "skipped": [
-            content.skipped_text(cause, some)
-            for cause, some in alike(order.skipped, lambda result: result.because or "")
+        "skipped": [content.skipped_text(cause, some) for cause, some in skipped],
+        "sections": [
+            (title, [card_of(result, report) for result in results])
+            for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked))
+            if results
         ],
-        "sections": [*_sections(report)],
         "parts": [*_parts(report)],
+    }
+
+
+def _others(report: Report) -> dict[str, object]:
+    return {
         "evidence": [*evidence(report)],
         "problems_title": content.other_problems_title(report),
         "problems": [(problem.severity, problem_line(problem)) for problem in content.other_problems(report)],
         "ignored": content.ignored_lines(report),
-        "next": command,
-        "left": "" if command else content.what_is_left(report),
-        "robot": robot,
-        "no_picture": "" if picture is not None else content.why_no_picture(report),
-        "views": views(picture) if picture is not None else "",
-        "called": {
-            result.criterion.id: one.number for one in (robot.callouts if robot else ()) for result in one.results
-        },
-        "provenance": provenance(report),
     }
-    data, scripts = (robot.data, f"{SCRIPTS} failures.js student.js") if robot is not None else ({}, "student.js")
-    return render_page("student.html", values, data, f"{STYLE} student.css", scripts, rules=RULES)
 
 
 def _shares(report: Report) -> tuple[float, float]:
@@ -86,35 +105,20 @@ def _shares(report: Report) -> tuple[float, float]:
     return round(earned, 2), round(possible, 2)
 
 
-def _sections(report: Report) -> Iterator[tuple[str, list[Card]]]:
-    """Yield the titles and criteria of what needs manual grading and of what has a manual mark."""
-    order = in_order(report)
-    for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked)):
-        if results:
-            yield title, [card_of(result, report) for result in results]
-
-
 def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
     """Yield the title, the points and the groups of each part."""
     titles = {part.id: part.title for part in report.rubric.parts}
     for part, found in groupby(groups(report), key=lambda group: group.part):
         some = [*found]
         rows = [
-            Rows(
-                group.title,
-                content.earned_text(group.results),
-                tuple(
-                    Row(
-                        result.criterion.id,
-                        result.criterion.title if status_of(result) == "passed" else "",
-                        status_of(result),
-                        content.earned_text((result,)),
-                        (result.because or "") if result.manual_mark is None else "",
-                    )
-                    for result in group.results
-                ),
-                group_status(group),
-            )
+            Rows(group.title, content.earned_text(group.results), tuple(map(_row, group.results)), group_status(group))
             for group in some
         ]
         yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
+
+
+def _row(result: Result) -> Row:
+    status = status_of(result)
+    title = result.criterion.title if status == "passed" else ""
+    because = (result.because or "") if result.manual_mark is None else ""
+    return Row(result.criterion.id, title, status, content.earned_text((result,)), because)

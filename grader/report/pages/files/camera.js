@@ -1,8 +1,9 @@
 "use strict";
 /* A camera that looks at a point: azimuth and elevation in radians, distance in metres; the z axis points up. */
 const FIELD = 0.42; // radians
+const START = { azimuth: -1.05, elevation: 0.42, zoom: 1 };
 
-function makeCamera(centre, radius) {
+function makeCamera({ centre, radius, fit }) {
   const camera = { azimuth: 0, elevation: 0, zoom: 1, target: [...centre] };
   const limit = (value, low, high) => Math.max(low, Math.min(high, value));
 
@@ -15,7 +16,7 @@ function makeCamera(centre, radius) {
     const [ca, sa, ce, se] = [Math.cos(camera.azimuth), Math.sin(camera.azimuth), Math.cos(camera.elevation), Math.sin(camera.elevation)];
     return { right: [-sa, ca, 0], up: [-ca * se, -sa * se, ce], toward: [ca * ce, sa * ce, se] };
   };
-  camera.distance = () => (radius * 0.95) / Math.sin(FIELD / 2) / camera.zoom;
+  camera.distance = () => fit / Math.tan(FIELD / 2) / camera.zoom;
   camera.shift = (right, up, height) => {
     const { right: r, up: u } = camera.basis(), metres = (2 * camera.distance() * Math.tan(FIELD / 2)) / height;
     camera.target = camera.target.map((value, k) => value - metres * (right * r[k] - up * u[k]));

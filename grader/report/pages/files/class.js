@@ -5,11 +5,12 @@
   const place = document.getElementById("class");
   if (!place) return;
   const find = document.getElementById("find"), shown = document.getElementById("shown");
-  const rows = [...document.getElementById("students").tBodies[0].rows];
+  const body = document.getElementById("students").tBodies[0], rows = [...body.rows];
   const tables = [...document.querySelectorAll("table.sortable")];
   const compare = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
   const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
-  let words = null, state = new URLSearchParams(), applied = "";
+  const more = document.getElementById("more");
+  let words = null, state = new URLSearchParams(), most = 200; // rows: a browser needs a millisecond for ten
 
   function wordsOfRows() {
     const found = rows.map((row) => [...row.cells].map((cell) => cell.textContent));
@@ -25,17 +26,15 @@
   }
 
   function filter() {
-    words ??= wordsOfRows();
     const wanted = plain(state.get("find") ?? "").split(/\s+/).filter(Boolean), chosen = group();
-    const members = chosen && new Set(chosen[2]);
+    if (wanted.length) words ??= wordsOfRows();
+    const members = new Set(chosen ? chosen[2] : rows.keys());
+    const found = new Set(rows.filter((row, number) => members.has(number) && wanted.every((word) => words[number].includes(word))));
     let count = 0;
-    rows.forEach((row, number) => {
-      const isShown = (!members || members.has(number)) && wanted.every((word) => words[number].includes(word));
-      row.hidden = !isShown;
-      count += isShown;
-    });
+    for (const row of body.rows) row.hidden = !found.has(row) || ++count > most;
     const all = `${rows.length} student${rows.length === 1 ? "" : "s"}`;
-    shown.textContent = count === rows.length ? all : `${count} of ${all}${chosen ? `: ${chosen[0]}` : ""}`;
+    shown.textContent = found.size === rows.length ? all : `${found.size} of ${all}${chosen ? `: ${chosen[0]}` : ""}`;
+    more.hidden = found.size <= most;
     for (const button of document.querySelectorAll("button.show")) {
       button.setAttribute("aria-pressed", String(button.dataset.shows === state.get("show")));
     }
@@ -62,15 +61,13 @@
   function apply() {
     if (find.value !== (state.get("find") ?? "")) find.value = state.get("find") ?? "";
     tables.forEach(sort);
-    const wanted = `${state.get("show") ?? ""} ${state.get("find") ?? ""}`;
-    if (wanted !== applied) filter();
-    applied = wanted;
+    filter();
   }
 
   function change(name, value, isNew) {
     value ? state.set(name, value) : state.delete(name);
     apply();
-    const address = `#${state.size ? state : "class"}`;
+    const address = `#${String(state) || "class"}`;
     isNew ? (location.hash = address) : history.replaceState(null, "", address);
   }
 
@@ -128,6 +125,12 @@
       showAll();
     }
   });
+  function showAllRows() {
+    most = Infinity;
+    filter();
+  }
+  more.addEventListener("click", showAllRows);
+  addEventListener("beforeprint", showAllRows);
   addEventListener("hashchange", read);
   read();
   if (state.has("show")) place.scrollIntoView();

@@ -90,6 +90,7 @@ function makePainter(canvas) {
     const far = (item) => item.pose.slice(9).reduce((sum, value, k) => sum + (value - camera.eye[k]) ** 2, 0);
     const clear = items.filter((item) => item.rgba && item.rgba[3] < 1).sort((one, other) => far(other) - far(one));
     items.filter((item) => item.rgba && item.rgba[3] >= 1).forEach((item) => put(item, "faces", item.rgba, item.spokes));
+    gl.disable(gl.POLYGON_OFFSET_FILL);
     items.filter((item) => item.edge).forEach((item) => put(item, "edges", item.edge));
     gl.depthMask(false);
     clear.forEach((item) => put(item, "faces", item.rgba, item.spokes));

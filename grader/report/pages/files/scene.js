@@ -10,23 +10,36 @@ const distance = (one, other) => Math.max(...one.map((value, k) => Math.abs(valu
 const upOf = (pose) => [pose[2], pose[5], pose[8]];
 const above = (pose, point) => upOf(pose).reduce((sum, value, k) => sum + value * (point[k] - pose[9 + k]), 0);
 
-/* The middle and the radius of all that the robots show at rest. */
+/* Whether two shapes look the same, within 1 mm and a degree; a cylinder may be turned about its axis. */
+function looksSame(one, other) {
+  const parallel = (k) => Math.abs([k, k + 3, k + 6].reduce((sum, m) => sum + one.pose[m] * other.pose[m], 0)) > 0.9998;
+  const axes = { box: [0, 1, 2], cylinder: [2], sphere: [] }[one.kind];
+  return one.kind === other.kind && distance(one.size, other.size) < 0.001 && distance(one.pose.slice(9), other.pose.slice(9)) < 0.001 && axes.every(parallel);
+}
+
+/* The middle and the radius of all that the robots show at rest, and half of the height in metres that a picture from START needs. */
 function enclosing(robots, resting) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  const add = (point, reach) => point.forEach((value, k) => { low[k] = Math.min(low[k], value - reach); high[k] = Math.max(high[k], value + reach); });
+  const add = (pose, sizes) => [0, 1, 2].forEach((k) => {
+    const reach = sizes.reduce((sum, size, m) => sum + Math.abs(pose[3 * k + m]) * size, 0);
+    low[k] = Math.min(low[k], pose[9 + k] - reach);
+    high[k] = Math.max(high[k], pose[9 + k] + reach);
+  });
   for (const [name, poses] of Object.entries(resting)) {
-    for (const [link, kind, size, origin] of robots[name].shapes) add(compose(poses[link], placed(origin)).slice(9), kind === "sphere" ? size[0] : Math.hypot(...size) / 2);
-    if (!robots[name].shapes.length) poses.filter(Boolean).forEach((pose) => add(pose.slice(9), 0.05));
+    for (const [link, kind, size, origin] of robots[name].shapes) add(compose(poses[link], placed(origin)), size.map((value, k) => (kind === "box" || (kind === "cylinder" && k === 2) ? value / 2 : value)));
+    if (!robots[name].shapes.length) poses.filter(Boolean).forEach((pose) => add(pose, [0.05, 0.05, 0.05]));
   }
   const centre = low.map((value, k) => (value + high[k]) / 2);
-  return { centre, radius: Math.max(Math.hypot(...high.map((value, k) => value - low[k])) / 2, 1e-3) };
+  const half = high.map((value, k) => (value - low[k]) / 2), flat = Math.hypot(half[0], half[1]);
+  const fit = Math.max(half[2] * Math.cos(START.elevation) + flat * Math.sin(START.elevation), (flat * 3) / 4, 1e-3);
+  return { centre, radius: Math.max(Math.hypot(...half), 1e-3), fit: 1.3 * fit };
 }
 
 function makeScene(data) {
   const robots = Object.fromEntries(Object.entries({ submission: data.robot, reference: data.reference }).filter(([, robot]) => robot));
   const starts = new Map(data.sliders.map(({ joint, value }) => [joint, value]));
   const resting = Object.fromEntries(Object.entries(robots).map(([name, robot]) => [name, posesOf(robot, starts)]));
-  const { centre, radius } = enclosing(robots, resting);
+  const { centre, radius, fit } = enclosing(robots, resting);
   const called = new Set(data.callouts.map((callout) => callout.link));
   const power = 10 ** Math.floor(Math.log10(radius)), cell = radius / power > 3 ? power : power / 2;
 
@@ -92,7 +105,9 @@ function makeScene(data) {
     const found = [], long = 0.16 * radius, main = state.mode === "reference" ? "reference" : "submission";
     const poses = Object.fromEntries(Object.entries(robots).map(([name, robot]) => [name, posesOf(robot, given)]));
     for (const name of Object.keys(robots)) {
-      if (state.mode === name || state.mode === "both") found.push(...solids(name, poses[name], state, colours), ...grounded(name, poses, state, colours));
+      if (state.mode !== name && state.mode !== "both") continue;
+      const shown = solids(name, poses[name], state, colours);
+      found.push(...(name === "submission" ? shown : shown.filter((one) => !found.some((other) => looksSame(one, other)))), ...grounded(name, poses, state, colours));
     }
     const own = (link) => (main === "submission" ? link : data.same[link]);
     const framed = poses[main].map((pose, link) => ({ pose, link })).filter(({ pose, link }) => pose && (state.frames || link === robots[main].root || own(link) === state.link));
@@ -100,5 +115,5 @@ function makeScene(data) {
     return { found, poses, framed, long, main };
   }
 
-  return { robots, resting, starts, centre, radius, items };
+  return { robots, resting, starts, centre, radius, fit, items };
 }

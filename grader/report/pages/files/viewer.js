@@ -2,7 +2,6 @@
 /* The robot in 3-D. It is drawn when something has changed; nothing runs in between. */
 const SPEED = 0.9; // radians in a second, of wheels that are driven
 const GLIDE = 280; // milliseconds
-const START = { azimuth: -1.05, elevation: 0.42, zoom: 1 };
 
 function makeViewer(data, section) {
   const find = (name) => section.querySelector(`[data-part="${name}"]`);
@@ -10,7 +9,7 @@ function makeViewer(data, section) {
   if (!painter) return null;
   const calm = matchMedia("(prefers-reduced-motion: reduce)"), watchers = [], given = new Map();
   const state = { mode: data.mode, link: -1, hover: -1, frames: false, poses: [], drift: IDENTITY };
-  const scene = makeScene(data), camera = makeCamera(scene.centre, scene.radius);
+  const scene = makeScene(data), camera = makeCamera(scene);
   const label = makeLabels(data, scene, canvas, find("labels"), find("pose"));
   let colours = {}, frame = 0, seen = null, pickable = [], driving = 0;
 
@@ -77,6 +76,8 @@ function makeViewer(data, section) {
     return Math.hypot(...away) > 0.15 * scene.radius ? { ...START, azimuth: Math.atan2(away[1], away[0]) + (away[1] > 0 ? -0.4 : 0.4) } : START;
   }
 
+  const numbered = (number) => data.callouts.find((callout) => callout.number === number);
+
   function choose(link) {
     state.link = link;
     notify();
@@ -84,9 +85,9 @@ function makeViewer(data, section) {
 
   /* Turns to what is called out under a number. */
   function show(number) {
-    const { link, point } = data.callouts.find((callout) => callout.number === number);
+    const { link, point } = numbered(number);
     choose(link);
-    glide({ ...aspect(point), zoom: 1.2, target: scene.centre.map((value, k) => value + (point ? 0.35 * (point[k] - value) : 0)) });
+    glide({ ...aspect(point), zoom: 1.1, target: scene.centre.map((value, k) => value + (point ? 0.35 * (point[k] - value) : 0)) });
   }
 
   function set(joint, value) {
@@ -123,7 +124,7 @@ function makeViewer(data, section) {
     given.clear();
     scene.starts.forEach((value, joint) => given.set(joint, value));
     state.drift = IDENTITY;
-    const called = data.callouts.find((callout) => callout.point);
+    const [called] = (data.costly || []).map(numbered).filter((callout) => callout.point);
     Object.assign(camera, aspect(called && called.point), { target: [...scene.centre] });
     notify();
   }
