@@ -1,5 +1,6 @@
 """Lines of text in SVG. Their width depends on the viewer's font, so it is estimated with a wide font."""
 
+from functools import lru_cache
 from typing import Any
 from unicodedata import east_asian_width
 
@@ -53,6 +54,7 @@ def text_width(text: str) -> float:
     return SIZE * sum(map(_letter_width, text))
 
 
+@lru_cache(maxsize=1024)
 def _letter_width(letter: str) -> float:
     if letter in _NARROW:
         return 0.38

@@ -1,6 +1,7 @@
 """Drawings as SVG: what they show and say, for every sample, and for robots that cannot be drawn."""
 
 import re
+from dataclasses import replace
 from itertools import combinations
 from math import hypot
 from typing import Any
@@ -102,6 +103,17 @@ def test_numbers_do_not_overlap(name: str) -> None:
     assert all(hypot(a - c, b - d) >= 18.0 for (a, b), (c, d) in combinations(centres, 2))
     in_key = bool(picture.callouts)
     assert len(centres) == 3 * sum(callout.point is not None for callout in picture.callouts) + in_key
+
+
+def test_twenty_numbers_at_one_place_do_not_overlap() -> None:
+    """Each has a place of its own in each view."""
+    picture = picture_of(SAMPLES["lidar-buried"].grade())
+    assert picture is not None
+    crowd = tuple(picture.callouts[0]._replace(number=number) for number in range(1, 21))
+    discs = "".join(paths(drawing_element(replace(picture, callouts=crowd), legend=False), "badge"))
+    centres = [(float(x), float(y)) for x, y in re.findall(r"M([\d.]+) ([\d.]+)a9 9", discs)]
+    assert len(set(centres)) == 3 * 20 + 1  # one is in the key
+    assert all(hypot(a - c, b - d) >= 18.0 for (a, b), (c, d) in combinations(centres, 2))
 
 
 def test_every_text_is_legible_at_600_pixels() -> None:
