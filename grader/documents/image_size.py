@@ -23,7 +23,7 @@ def _read(start: bytes) -> tuple[int, int, int]:
     if start.startswith(b"\x89PNG\r\n\x1a\n") and start[12:16] == b"IHDR":
         return *struct.unpack_from(">II", start, 16), 1
     if start.startswith((b"GIF87a", b"GIF89a")):
-        return *struct.unpack_from("<HH", start, 6), 1
+        return *_gif(start), 1
     if start.startswith(b"BM"):
         is_old = struct.unpack_from("<I", start, 14)[0] == 12  # OS/2
         width, height = struct.unpack_from("<HH" if is_old else "<ii", start, 18)
@@ -36,6 +36,27 @@ def _read(start: bytes) -> tuple[int, int, int]:
     if start.startswith(b"RIFF") and start[8:12] == b"WEBP":
         return *_webp(start), 1
     return 0, 0, 1
+
+
+def _gif(start: bytes) -> tuple[int, int]:
+    """Return the size of the screen, or of the first frame if that is larger: a viewer enlarges the screen for it."""
+    width, height = struct.unpack_from("<HH", start, 6)
+    try:
+        left, top, wide, high = struct.unpack_from("<HHHH", start, _first_frame(start) + 1)
+    except (struct.error, IndexError):  # only the screen is known
+        return width, height
+    return max(width, left + wide), max(height, top + high)
+
+
+def _first_frame(gif: bytes) -> int:
+    """Return where the descriptor of the first frame begins: after the colour table, and extensions in blocks."""
+    position = 13 + (3 << (gif[10] & 7) + 1 if gif[10] & 0x80 else 0)
+    while gif[position] == ord("!"):
+        position += 2
+        while gif[position]:
+            position += 1 + gif[position]
+        position += 1
+    return position
 
 
 def _jpeg(start: bytes) -> tuple[int, int, int]:

@@ -1,7 +1,7 @@
 """The content of a picture of a graded robot: the scene, differences from the reference, failed criteria."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -20,6 +20,15 @@ from grader.robot.selectors import texts_in
 from grader.robot.transforms import Vector, minus
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
+_SHAPES = {  # checks of the size and place of what a link shows, and
+    "shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "centre_at", "bottom_at_height", "bottoms_at_height", "stands_on",
+    "clear_of", "turns_about_itself", "rolls_forward",
+}  # fmt: skip
+_PLACES = {
+    "frame_at",
+    "axis_along",
+    "under_the_base",
+}  # of the frame of a link: outlines and frames show what these expect
 _FRAMES = ("relative_to", "base", "on", "of", "parent")  # and in whose frame
 _SAME = 0.001  # metres: shapes and frames that differ by less look equal
 _TURNED = 0.02  # radians: the same for frames
@@ -66,7 +75,7 @@ def picture_of(report: Report) -> Picture | None:
     reference = scene_of(solution, reference_frame, wheels) if solution is not None and reference_frame else None
     lost = [result for result in report.results if _is_marked(result)]
     about = _by_link(lost, robot, solution)
-    outlines, frames = _differences(scene, reference, [*about]) if reference is not None else ((), ())
+    outlines, frames = _differences(scene, reference, about) if reference is not None else ((), ())
     callouts = tuple(
         Callout(number, link, _point(scene, link) or _point(reference, link), tuple(results))
         for number, (link, results) in enumerate(about.items(), 1)
@@ -126,28 +135,40 @@ def _is_marked(result: Result) -> bool:
 
 
 def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configuration | None) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the order of the rubric."""
+    """Return the criteria by the link that they are about, in the order of the rubric; by "" for several links, or none."""
     found: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
-        found.setdefault(links[0] if links else "", []).append(result)
+        found.setdefault(links[0] if len(links) == 1 else "", []).append(result)
     return found
 
 
 def _links(criterion: Criterion, robot: Configuration, solution: Configuration | None) -> Iterator[str]:
     """Yield the links that a criterion examines and that one of the robots has."""
-    for key in _SUBJECTS:
-        for name in texts_in(criterion.arguments.get(key)):
-            link = selected(robot, name)
-            if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
-                yield link
+    subject = next((criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None)
+    for link in dict.fromkeys(selected(robot, name) for name in texts_in(subject)):
+        if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
+            yield link
 
 
-def _differences(scene: Scene, reference: Scene, links: Sequence[str]) -> tuple[tuple[Body, ...], tuple[str, ...]]:
-    """Return the bodies and the frames of some links of the reference that differ from the scene's."""
-    outlines = tuple(body for body in reference.bodies if body.link in links and not _shows(scene, reference, body))
-    frames = tuple(link for link in links if link in reference.poses and not _is_same_place(scene, reference, link))
+def _differences(
+    scene: Scene, reference: Scene, about: Mapping[str, Sequence[Result]]
+) -> tuple[tuple[Body, ...], tuple[str, ...]]:
+    """Return the bodies and frames of the reference that differ from the scene's, where criteria about them failed."""
+    seen = {body.link for body in scene.bodies}
+    shapes = {link for link, results in about.items() if link not in seen or _has_check(results, _SHAPES | _PLACES)}
+    places = {link for link, results in about.items() if link not in scene.poses or _has_check(results, _PLACES)}
+    outlines = tuple(body for body in reference.bodies if body.link in shapes and not _shows(scene, reference, body))
+    frames = tuple(
+        link
+        for link in about
+        if link in places and link in reference.poses and not _is_same_place(scene, reference, link)
+    )
     return outlines, frames
+
+
+def _has_check(results: Sequence[Result], names: Collection[str]) -> bool:
+    return any(result.criterion.check.name in names for result in results)
 
 
 def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:

@@ -38,7 +38,7 @@ class Body(NamedTuple):
 class Wheel(NamedTuple):
     """A wheel in the frame of a scene: its centre, the joint's unit axis, and the unit direction in which it drives at a positive turn.
 
-    `travel` is None if it does not roll.
+    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it turns.
     """
 
     link: str
@@ -46,6 +46,7 @@ class Wheel(NamedTuple):
     centre: Vector
     axis: Vector
     travel: Vector | None
+    is_free: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,4 +191,5 @@ def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
     except _NOT_KNOWN:
         return
     if _is_drawable(centre):
-        yield Wheel(link, joint.name, centre, axis, travel)
+        is_free = joint.type == "continuous" and joint.mimic is None
+        yield Wheel(link, joint.name, centre, axis, travel, is_free)

@@ -8,7 +8,7 @@ from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
 from grader.report.content import score_text, summary, why_no_picture
 from grader.report.drawing import drawing_element, empty_element
-from grader.report.inspection import Inspection
+from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import DARK_RULES, SVG, put
 from grader.report.svg_text import LINE, put_lines, wrapped
 
@@ -32,7 +32,7 @@ def inspection_svg(inspection: Inspection) -> str:
         picture = Picture(scene_of(robot, inspection.relative_to), None, (), (), ())
     name = robot.robot.name if robot is not None else inspection.path
     positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
-    words = f"{inspection.path}{f'; {positions}' if positions else ''}"
+    words = f"{inspection.path}: {effect(inspection.reading)}{f'; {positions}' if positions else ''}"
     return _file(picture, name or inspection.path, words, "No picture: no robot could be read from the file.")
 
 

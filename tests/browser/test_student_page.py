@@ -56,11 +56,11 @@ def pose(page: Any, link: str) -> list[float]:
 
 def test_slider_turns_the_wheel(fresh: Any) -> None:
     """The keys of a slider turn its wheel: its pose, the picture, and the number beside it."""
-    slider = fresh.get_by_label("base_left_wheel_joint")
-    before, picture = pose(fresh, "left_wheel"), fresh.evaluate(PIXELS)
+    slider = fresh.get_by_label("base_right_wheel_joint")
+    before, picture = pose(fresh, "right_wheel"), fresh.evaluate(PIXELS)
     slider.focus()
     fresh.keyboard.press("ArrowRight")
-    after = pose(fresh, "left_wheel")
+    after = pose(fresh, "right_wheel")
     assert after[9:] == before[9:]
     assert max(abs(one - other) for one, other in zip(after, before, strict=True)) > 0.01
     assert fresh.evaluate(PIXELS) != picture

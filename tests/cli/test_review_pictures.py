@@ -79,7 +79,7 @@ def test_a_submission_that_has_changed_shows_no_picture(top: Path) -> None:
     """What is shown is what was graded."""
     (top / "class" / "ash" / "screen.png").write_bytes(PNG + b"\0")
     done = review(top)
-    why = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
+    why = "the files have changed or moved since they were graded: run `grader batch` again"
     assert f"Ash Ek (ash), picture: pictures: {why}\n" in done.stdout
     assert "picture/ash.1.png" not in files(top)
 

@@ -39,3 +39,11 @@ def test_a_damaged_header_is_no_error(start: bytes, rest: bytes) -> None:
     """Any bytes after a signature give a positive size or none."""
     size = image_size(start + rest)
     assert size is None or min(size) > 0
+
+
+@pytest.mark.parametrize("extension", [b"", b"!\xf9\x04\0\0\0\0\0", b"!\xfe\x03abc\x02de\0"])
+@pytest.mark.parametrize("table", [b"\0\0\0", b"\x81\0\0" + bytes(12)])
+def test_a_frame_that_is_larger_than_the_screen_of_a_gif_counts(extension: bytes, table: bytes) -> None:
+    """Browsers enlarge the screen for the first frame, also after a colour table and extensions."""
+    start = b"GIF89a\x01\0\x01\0" + table + extension + b",\x0a\0\0\0\x20\x4e\x30\x75"
+    assert image_size(start) == (10 + 20_000, 30_000)

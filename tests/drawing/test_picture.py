@@ -130,3 +130,29 @@ def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
     """It may be one that crashed the process that graded it."""
     submission = GradedSubmission("ash", originals=Unsafe())
     assert picture_of(Report(submission, load_rubric("lab6"), (), ())) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("equivalent-wheel-joints-at-centres", '"0.7 0.7 0.7 1', '"0.1 0.1 0.1 1'),
+        ("equivalent-wheel-joints-at-centres", '<axis xyz="0 0 1"', '<axis xyz="0 0 -1"'),
+    ],
+)
+def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Path) -> None:
+    """A wrong colour or axis draws no dashed shape or frame at a link that is correct in another way than the reference."""
+    text = (ROOT / "submissions" / name / "my_robot.urdf").read_text()
+    assert old in text
+    (tmp_path / "my_robot.urdf").write_text(text.replace(old, new))
+    loaded = load_rubric("lab6")
+    found = picture_of(grade(loaded, open_submission(str(tmp_path), wanted=loaded.urdf)))
+    assert found is not None
+    assert found.callouts
+    assert (found.outlines, found.frames) == ((), ())
+
+
+def test_criterion_on_several_links_marks_none_of_them() -> None:
+    """If wheels and caster miss the ground together, that is a mistake of the robot, not of its first wheel."""
+    callouts = {callout.link: callout for callout in picture("footprint-too-low").callouts}
+    assert set(callouts) == {"base_footprint", ""}
+    assert [result.criterion.id for result in callouts[""].results] == ["stands-on-ground"]

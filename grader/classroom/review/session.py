@@ -22,7 +22,7 @@ from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
-_CHANGED = "not shown, because the files have changed or moved since they were graded: run `grader batch` again"
+_CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
 
 
 class _Given(NamedTuple):

@@ -1,9 +1,10 @@
 """The data of a robot for the script of a page: links, joints, shapes and wheels, from which the script computes all poses."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from math import isfinite
 from typing import Any
 
+from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene, Wheel
@@ -24,7 +25,7 @@ def picture_data(picture: Picture) -> dict[str, Any]:
     scene, reference = picture.scene, picture.reference
     links, others = _indices(scene), _indices(reference) if reference is not None else {}
     return {
-        "robot": _robot(scene, reference),
+        "robot": _robot(scene, reference, _failed_wheels(picture)),
         "reference": _robot(reference) if reference is not None else None,
         "same": [links.get(name, -1) for name in others],
         "callouts": [
@@ -44,7 +45,15 @@ def _indices(scene: Scene) -> dict[str, int]:
     return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
 
 
-def _robot(scene: Scene, expected: Scene | None = None) -> Data:
+def _failed_wheels(picture: Picture) -> set[str]:
+    """Return the links whose drive direction failed a criterion."""
+    checks = {
+        callout.link: [result.criterion.check.function for result in callout.results] for callout in picture.callouts
+    }
+    return {link for link, functions in checks.items() if rolls_forward in functions}
+
+
+def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] = ()) -> Data:
     links, robot = _indices(scene), scene.robot
     joints = {id(joint): number for number, joint in enumerate(robot.robot.joints)}
     named = {joint.name: joints[id(joint)] for joint in reversed(robot.robot.joints)}
@@ -58,7 +67,7 @@ def _robot(scene: Scene, expected: Scene | None = None) -> Data:
         "frame": links[scene.frame],
         "root": links[robot.root_of(scene.frame)],
         "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],
-        "wheels": [_wheel(wheel, scene, links, expected) for wheel in scene.wheels],
+        "wheels": [_wheel(wheel, scene, links, expected, failed) for wheel in scene.wheels],
     }
 
 
@@ -115,8 +124,10 @@ def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]
     return [links[body.link], kind, _numbers(extents), _pose(body.T_link_shape), _numbers(colour), int(marked)]
 
 
-def _wheel(wheel: Wheel, scene: Scene, links: Mapping[str, int], expected: Scene | None) -> Data:
-    """Return a wheel; `right` is whether it drives in the same direction as the reference's wheel."""
+def _wheel(
+    wheel: Wheel, scene: Scene, links: Mapping[str, int], expected: Scene | None, failed: Collection[str]
+) -> Data:
+    """Return a wheel; `right` is whether its direction failed no criterion and is that of the reference's wheel."""
     joint = scene.robot.joint(wheel.joint)
     pairs = [other for other in expected.wheels if other.link == wheel.link] if expected is not None else []
     wanted = pairs[0].travel if pairs else None
@@ -127,7 +138,10 @@ def _wheel(wheel: Wheel, scene: Scene, links: Mapping[str, int], expected: Scene
         "parent": links[joint.parent],
         "centre": _numbers(wheel.centre),
         "travel": _numbers(wheel.travel) if wheel.travel is not None else None,
-        "right": wheel.travel is not None and (wanted is None or dot(wheel.travel, wanted) > 0.7),
+        "right": wheel.link not in failed
+        and wheel.travel is not None
+        and (wanted is None or dot(wheel.travel, wanted) > 0.7),
+        "free": wheel.is_free,
         "reach": abs(reach),
     }
 

@@ -46,6 +46,7 @@ class RobotView(NamedTuple):
     missing: tuple[str, ...]
     has_reference: bool
     has_wheels: bool
+    can_drive: bool
     callouts: tuple[Callout, ...]
 
 
@@ -71,6 +72,7 @@ def robot_view(picture: Picture) -> RobotView:
         scene.missing,
         picture.reference is not None,
         bool(scene.wheels),
+        any(wheel.is_free for wheel in scene.wheels),
         picture.callouts,
     )
 

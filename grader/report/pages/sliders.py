@@ -1,7 +1,7 @@
 """The sliders of a robot's joints on a page, and the joints that cannot be moved."""
 
 from collections.abc import Iterator
-from math import isfinite, pi
+from math import pi
 from typing import NamedTuple
 
 from grader.drawing.scene import Scene
@@ -40,7 +40,7 @@ def sliders_of(scene: Scene) -> Iterator[Slider]:
         scale = 0.001 if slides else pi / _HALF_TURN
         low, high = _range(joint)
         position = scene.robot.position(joint)
-        value = position if isinstance(position, int | float) and isfinite(position) else 0.0
+        value = position if isinstance(position, int | float) and abs(position) < _MAX_RANGE else 0.0
         follows = joint.mimic is not None and joint.name not in scene.robot.positions
         note = f"follows {joint.mimic.joint}" if joint.mimic is not None and follows else ""
         least, most, start = (round(end / scale, 6) + 0.0 for end in (min(low, value), max(high, value), value))

@@ -41,7 +41,8 @@ def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
     picture = picture_of(report)
     callouts = picture.callouts if picture is not None else ()
-    called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
+    placed = [callout for callout in callouts if callout.point is not None]
+    called = {result.criterion.id: callout.number for callout in placed for result in callout.results}
     values = {**_summary(report), **_criteria(report), **_others(report), "called": called}
     if picture is None:
         values |= {"robot": None, "views": "", "no_picture": content.why_no_picture(report)}

@@ -1,10 +1,10 @@
 "use strict";
-/* The motion of a base whose wheels all turn by an angle and roll without slip, in the frame of the ground, averaged over the wheels. */
-function rolled(wheels, ground, angle) {
-  const moving = wheels.filter((wheel) => wheel.travel), back = inverse(ground);
+/* The motion of a base whose wheels turn by angles and roll without slip, in the frame of the ground, averaged over the wheels. */
+function rolled(wheels, ground, angles) {
+  const moving = wheels.map((wheel, k) => ({ ...wheel, angle: angles[k] })).filter((wheel) => wheel.travel), back = inverse(ground);
   if (!moving.length) return IDENTITY;
   const points = moving.map((wheel) => apply(back, wheel.centre));
-  const ways = moving.map((wheel) => rotate(back, wheel.travel).map((value) => value * wheel.reach * angle));
+  const ways = moving.map((wheel) => rotate(back, wheel.travel).map((value) => value * wheel.reach * wheel.angle));
   const mean = (vectors) => [0, 1].map((k) => vectors.reduce((sum, vector) => sum + vector[k], 0) / vectors.length);
   const middle = mean(points), motion = mean(ways);
   let spin = 0, spread = 0;

@@ -18,6 +18,7 @@
       return;
     }
     busy = true;
+    say("Saving ...");
     try {
       const sent = action === "mark" ? { do: action, points: points.value, comment: comment.value, shown } : { do: action };
       const headers = { "Content-Type": "application/json" };

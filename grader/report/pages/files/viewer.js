@@ -96,9 +96,12 @@ function makeViewer(data, section) {
   }
 
   function roll(angle) {
-    const { wheels, root } = data.robot;
-    wheels.forEach(({ joint }) => given.set(joint, (given.get(joint) || 0) + angle));
-    if (scene.resting.submission[root]) state.drift = compose(state.drift, rolled(wheels, scene.resting.submission[root], angle));
+    const { wheels, joints, root } = data.robot, places = wheels.map(({ joint }) => joints.findIndex(({ name }) => name === joint));
+    const positions = () => places.map((place) => positionOf(data.robot, place, given));
+    const before = positions();
+    wheels.filter((wheel) => wheel.free).forEach(({ joint }) => given.set(joint, (given.get(joint) || 0) + angle));
+    const angles = positions().map((position, k) => position - before[k] || 0);
+    if (scene.resting.submission[root]) state.drift = compose(state.drift, rolled(wheels, scene.resting.submission[root], angles));
     notify();
   }
 
