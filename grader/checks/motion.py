@@ -44,7 +44,7 @@ def rolls_forward(
         any_type: Whether the joint above the wheel turns, whatever its type.
     """
     robot = _as_turning(robot, link) if any_type else robot
-    joint = _turning_joint(robot, link, base)
+    joint = turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
     travel, why_not = travel_of(robot, link, joint, base, upward)
     at, detail = axis_place(joint), f" (joint {joint.name!r})"
@@ -125,7 +125,7 @@ def turns_about_itself(
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
         raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.location))
-    joint = _turning_joint(robot, link, base)
+    joint = turning_joint(robot, link, base)
     T_joint_wheel = visual_pose(robot, link, visual, joint.child)
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(degrees_between(turning, own), 180.0 - degrees_between(turning, own))
@@ -144,7 +144,7 @@ def turns_about_itself(
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
 
-def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
+def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     """Return the turning joint next to a link, on the path to the base; raise MissingElement where nothing turns."""
     message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
     return last_moving(robot.between(base, link), link, ("continuous", "revolute"), message)

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import NamedTuple
 
-from grader.checks.motion import travel_of
+from grader.checks.motion import travel_of, turning_joint
 from grader.checks.visuals import main_visual
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Joint, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
 from grader.robot.transforms import Transform, Vector
 from grader.text import counted, enumerated, quoted
@@ -182,8 +182,8 @@ def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
     """Yield a link as a wheel, if a joint turns it and its shape and pose are known."""
     robot, frame = scene.robot, scene.frame
     try:
-        joint: Joint = robot.moving_joint(link)
-        if joint.type not in ("continuous", "revolute") or link not in scene.poses:
+        joint = turning_joint(robot, link, frame)
+        if link not in scene.poses:
             return
         centre = placed_by(scene.poses[link], main_visual(robot, link).origin).translation
         axis = robot.pose(joint.child, relative_to=frame).rotate(robot.axis(joint))

@@ -156,3 +156,16 @@ def test_criterion_on_several_links_marks_none_of_them() -> None:
     callouts = {callout.link: callout for callout in picture("footprint-too-low").callouts}
     assert set(callouts) == {"base_footprint", ""}
     assert [result.criterion.id for result in callouts[""].results] == ["stands-on-ground"]
+
+
+def test_wheel_below_a_joint_that_slides_has_an_arrow() -> None:
+    """The joint that turns the wheel counts, as in the check of its direction, also if another one moves it as well."""
+    text = """<robot name="r"><link name="base"/><link name="hub"/><link name="wheel"><visual><geometry>
+    <cylinder radius="0.1" length="0.05"/></geometry></visual></link>
+    <joint name="turn" type="continuous"><parent link="base"/><child link="hub"/><origin rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>
+    <joint name="slide" type="prismatic"><parent link="hub"/><child link="wheel"/><limit effort="1" velocity="1"/></joint></robot>"""
+    robot = read_urdf(text.encode(), "r.urdf").robot
+    assert robot is not None
+    (wheel,) = scene_of(Configuration(robot), "base", ["wheel"]).wheels
+    assert wheel.joint == "turn"
+    assert wheel.travel == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
