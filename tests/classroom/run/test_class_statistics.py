@@ -257,7 +257,7 @@ def test_the_page_says_what_the_terminal_says(top: Path) -> None:
     page, found = ClassPageReader(top / "pages/index.html"), data(top)
     statistics, printed = found["statistics"], text(top)
     (counts,) = page.texts("//p[@class='counts']")
-    assert counts.startswith(f"{statistics['counts']['graded']} graded {statistics['pending']} need manual grading")
+    assert counts.startswith(f"{statistics['counts']['graded']} graded {statistics['pending']} to grade manually")
     paragraphs = page.texts("//section[@id='grades']/p")
     assert len(paragraphs) == 4
     assert all(paragraph in printed for paragraph in paragraphs)
