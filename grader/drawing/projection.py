@@ -12,7 +12,7 @@ from grader.drawing.scene import Body, Rgba, Scene
 from grader.drawing.views import View
 
 _TRANSPARENT = 0.05  # a body with less alpha hides nothing
-_SHORT = 1e-5  # metres: shorter pieces are left out
+_SHORT = 1e-5  # metres: shorter pieces are not drawn
 
 
 class Stroke(NamedTuple):

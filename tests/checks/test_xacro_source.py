@@ -128,7 +128,7 @@ def test_one_file_is_meant() -> None:
     assert graded(xacro_uses, IN_XACRO, file="my_robot.urdf.xacro", macros=1).status == "failed"
     outcome = graded(xacro_uses, IN_XACRO, file="arm.xacro")
     assert (outcome.status, outcome.message) == ("failed", "the submission has no file 'arm.xacro'")
-    beside = IN_XACRO.with_files({URDF: REFERENCE.files[URDF]})  # the robot, expanded by hand
+    beside = IN_XACRO.with_files({URDF: REFERENCE.files[URDF]})  # the robot that xacro makes of it
     assert graded(xacro_uses, beside, file="my_robot.urdf.xacro", properties=["radius"]).status == "passed"
 
 

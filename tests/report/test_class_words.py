@@ -29,7 +29,7 @@ def test_a_share_is_not_rounded_to_all_or_none(share: float, words: str) -> None
 
 
 def test_edits_are_cut() -> None:
-    """Long lines, many lines and many edits, with what is left out; a renamed file is named."""
+    """Long lines, many lines and many edits are cut, with a line that counts the rest; a renamed file is named."""
     rename = Edit("a.urdf", 1, 1, "", "", "b.urdf")
     long = Edit("a.urdf", 1, 1, "x" * 300, "\n".join("123456789"))
     lines = list(edit_lines([rename, long, *[Edit("a.urdf", 1, 1, "x", "y")] * 3]))
