@@ -182,9 +182,9 @@ def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, termi
     with serving(gradebook, criterion, by, port) as (server, page):
         if server is None:
             return NOTHING
-        terminal.show(f"{server.url}\n")
-        terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept")
         with suppress(KeyboardInterrupt):
+            terminal.show(f"{server.url}\n")
+            terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept")
             server.serve_forever()
         return server.worker.submit(lambda: summary(page.session)).result()
 
