@@ -11,7 +11,7 @@ from grader.robot.separation import separation
 from grader.robot.shapes import extent
 from grader.robot.transforms import Transform, Vector
 
-MAX_PAIRS = 1_000  # shapes that overlap in a view: more are ordered by their depth, and hide nothing
+MAX_PAIRS = 600  # shapes that overlap in a view: more are ordered by their depth, and hide nothing
 _AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _SAME = 1e-6  # metres
 _MAJORITY = 3  # places at which one body is in front of the other, more than the other way round

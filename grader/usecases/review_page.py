@@ -184,7 +184,9 @@ def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, termi
             return NOTHING
         with suppress(KeyboardInterrupt):
             terminal.show(f"{server.url}\n")
-            terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept")
+            terminal.warn(
+                "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
+            )
             server.serve_forever()
         return server.worker.submit(lambda: summary(page.session)).result()
 
