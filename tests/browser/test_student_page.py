@@ -167,6 +167,9 @@ def test_frames_and_names(fresh: Any) -> None:
     fresh.evaluate("() => viewer.draw()")
     assert fresh.locator(".labels .name").inner_text() == "lidar"
     assert fresh.locator("[data-part=pose]").inner_text() == "at 0.15 0 0.2 m in base_link"
+    fresh.get_by_role("button", name="Reference", exact=True).click()
+    fresh.evaluate("() => viewer.draw()")
+    assert fresh.locator("[data-part=pose]").inner_text() == "at 0.15 0 0.2 m in base_link (submission)"
 
 
 def test_new_text_is_copied(open_page: Open, tmp_path: Path) -> None:

@@ -137,17 +137,18 @@ def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None
     assert bool(page.xpath("//button[@data-mode='reference']")) == is_shown
 
 
-JOINTS = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/><link name="f"/><link name="g"/>
+JOINTS = """<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/><link name="f"/><link name="g"/><link name="h"/>
 <joint name="turn" type="revolute"><parent link="a"/><child link="b"/><limit lower="-0.5" upper="1" effort="1" velocity="1"/></joint>
 <joint name="slide" type="prismatic"><parent link="a"/><child link="c"/><limit lower="0.1" upper="0.2" effort="1" velocity="1"/></joint>
 <joint name="spin" type="continuous"><parent link="a"/><child link="d"/></joint>
 <joint name="copy" type="continuous"><parent link="a"/><child link="e"/><mimic joint="turn" offset="0.1"/></joint>
 <joint name="endless" type="revolute"><parent link="a"/><child link="f"/><limit lower="-1e308" upper="1e308" effort="1" velocity="1"/></joint>
+<joint name="back" type="revolute"><parent link="a"/><child link="h"/><limit lower="1" upper="-1" effort="1" velocity="1"/></joint>
 <joint name="plane" type="planar"><parent link="a"/><child link="g"/></joint></robot>"""
 
 
 def test_sliders_have_the_range_of_their_joint(tmp_path: Path) -> None:
-    """Degrees or mm within the limits and 0; half a turn without usable limits; a mimic joint follows; a planar joint stays."""
+    """Degrees or mm within the limits and 0; half a turn without usable limits; odd limits are named; a mimic joint follows; a planar joint stays."""
     (tmp_path / "r.urdf").write_text(JOINTS)
     page = inspected(tmp_path / "r.urdf")
     found = {
@@ -158,9 +159,10 @@ def test_sliders_have_the_range_of_their_joint(tmp_path: Path) -> None:
     }
     assert found == {
         "turn": ["-28.64789", "57.29578", "0.0", "\u00b0", None],
-        "slide": ["0.0", "200.0", "0.0", "mm", None],
+        "slide (starts outside its limits)": ["0.0", "200.0", "0.0", "mm", None],
         "spin": ["-180.0", "180.0", "0.0", "\u00b0", None],
         "copy (follows turn)": ["-180.0", "180.0", "5.729578", "\u00b0", "disabled"],
+        "back (its limits are reversed)": ["-180.0", "180.0", "0.0", "\u00b0", None],
         "endless": ["-180.0", "180.0", "0.0", "\u00b0", None],
     }
     assert "'plane' is planar: it stays at 0 here." in page.text_content()

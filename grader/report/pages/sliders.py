@@ -16,7 +16,7 @@ _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 class Slider(NamedTuple):
     """The control of a joint: its number in the file, its range and position in degrees or mm; `scale` makes them radians or metres.
 
-    A mimic joint `follows` another one, which `note` names; the position of a continuous joint `wraps` after a full turn.
+    A mimic joint `follows` another one; `note` names that joint, or says what is odd about the limits; the position of a continuous joint `wraps` after a full turn.
     """
 
     joint: int
@@ -42,10 +42,19 @@ def sliders_of(scene: Scene) -> Iterator[Slider]:
         position = scene.robot.position(joint)
         value = position if isinstance(position, int | float) and abs(position) < _MAX_RANGE else 0.0
         follows = joint.mimic is not None and joint.name not in scene.robot.positions
-        note = f"follows {joint.mimic.joint}" if joint.mimic is not None and follows else ""
         least, most, start = (round(end / scale, 6) + 0.0 for end in (min(low, value), max(high, value), value))
         unit, wraps = ("mm" if slides else "\u00b0"), joint.type == "continuous"
+        note = _note(joint, value, follows)
         yield Slider(number, joint.name, least, most, start, unit, scale, note, follows, wraps)
+
+
+def _note(joint: Joint, value: float, follows: bool) -> str:
+    """Return what moves a joint, or what is odd about its limits: "" if nothing."""
+    if follows and joint.mimic is not None:
+        return f"follows {joint.mimic.joint}"
+    if joint.type == "continuous" or joint.limit is None or joint.limit.lower <= value <= joint.limit.upper:
+        return ""
+    return "its limits are reversed" if joint.limit.lower > joint.limit.upper else "starts outside its limits"
 
 
 def _range(joint: Joint) -> tuple[float, float]:

@@ -41,12 +41,13 @@ function makeLabels(data, scene, canvas, holder, output) {
     });
   }
 
-  function tell(state, poses) {
+  function tell(state, { poses, main }) {
+    const whose = main === "reference" ? " (submission)" : "";
     const { links, frame } = data.robot, pose = poses.submission[state.link];
     const numbers = pose && pose.slice(9).map((value) => String(Math.round(value * 1e4) / 1e4 + 0)).join(" ");
-    const text = state.link < 0 ? "" : pose ? `at ${numbers} m in ${links[frame]}` : "has no pose in the picture";
+    const text = state.link < 0 ? "" : pose ? `at ${numbers} m in ${links[frame]}${whose}` : "has no pose in the picture";
     if (output.textContent !== text) output.textContent = text;
   }
 
-  return (state, drawn, seen) => { place(texts(state, drawn), seen); tell(state, drawn.poses); };
+  return (state, drawn, seen) => { place(texts(state, drawn), seen); tell(state, drawn); };
 }
