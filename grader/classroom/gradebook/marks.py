@@ -18,7 +18,7 @@ from grader.names import did_you_mean
 from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
-_COLUMNS = "id, kind, points, comment, grader_name, at, result"
+MARK_COLUMNS = "id, kind, points, comment, grader_name, at, result"
 _NEW = "student, criterion, kind, points, comment, author, grader_name, at, result"
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
@@ -45,7 +45,7 @@ class Mark(NamedTuple):
     id: int
     entry: Entry
     by: str
-    at: str
+    at: str = ""
     result: int | None = None
 
     @property
@@ -103,7 +103,8 @@ def add_mark(
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
     `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none: if there is a
-    newer one, nothing is written and NewerMarkError holds it. Raises InputError for a criterion of a student who has submitted nothing.
+    newer one, nothing is written and NewerMarkError holds it. A comment for a mark keeps its points, and the result that they were
+    given for. Raises InputError for a criterion of a student who has submitted nothing.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key
@@ -112,9 +113,10 @@ def add_mark(
         )
     with _writing(book):
         before = _seen(book, grade, criterion, entry, by, shown)
+        mark = Mark(0, entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            entry = before.entry._replace(comment=entry.comment)
-        return AddedMark(_insert(book, grade.id, criterion, entry, by, grade.result), before)
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment), by=by or before.by)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
 
 
 def restore_mark(
@@ -124,14 +126,10 @@ def restore_mark(
 
     The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
     """
-    match mark:
-        case Mark(entry=entry, by=name, result=result):
-            pass
-        case Entry() as entry:
-            name, result = by, grade.result
+    mark = Mark(0, mark, by, result=grade.result) if isinstance(mark, Entry) else mark
     with _writing(book):
-        before = _seen(book, grade, criterion, entry, by, shown)
-        return AddedMark(_insert(book, grade.id, criterion, entry, name, result, author=by or account()), before)
+        before = _seen(book, grade, criterion, mark.entry, by, shown)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
 
 
 def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Mark:
@@ -164,14 +162,14 @@ def _seen(
     return before
 
 
-def _insert(
-    book: Gradebook, student: int, criterion: str, entry: Entry, by: str, result: int | None, author: str = ""
+def insert_mark(
+    book: Gradebook, student: int, criterion: str, mark: Mark, author: str, result: int | None, at: str = ""
 ) -> int:
-    """Add a row to the table of marks; return its id."""
-    at = datetime.now(UTC).isoformat(timespec="seconds")
+    """Add a row to the table of marks, without a transaction; return its id. Without a time it is made now."""
+    entry, name = mark.entry, storable(mark.by)
     units = None if entry.points is None else int(entry.points * UNITS_PER_POINT)
-    names = storable(author or by or account()), storable(by)
-    row = (student, criterion, entry.kind, units, storable(entry.comment), *names, at, result)
+    at = at or datetime.now(UTC).isoformat(timespec="seconds")
+    row = (student, criterion, entry.kind, units, storable(entry.comment), storable(author), name, at, result)
     added = book.connection.execute(f"INSERT INTO mark ({_NEW}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
     return int(added.lastrowid or 0)
 
@@ -183,20 +181,23 @@ def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
 
 def newest_second(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> Mark | None:
     """Return the newest second opinion of a grader on a criterion of the student's newest submission."""
-    query = f"SELECT {_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
+    query = (
+        f"SELECT {MARK_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
+    )
     row = book.first(f"{query} ORDER BY id DESC", grade.id, criterion, storable(by), grade.files.digest)
-    return _mark(*row) if row is not None else None
+    return mark_of_row(*row) if row is not None else None
 
 
 def marks_of(book: Gradebook, student: int, criterion: str, most: int) -> list[Mark]:
     """Return the newest marks of a student's criterion, the newest first, without second opinions."""
-    query = (
-        f"SELECT {_COLUMNS} FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
-    )
-    return [_mark(*row) for row in book.rows(query, student, criterion, most)]
+    query = f"SELECT {MARK_COLUMNS} FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
+    return [mark_of_row(*row) for row in book.rows(query, student, criterion, most)]
 
 
-def _mark(identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None) -> Mark:
+def mark_of_row(
+    identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None
+) -> Mark:
+    """Return a row of MARK_COLUMNS."""
     points = None if units is None else Decimal(units) / UNITS_PER_POINT
     return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at, result)
 
