@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import CARRIED, UNITS_PER_POINT, criterion_points, graded_on
+from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT, criterion_points, graded_on
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.matching import People, clues_of
@@ -103,11 +103,11 @@ class Grades:
 
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
-        if CARRIED not in grade.statuses:
+        if SETTLED not in grade.statuses:
             return []
         marks, criteria = self._manual_marks(grade), self.rubric(grade.rubric).criteria
-        rows = zip(criteria, grade.statuses, strict=True)
-        return [row.id for row, status in rows if status == CARRIED and row.id not in marks]
+        settled = (row for row, status in zip(criteria, grade.statuses, strict=True) if status == SETTLED)
+        return [row.id for row in settled if row.adjustment is None and row.id not in marks]
 
     def all(self) -> Iterator[StudentGrade]:
         """Yield all grades, in the order of the keys."""
