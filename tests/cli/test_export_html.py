@@ -9,6 +9,7 @@ from urllib.parse import unquote
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.report.formats import Format
 from grader.usecases.class_reports import write_reports
@@ -40,7 +41,7 @@ def test_pages_of_a_class(top: Path) -> None:
     assert [row["name"] for row in rows] == sorted(NAMES.values())
     assert {row["key"]: row["status"] for row in rows} == {
         **dict.fromkeys(("anna", "ben", "emil"), "graded"),
-        "cleo": "it could not be graded: cleo.zip cannot be read as an archive: File is not a zip file",
+        "cleo": "could not be graded: cleo.zip cannot be read as an archive: File is not a zip file",
         "dora": "nothing was submitted",
     }
     assert {row["key"]: (row["score"], row["pending"], row["lost"]) for row in rows} == {
@@ -201,7 +202,9 @@ class DyingWorkers(Executor):
 def test_a_crash_costs_one_page(top: Path) -> None:
     """The others have theirs, the class's page has no link to it, and standard error says why."""
     lines: list[str] = []
-    write_reports(DyingWorkers(), top / "book.db", top / "pages", [Format.HTML], None, lines.append)
+    progress: list[Progress] = []
+    write_reports(DyingWorkers(), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append)
+    assert [state.done for state in progress] == [0, 4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
         "no report for ben: the process that graded it was killed",
