@@ -116,8 +116,10 @@ def test_who_needs_attention(tmp_path: Path) -> None:
         (
             lab(essay="0.5"),
             "a",
-            "a manual mark exceeds the maximum of its criterion: essay; "
-            "marked before the points of the criterion changed: essay",
+            (
+                "a manual mark exceeds the maximum of its criterion: essay; "
+                "marked before the points of the criterion changed: essay"
+            ),
         ),
     ],
 )
