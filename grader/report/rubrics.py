@@ -106,7 +106,7 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
 
 
 def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
-    given = ", ".join(f"{key} = {_toml(value)}" for key, value in arguments.items())
+    given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
     return [
         _filled(f"{title}: {check.name}. {check.documentation.fact}"),
         *([_filled(f"With {given}.")] if given else []),
@@ -116,13 +116,14 @@ def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> l
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
-        default = "" if parameter.required else f", default: {_toml(parameter.default)}"
+        default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
         meaning = _filled(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
 
 
-def _toml(value: object) -> str:
+def toml_text(value: object) -> str:
+    """Return a value as a rubric has it, one that is not given as `not checked`."""
     match value:
         case bool():
             return str(value).lower()
@@ -131,9 +132,9 @@ def _toml(value: object) -> str:
         case float():
             return f"{value:g}"
         case list() | tuple():
-            return f"[{', '.join(map(_toml, value))}]"
+            return f"[{', '.join(map(toml_text, value))}]"
         case dict():
-            return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+            return "{ " + ", ".join(f"{key} = {toml_text(item)}" for key, item in value.items()) + " }"
         case None:
             return "not checked"
         case _:

@@ -175,7 +175,17 @@ DIFF_SCHEMA = _document(
     {
         "schema": {"const": "grader/diff/v1"},
         **_all(_RUN, "from to"),
-        "students": _array(_object({**_CHANGE, "because": _array(_TEXT), "criteria": _array(_object(_CHANGE))})),
+        "students": _array(
+            _object(
+                {
+                    **_CHANGE,
+                    "name": _TEXT,
+                    "because": _array(_TEXT),
+                    "criteria": _array(_object(_CHANGE)),
+                    "rubric": _array(_object({**_all(_TEXT, "id key"), **_all(_VALUE, "before after")})),
+                }
+            )
+        ),
     },
 )
 
