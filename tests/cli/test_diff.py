@@ -143,6 +143,54 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
     )
 
 
+def test_a_long_class_is_grouped(tmp_path: Path) -> None:
+    """The largest group first: what changed in the rubric, what that changed in criteria, then each student once."""
+    keys = [f"s{number:03}" for number in range(120)]
+    older, newer = lab(), lab(box="5")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, older, [graded_as(older, key, "ppp??") for key in keys] + [graded_as(older, "zoe", "pfs??")])
+        found = [graded_as(newer, key, "pfs??" if key == "s007" else "ppp??", key) for key in keys]
+        record_run(book, newer, [*found, graded_as(newer, "zoe", "pfs??")])
+    lines = diff(tmp_path).splitlines()
+    assert lines[:4] == [
+        "",
+        "the submission changed; the rubric changed: 120 students",
+        "  box: points 2.5 to 5",
+        "  box: 2.5 to 5 (+2.5)",
+    ]
+    assert lines[4:123] == [f"    {key}: 6 to 8.5 (+2.5)" for key in keys if key != "s007"]
+    assert lines[123:] == [
+        "  s007: 6 to 3 (-3)",
+        "    box: 2.5 to 0 (-2.5)",
+        "    tall: 0.5 to 0 (-0.5)",
+    ]
+
+
+def test_a_change_of_the_rubric_is_named(top: Path) -> None:
+    """Arguments, adjustments with their reason, extra credit, removed criteria, and what a criterion requires."""
+    text = lab_text().replace("size = [1, 1, 1]", "size = [1, 1, 2]").replace('"picture"', '"photo"')
+    text = text.replace('id = "essay"', 'id = "essay"\nbonus = true')
+    (top / "newer.toml").write_text(text + '\n[adjust.loads]\naction = "drop"\nreason = "[b]odd[/b]\tname"\n')
+    batch(top)
+    grader("mark", "anna", "essay", "2", "--gradebook", top / "book.db")
+    batch(top, rubric=top / "newer.toml")
+    text = " ".join(diff(top).split())
+    for words in (
+        "loads: Not counted: [b]odd[/b] name",
+        "box: size [1, 1, 1] to [1, 1, 2]",
+        "Ben Oh (emil): 3 to 2.5 (-0.5)",
+    ):
+        assert words in text
+    found = {student["id"]: student for student in as_json(top / "book.db")["students"]}
+    assert found["emil"]["name"] == "Ben Oh"
+    assert found["emil"]["rubric"] == [
+        {"id": "loads", "key": "adjust", "before": None, "after": {"action": "drop", "reason": "[b]odd[/b] name"}},
+        {"id": "box", "key": "size", "before": [1, 1, 1], "after": [1, 1, 2]},
+    ]
+    assert found["anna"]["criteria"][-1] == {"id": "essay", "before": None, "after": 2}
+    assert found["anna"]["rubric"][-1] == {"id": "essay", "key": "bonus", "before": False, "after": True}
+
+
 def test_names_are_escaped(top: Path) -> None:
     """Escape sequences and bidirectional marks in a key are escaped."""
     write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
