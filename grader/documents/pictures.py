@@ -38,7 +38,11 @@ _SIGNATURES = (
 )
 _NOT_SHOWN = (
     (
-        re.compile(rb"\s*(?:<\?xml.*?)?(?:<!.*?>\s*)*<svg[\s>]", re.DOTALL | re.IGNORECASE),
+        # Each alternative begins or goes on in a way of its own: hostile bytes cannot make the search exponential.
+        re.compile(
+            rb"(?:\s|<\?[^>]*>|<!--(?:(?!-->).)*-->|<!(?!--)[^>\[]*(?:\[[^\]]*\]\s*)?>)*<svg[\s>]",
+            re.DOTALL | re.IGNORECASE,
+        ),
         "SVG, which can contain scripts",
     ),
     (re.compile(rb"\s*<(?:!doctype html|html|head|body|script)", re.IGNORECASE), "HTML, which can contain scripts"),
