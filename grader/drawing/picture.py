@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
-from grader.drawing.scene import Body, Scene, scene_of
+from grader.drawing.scene import Body, Scene, is_drawable, scene_of
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.hints.targets import selected
 from grader.grading.report import Report, Result
@@ -190,12 +190,13 @@ def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
 
 
 def _point(scene: Scene | None, link: str) -> Vector | None:
-    """Return the centre of the link's main visual, else the origin of its frame; None if it has no pose."""
+    """Return the centre of the link's main visual if it can be drawn, else the origin of its frame; None if it has no pose."""
     if scene is None or link not in scene.poses:
         return None
     pose = scene.poses[link]
     if not any(body.link == link for body in scene.bodies):
         return pose.translation
     with suppress(MissingElement, NotDecided):
-        return placed_by(pose, main_visual(scene.robot, link).origin).translation
+        centre = placed_by(pose, main_visual(scene.robot, link).origin).translation
+        return centre if is_drawable(centre) else pose.translation
     return pose.translation

@@ -103,7 +103,7 @@ def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict
     for link in robot.robot.links:
         try:
             pose = robot.pose(link.name, relative_to=frame)
-            reason = "" if _is_drawable(pose.translation) else "it is too far away"
+            reason = "" if is_drawable(pose.translation) else "it is too far away"
         except _NOT_KNOWN as error:
             reason = str(error)
         if not reason:
@@ -145,12 +145,13 @@ def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
     pose = placed_by(Transform(), visual.origin)
-    if is_empty(shape) or not _is_drawable(sizes) or not _is_drawable(pose.translation):
+    if is_empty(shape) or not is_drawable(sizes) or not is_drawable(pose.translation):
         return None
     return Body(link, drawn, pose, visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL)
 
 
-def _is_drawable(values: Vector) -> bool:
+def is_drawable(values: Vector) -> bool:
+    """Return whether a size or place in metres is a number that can be drawn."""
     return all(isfinite(value) and abs(value) <= _MAX_COORDINATE for value in values)
 
 
@@ -190,6 +191,6 @@ def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
         travel, _ = travel_of(robot, link, joint, frame, _UP)
     except _NOT_KNOWN:
         return
-    if _is_drawable(centre):
+    if is_drawable(centre):
         is_free = joint.type == "continuous" and joint.mimic is None
         yield Wheel(link, joint.name, centre, axis, travel, is_free)

@@ -11,7 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.pool import WorkerError
-from grader.errors import InputError
+from grader.errors import InputError, RubricError
 from grader.grading.report import Report
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
@@ -74,12 +74,18 @@ def write_reports(
 
 
 def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students without one, and why. If the process that writes them crashes, each is retried alone."""
+    """Wait for reports; return the students without one, and why. If they fail or crash together, each is retried alone.
+
+    Raises InputError and RubricError, which concern all reports.
+    """
     try:
         task.result()
-    except WorkerError as error:
+    except (InputError, RubricError):
+        raise
+    except Exception as error:  # noqa: BLE001  a fault of the grader affects only this report
         if len(names) == 1:
-            return dict.fromkeys(names, str(error))
+            fault = f"the grader itself failed: {type(error).__name__}: {error}"
+            return dict.fromkeys(names, str(error) if isinstance(error, WorkerError) else fault)
         alone = [{key: name} for key, name in names.items()]
         return {key: why for one in alone for key, why in _lost(write, one, write(one)).items()}
     return {}
