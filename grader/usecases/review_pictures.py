@@ -30,12 +30,11 @@ def write_pictures(
     update_index(folder, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
     lines: PicturesOfItems = {}
     for position, queued in enumerate(session.queue):
-        session.go(position)
-        item = session.item
+        item = session.item_at(position)
         if item is None:
             continue
         start = folder / folders[queued.criterion] / names[queued.key]
-        found = item_pictures(item, session.rubric)
+        found = item_pictures(item, session.rubric_of(item))
         lines[queued] = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
         for line in lines[queued]:
             show(f"{who(item.grade.student)}, {printable(queued.criterion)}: {line}\n")

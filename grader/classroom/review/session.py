@@ -18,6 +18,7 @@ from grader.classroom.gradebook.marks import (
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
+from grader.errors import InputError
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
@@ -77,9 +78,19 @@ class ReviewSession:
 
     def go(self, position: int) -> None:
         """Go to a position in the queue, also to a marked item; beyond the last one to the end."""
+        self.item = self.item_at(position)
+        self.position = position if 0 <= position < len(self.queue) else len(self.queue)
+
+    def item_at(self, position: int) -> QueuedResult | None:
+        """Return an item in its current state; None beyond the queue, or if it is no longer graded."""
         inside = 0 <= position < len(self.queue)
-        self.item = queued_result(self._grades, self.queue[position]) if inside else None
-        self.position = position if inside else len(self.queue)
+        return queued_result(self._grades, self.queue[position]) if inside else None
+
+    def current_item(self) -> QueuedResult:
+        """Return the current item; raise InputError if it is no longer graded."""
+        if self.item is None:
+            raise InputError("this criterion is no longer graded for this student")
+        return self.item
 
     def next(self) -> None:
         """Go to the next item that is not marked by others, or to the end."""
@@ -107,8 +118,7 @@ class ReviewSession:
         `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
         one, and InputError.
         """
-        item = self.item
-        assert item is not None
+        item = self.current_item()
         shown = item.newest if shown is None else shown
         book, criterion = self._grades.book, item.result.criterion
         newest = newest_mark(book, item.grade.id, criterion.id)
@@ -151,11 +161,9 @@ class ReviewSession:
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
 
-    @property
-    def rubric(self) -> Rubric:
-        """The rubric that the current item was graded with."""
-        assert self.item is not None
-        return self._grades.rubric(self.item.grade.rubric)
+    def rubric_of(self, item: QueuedResult) -> Rubric:
+        """Return the rubric that an item was graded with."""
+        return self._grades.rubric(item.grade.rubric)
 
     def comments(self) -> list[str]:
         """Return earlier comments for the criterion of the current item, the most frequent first.
