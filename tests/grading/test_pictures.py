@@ -147,6 +147,14 @@ def test_pictures_in_an_answer() -> None:
     assert in_answer({"lab.md": b"# Step 15\n\nIt [picture] vanishes.\n"}, "step 15") == []
 
 
+@pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85"])
+def test_other_separators_are_no_lines(separator: str) -> None:
+    """An answer with separators of Unicode does not show the pictures of the answer below it."""
+    answer = separator.join(["It", "vanishes", "at", "once", "again"])
+    report = word("# Step 15", STEP_8, answer, "# Step 18", "Two roots.", STEP_18)
+    assert in_answer({"lab.docx": report}, "step 15") == ["picture 1 in lab.docx (8 x 8 pixels)"]
+
+
 def test_pictures_of_a_pdf() -> None:
     """JPEG data is taken as it is; grey, RGB and palettes become PNG; other kinds are named."""
     pytest.importorskip("pypdf")
