@@ -180,6 +180,15 @@ def test_a_criterion_that_is_no_longer_graded(review: Review, book: Path) -> Non
     assert review.mark("4", "1") == {"error": GONE}
 
 
+def test_undo_of_a_criterion_that_is_no_longer_graded(review: Review, book: Path) -> None:
+    """The page shows the reason, and there is nothing more to undo."""
+    assert review.mark("4", "1") == {"go": "5"}
+    grade_without(book, "anna", "picture")
+    assert review.post("5", {"do": "undo"}).json == {"error": f"not undone: {GONE}"}
+    assert review.get().headers["location"] == f"/{review.token}/5"
+    assert review.post("5", {"do": "undo"}).json == {"error": "nothing to undo: this review has marked nothing"}
+
+
 @pytest.mark.parametrize(
     ("method", "path", "status"),
     [

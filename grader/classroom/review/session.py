@@ -23,6 +23,7 @@ from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
+_NOT_GRADED = "this criterion is no longer graded for this student"
 _CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
 
 
@@ -89,7 +90,7 @@ class ReviewSession:
     def current_item(self) -> QueuedResult:
         """Return the current item; raise InputError if it is no longer graded."""
         if self.item is None:
-            raise InputError("this criterion is no longer graded for this student")
+            raise InputError(_NOT_GRADED)
         return self.item
 
     def next(self) -> None:
@@ -132,14 +133,19 @@ class ReviewSession:
         """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
 
         A new entry brings the mark before it back, or takes the mark back. Raises NewerMarkError if somebody has marked the item
-        since, and InputError; IndexError if there is nothing to undo.
+        since, and InputError, also if it is no longer graded; IndexError if there is nothing to undo.
         """
-        here = [index for index, given in enumerate(self._given) if given.position == self.position]
-        index = here[-1] if here else len(self._given) - 1
+        here = self.position
+        own = [index for index, given in enumerate(self._given) if given.position == here]
+        index = own[-1] if own else len(self._given) - 1
         given = self._given[index]
         self.go(given.position)
         item = self.item
-        assert item is not None
+        if item is None:
+            self._forget(given.position)
+            self.position = here - 1
+            self.next()
+            raise InputError(f"not undone: {_NOT_GRADED}")
         before = given.before or Mark(0, None, self._by, "", "")
         try:
             added = mark(
