@@ -28,15 +28,15 @@ _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
-    """Raise InputError for a folder that reports cannot be written to, or that the next run would read as a submission."""
+    """Raise InputError for a folder that reports or pictures cannot be written to, or that the next run would read as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"cannot write reports to {shown}: it is not a folder")
+        raise InputError(f"cannot write files to {shown}: it is not a folder")
     for submitted in submissions:
         if folder.resolve() == submitted or submitted in folder.resolve().parents:
             raise InputError(
-                f"cannot write reports to {shown}: the next run would take them for a submission; "
+                f"cannot write files to {shown}: the next run would take them for a submission; "
                 "choose a folder outside of the class folder"
             )
     if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():

@@ -10,6 +10,7 @@ from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.report.review import who
 from grader.text import printable, printable_path
+from grader.usecases.class_reports import refuse_report_folder
 from grader.usecases.report_names import file_names, report_names, update_index
 from grader.usecases.writing import save_bytes
 
@@ -24,6 +25,7 @@ def write_pictures(
     The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
     Raises InputError.
     """
+    refuse_report_folder(folder, (), sorted({Path(run.source) for run in book.runs()}))
     names = report_names(book)
     folders = file_names([criterion.id for criterion in session.criteria])
     _make(folder)

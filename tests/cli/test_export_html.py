@@ -112,7 +112,7 @@ def test_submissions_that_are_gone_or_changed(top: Path) -> None:
     [
         ((), "export html writes a folder of pages: name it with --output DIR"),
         (("--into", "book.db", "--output", "pages"), "export html does not take --into"),
-        (("--output", "roster.csv"), "cannot write reports to {top}/roster.csv: it is not a folder"),
+        (("--output", "roster.csv"), "cannot write files to {top}/roster.csv: it is not a folder"),
         (("--output", "book.db"), "cannot write {top}/book.db: this would overwrite the gradebook"),
         (("--output", "pages", "--due", "soon"), "'soon' is not a date or time"),
         (("--output", "roster.csv/x"), "cannot make the folder {top}/roster.csv/x: Not a directory"),
