@@ -111,7 +111,7 @@ def _of_pdf(image: Any) -> bytes:
     """Return a JPEG as it is in the PDF, and plain samples of grey or RGB as a PNG; empty for other kinds."""
     filters = image.get("/Filter", [])
     names = [str(name) for name in (filters if isinstance(filters, list) else [filters])]
-    colours = image["/ColorSpace"] if "/ColorSpace" in image else None  # noqa: SIM401  `get` follows no reference
+    colours: Any = image["/ColorSpace"] if "/ColorSpace" in image else None  # noqa: SIM401  `get` follows no reference
     is_indexed = isinstance(colours, list) and colours[0] == "/Indexed"
     if _is_remapped(image, 255 if is_indexed else 1):
         return b""

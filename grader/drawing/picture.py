@@ -10,9 +10,10 @@ from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
 from grader.drawing.scene import Body, Scene, is_drawable, scene_of
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.grading.criterion import Criterion
 from grader.grading.hints.targets import selected
 from grader.grading.report import Report, Result
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.rubric import Rubric
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.likeness import mismatch

@@ -8,10 +8,11 @@ from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check
 from grader.checks.tree import urdf_loads
 from grader.errors import InputError, MissingElement, NotDecided, RubricError
+from grader.grading.criterion import Carried, Criterion
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
 from grader.grading.explanation import explained
 from grader.grading.report import GradedSubmission, Report, Result
-from grader.grading.rubric import Carried, Criterion, Rubric
+from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
@@ -108,7 +109,7 @@ class _Grading:
         """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
-            if required is not None and required.outcome.status in ("failed", "skipped") and not required.carried:
+            if required is not None and required.is_lost:
                 return required.because or name
         if self._subjects.robot is None and criterion.check.subject == "robot":
             loading = (result for result in self.results.values() if result.criterion.check.function is urdf_loads)

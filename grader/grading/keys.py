@@ -142,6 +142,7 @@ CRITERION = KeyTable(
             _table(CARRIED.schema), "What counts instead if an earlier mistake makes the criterion fail."
         ),
         "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
+        "bonus": described(toml_type(bool), "Extra credit: its points are not part of the maximum; default: false."),
     },
     required=("id", "part", "title", "points", "check"),
 )
@@ -179,6 +180,17 @@ LATE = KeyTable(
     },
     required=("percent_per_day",),
 )
+ADJUSTMENT = KeyTable(
+    "adjustment",
+    {
+        "action": described(
+            toml_type(Literal["drop", "full"]),
+            "drop: the criterion does not count; full: every graded submission gets its points.",
+        ),
+        "reason": described(_TITLE, "Why. Reports show it."),
+    },
+    required=("action", "reason"),
+)
 IGNORE = KeyTable(
     "test.ignore",
     {
@@ -215,6 +227,10 @@ RUBRIC = KeyTable(
         "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),
         "evidence": described(_rows(EVIDENCE), "The pictures and documents that the lab asks for."),
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
+        "adjust": described(
+            _table({"type": "object", "additionalProperties": ADJUSTMENT.schema}),
+            "Corrections after grading: for each criterion that is dropped or given to everybody a table.",
+        ),
         "test": described(_table(TEST.schema), "Settings for `grader rubric test`."),
     },
     required=("id", "title", "part", "criterion"),

@@ -115,7 +115,7 @@ def _exhibits(files: Any) -> tuple[Exhibit, ...]:
 
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:
-    criterion, outcome, because, traceback, _, carried, _ = result
+    criterion, outcome, because, traceback, _, carried, *_ = result
     stored = _stored(outcome)
     if carried:
         return criterion.position, stored, because, traceback, None, carried

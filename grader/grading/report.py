@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from grader import __version__
 from grader.checks.outcome import Outcome
-from grader.grading.rubric import Criterion, Evidence, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Evidence, Rubric
 from grader.problems import Problem
 from grader.robot.model import Robot
 from grader.robot.reader import Verdict
@@ -40,6 +41,13 @@ class ManualMark(NamedTuple):
     comment: str = ""
 
 
+class ManualComment(NamedTuple):
+    """A comment of a grader that changes no points, with the grader's name if given."""
+
+    text: str
+    by: str
+
+
 class Hint(NamedTuple):
     """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
 
@@ -58,7 +66,7 @@ class Result(NamedTuple):
     """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
 
     `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given. Criteria that
-    one edit makes pass have the same hint.
+    one edit makes pass have the same hint. `comment` is that of a person who has given no points.
     """
 
     criterion: Criterion
@@ -68,30 +76,37 @@ class Result(NamedTuple):
     manual_mark: ManualMark | None = None
     carried: str = ""
     hints: tuple[Hint, ...] = ()
+    comment: ManualComment | None = None
 
     @property
     def points(self) -> Decimal:
-        """The points earned: all, also where an error is carried forward, or none, or those of a manual mark."""
+        """The points earned: all, also where an error is carried forward or the rubric gives them, or none, or a manual mark's."""
         if self.manual_mark is not None:
             return self.manual_mark.points
-        return self.criterion.points if self.outcome.status == "passed" or self.carried else _NOTHING
+        is_given = self.outcome.status == "passed" or self.carried or self.criterion.is_given
+        return self.criterion.points if is_given else _NOTHING
 
     @property
     def why_given(self) -> str:
-        """Why a criterion that failed has its points, as a sentence; empty if no error is carried forward."""
-        if not self.carried or self.manual_mark is not None:
+        """Why a criterion that did not pass costs no points, as a sentence; empty if it does."""
+        if self.manual_mark is not None:
             return ""
-        return f"Points given: this mistake is already counted in {self.carried}."
+        adjustment = self.criterion.adjustment
+        if adjustment is not None and self.outcome.status != "passed":
+            return f"{'Points given' if self.criterion.is_given else 'Not counted'}: {adjustment.reason}"
+        return f"Points given: this mistake is already counted in {self.carried}." if self.carried else ""
 
     @property
     def is_lost(self) -> bool:
         """Return whether the criterion has no points because of a mistake."""
-        return self.outcome.status in ("failed", "skipped") and not self.carried
+        is_adjusted = self.criterion.adjustment is not None
+        return self.outcome.status in ("failed", "skipped") and not (self.carried or is_adjusted)
 
     @property
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
-        return self.outcome.status == "pending" and self.manual_mark is None
+        is_adjusted = self.criterion.adjustment is not None
+        return self.outcome.status == "pending" and self.manual_mark is None and not is_adjusted
 
 
 class Exhibits(NamedTuple):
@@ -193,8 +208,8 @@ class Report:
 
     @property
     def max_score(self) -> Decimal:
-        """The maximum of the graded parts."""
-        return _sum(result.criterion.points for result in self.results)
+        """The maximum of the graded parts, without extra credit."""
+        return _sum(result.criterion.maximum for result in self.results)
 
     @property
     def pending(self) -> Decimal:

@@ -1,20 +1,21 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.checks.manual import answered
-from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
+from grader.grading.criterion import Adjustment, Carried, Criterion
 from grader.grading.levels import Level
 from grader.grading.reference import Reference
 from grader.grading.toml_file import complain_of, read_toml
-from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
+from grader.grading.toml_rows import TomlRow
+from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import printable_path, shell_quoted
@@ -41,39 +42,6 @@ class Evidence:
     part: str
     title: str
     names: tuple[str, ...]
-
-
-class Carried(NamedTuple):
-    """Error carried forward: the criterion keeps its points where one of `causes` failed and the check, another fact, passes."""
-
-    causes: tuple[str, ...]
-    check: Check
-    arguments: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class Criterion:
-    """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
-
-    `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints, in
-    degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments name links by
-    their place in the tree.
-    """
-
-    id: str
-    title: str
-    part: str
-    points: Decimal
-    check: Check
-    arguments: Mapping[str, Any]
-    requires: tuple[str, ...] = ()
-    feedback: str = ""
-    about: str = ""
-    position: int = 0
-    answer: str = ""
-    carried: Carried | None = None
-    at: Mapping[str, float] = field(default_factory=dict)
-    has_selectors: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +104,8 @@ class Rubric:
 
     @property
     def points(self) -> Decimal:
-        """The maximum."""
-        return sum((criterion.points for criterion in self.criteria), Decimal(0))
+        """The maximum, without extra credit."""
+        return sum((criterion.maximum for criterion in self.criteria), Decimal(0))
 
     @property
     def is_shipped(self) -> bool:
@@ -199,11 +167,12 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     complain_of(valid.complaints, text, path)
     rubric = valid.rubric
     criteria = zip(valid.criteria, valid.bound, valid.carried, strict=True)
+    adjusted = {name: Adjustment(**row) for name, row in valid.adjusted.items()}
     return Rubric(
         rubric["id"],
         rubric["title"],
         tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
-        tuple(_criterion(index, *found, answers=answers) for index, found in enumerate(criteria)),
+        tuple(_adjusted(_criterion(index, *found, answers=answers), adjusted) for index, found in enumerate(criteria)),
         rubric.get("urdf", _URDF),
         rubric.get("reference", ""),
         data,
@@ -237,3 +206,12 @@ def _criterion(
     own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
     own["has_selectors"] = any(map(is_selector, texts_in((arguments, carried[2] if carried is not None else ()))))
     return Criterion(**own, carried=Carried(*carried) if carried is not None else None)
+
+
+def _adjusted(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:
+    """Return a criterion with its adjustment, if there is one."""
+    adjustment = adjustments.get(criterion.id)
+    if adjustment is None:
+        return criterion
+    points = Decimal(0) if adjustment.action == "drop" else criterion.points
+    return replace(criterion, points=points, adjustment=adjustment)

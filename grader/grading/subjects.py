@@ -7,7 +7,8 @@ from typing import Any
 from grader.checks.outcome import point
 from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint

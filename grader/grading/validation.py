@@ -1,6 +1,6 @@
 """Validate a rubric's TOML: every mistake is collected, with the path of the key that it is in."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from decimal import Decimal
 from functools import cache
 from typing import Any
@@ -8,20 +8,28 @@ from typing import Any
 from grader.checks.registry import LINK_ARGUMENTS, Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST, KeyTable
+from grader.grading.keys import (
+    ADJUSTMENT,
+    CARRIED,
+    CRITERION,
+    DEFAULTS,
+    EVIDENCE,
+    IGNORE,
+    LATE,
+    PART,
+    RUBRIC,
+    TEST,
+    KeyTable,
+)
 from grader.grading.toml_lines import Path
-from grader.names import did_you_mean
+from grader.grading.toml_rows import RowReader, TomlRow, shown
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
-_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
+TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 _MAX_LISTED = 20  # names in one message
-_MAX_SHOWN = 40  # characters of a value
-_MAX_BITS = 1000  # of a whole number that is written out
 
-TomlRow = dict[str, Any]
 BoundCheck = tuple[Check, TomlRow]
-_NOTHING: Mapping[str, Any] = {}
 BoundCarried = tuple[tuple[str, ...], Check, TomlRow]  # the possible causes, and the fact that counts instead
 
 
@@ -32,10 +40,10 @@ class Validation:
     """
 
     def __init__(self, table: TomlRow) -> None:
-        self.complaints: list[tuple[Path, str]] = []
+        self._reader = RowReader()
+        self._row, self._guess, self._complain = self._reader.row, self._reader.guess, self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[BoundCarried | None] = []
-        self._guesses = _MAX_GUESSES
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, RUBRIC)
         self._defaults: TomlRow = {}
@@ -60,29 +68,20 @@ class Validation:
                 self.bound.append(bound)
                 self._examines(where, row, bound[0])
             self.carried.append(self._carried(where, row, positions))
+            self._is_reserved((*where, "id"), row)
         for index, row in enumerate(self.evidence):
             self._belongs(("evidence", index), row, part_ids)
+        self.adjusted = self._adjusted(positions)
         self._totals()
 
-    def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> list[TomlRow]:
-        return [self._row((key, index), row, table, defaults) for index, row in enumerate(self.rubric.get(key, ()))]
+    @property
+    def complaints(self) -> list[tuple[Path, str]]:
+        """The mistakes, each with the path of its key."""
+        return self._reader.complaints
 
-    def _row(self, where: Path, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
-        """Return the valid values of a table, converted; complain of the others and of missing ones."""
-        parsed: TomlRow = {**defaults}
-        for key, value in row.items():
-            if key not in table.keys:
-                hint = self._guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
-                self._complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
-                continue
-            try:
-                parsed[key] = table.keys[key].parse(value)
-            except WrongValue as error:
-                self._complain((*where, key), f"{key} must be {error}, not {_shown(value)}")
-        for key in table.required:
-            if key not in row and key not in defaults:
-                self._complain(where, f"this {table.name} has no {key}")
-        return parsed
+    def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
+        rows = enumerate(self.rubric.get(key, ()))
+        return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
 
     def _read_defaults(self) -> None:
         """Read the values that criteria have unless they give others, and the default arguments of checks."""
@@ -91,7 +90,7 @@ class Validation:
             where: Path = ("defaults", "with", name)
             check = self._check(where, name)
             if not isinstance(given, dict):
-                self._complain(where, f"the arguments of {name} must be a table, not {_shown(given)}")
+                self._complain(where, f"the arguments of {name} must be a table, not {shown(given)}")
             elif check is not None:
                 unset = dict.fromkeys(given)  # invalid ones are complained of once, not at each criterion
                 self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
@@ -151,6 +150,25 @@ class Validation:
         bound = self._arguments(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None
 
+    def _is_reserved(self, where: Path, row: TomlRow) -> None:
+        if row.get("id") == TOTAL:
+            self._complain(where, f"the id {TOTAL!r} is reserved for final marks: choose another one")
+
+    def _adjusted(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
+        """Return the adjustments by criterion."""
+        for name in (adjusted := self.rubric.get("adjust", {})):
+            if name not in positions:
+                hint = self._guess(name, positions)
+                self._complain(("adjust", name), f"adjusts {name!r}, which does not exist{hint}")
+            elif not isinstance(adjusted[name], dict):
+                message = f"the adjustment of {name} must be a table, not {shown(adjusted[name])}"
+                self._complain(("adjust", name), message)
+        return {
+            name: self._row(("adjust", name), row, ADJUSTMENT)
+            for name, row in adjusted.items()
+            if isinstance(row, dict)
+        }
+
     def _arguments(self, where: Path, row: TomlRow) -> BoundCheck | None:
         """Return the check of a row with its converted arguments; None if there is no such check."""
         name, given = row.get("check"), row.get("with", {})
@@ -177,7 +195,7 @@ class Validation:
             try:
                 arguments[key] = parameter.type.parse(value)
             except WrongValue as error:
-                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {_shown(value)}")
+                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shown(value)}")
         return arguments
 
     def _check(self, where: Path, name: str) -> Check | None:
@@ -203,32 +221,7 @@ class Validation:
             name = part.get("id", "")
             declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))
         for where, owner, name, rows in declared:
-            actual = sum((row["points"] for row in rows), Decimal(0))
+            actual = sum((row["points"] for row in rows if not row.get("bonus")), Decimal(0))
             if owner.get("points", actual) != actual:
                 message = f"{name} declares {owner['points']} points, but its criteria add up to {actual}"
                 self._complain((*where, "points"), message)
-
-    def _guess(self, name: str, known: Iterable[str]) -> str:
-        self._guesses -= 1
-        return did_you_mean(name, known) if self._guesses >= 0 else ""
-
-    def _complain(self, where: Path, message: str) -> None:
-        self.complaints.append((where, message))
-
-
-def _shown(value: Any) -> str:
-    match value:
-        case list():
-            text = ", ".join(map(_shown, value[:6]))
-            return f"[{text}{', ...' if len(value) > 6 else ''}]"
-        case dict():
-            text = f"{{ {', '.join(f'{key} = {_shown(it)}' for key, it in value.items())} }}" if value else "{}"
-        case bool():
-            return str(value).lower()
-        case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits
-            text = "a number with too many digits"
-        case str():
-            text = repr(value)
-        case _:
-            text = str(value)
-    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."

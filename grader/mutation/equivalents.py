@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator, Mapping
 from random import Random
 from typing import Any, NamedTuple
 
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.mutation import as_xacro, rewritings
 from grader.mutation.references import names_in
 from grader.mutation.rewritings import Step, Surroundings, words_of_foreign

@@ -6,7 +6,8 @@ from typing import Any
 
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission
 
 _WORD = re.compile(r"[\w@:.-]+")

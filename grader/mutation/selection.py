@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from random import Random
 
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.trial import Trial

@@ -3,7 +3,8 @@
 from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
 from grader.mutation.references import texts
 from grader.robot.model import Robot

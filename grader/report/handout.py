@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 from grader.checks.manual import MANUAL_CHECKS
-from grader.grading.rubric import Criterion, Part, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Part, Rubric
 from grader.report.markdown_text import code, escaped
 from grader.text import counted_points, format_points, printable
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.gradebook.marks import Mark, QueuedResult
+from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.marks import Mark
 from grader.classroom.students import Student
 from grader.report.console import wrapped
 from grader.text import counted_points, printable
@@ -45,7 +46,7 @@ def who(student: Student) -> str:
 
 def mark_text(mark: Mark) -> str:
     """Return a mark in one printable line: points, name, time, comment."""
-    points = "withdrawn" if mark.points is None else counted_points(mark.points)
+    points = counted_points(mark.points) if mark.points is not None else mark.entry.kind
     parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
     comment = " ".join(mark.comment.split())
     return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 
 from grader.checks.registry import Check, check_names, find_check, unused_checks
 from grader.errors import InputError
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.robot.catalogue import CATALOGUE

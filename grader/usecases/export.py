@@ -18,7 +18,7 @@ from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.errors import GraderError
 from grader.files.reading import read_capped
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
 from grader.usecases import Warn

@@ -67,7 +67,7 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
                     return True
                 continue
         try:
-            points = read_points(answer, criterion) if answer != "?" else None
+            points = read_points(answer, criterion.id, criterion.points) if answer != "?" else None
         except InputError as error:
             terminal.warn(str(error))
             continue

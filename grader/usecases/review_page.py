@@ -11,7 +11,8 @@ from typing import Any
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import NewerMarkError, QueuedResult, read_points
+from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.marks import NewerMarkError, read_points
 from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import GraderError, InputError
@@ -100,9 +101,8 @@ class ReviewPage:
         session = self.session
         match sent["do"]:
             case "mark":
-                points = read_points(sent["points"], session.current_item().result.criterion)
-                if points is None:
-                    raise InputError("points are a number; u undoes a mark")
+                criterion = session.current_item().result.criterion
+                points = read_points(sent["points"], criterion.id, criterion.points)
                 session.mark(points, sent["comment"].strip(), sent["shown"])
                 session.next()
             case "next":

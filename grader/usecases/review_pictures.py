@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.marks import QueuedCriterion, QueuedResult
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
 from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError

@@ -12,9 +12,10 @@ import pytest
 from grader.checks.outcome import Outcome, Status
 from grader.checks.registry import Subject, describe
 from grader.errors import MissingElement
+from grader.grading.criterion import Criterion
 from grader.grading.grade import grade
 from grader.grading.reference import Reference
-from grader.grading.rubric import Criterion, Part, Rubric
+from grader.grading.rubric import Part, Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.source import Location

@@ -7,11 +7,14 @@ from pathlib import Path
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.marks import AddedMark, Entry, add_mark
 from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, GradingResult, Verdict
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.worker import Task, result_of
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
+from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from tests.command_line import clean_environment, run_with_input
@@ -159,3 +162,18 @@ def batch(top: Path, *more: object, rubric: object = None) -> subprocess.Complet
         "batch", top / "class", "--gradebook", top / "book.db", "--rubric", rubric or top / "small.toml",
         "--roster", top / "roster.csv", "--jobs", 2, *more,
     )  # fmt: skip
+
+
+def mark(
+    book: Gradebook,
+    grade: StudentGrade,
+    criterion: Criterion,
+    points: Decimal | None,
+    by: str,
+    why: str,
+    *,
+    shown: int | None = None,
+) -> AddedMark:
+    """Give a manual mark; None withdraws one."""
+    entry = Entry("withdrawn", None, why) if points is None else Entry("points", points, why)
+    return add_mark(book, grade, criterion.id, entry, by, shown=shown)

@@ -27,7 +27,6 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.intake.fingerprint import is_zip
 from grader.classroom.intake.opening import open_submission
@@ -37,6 +36,7 @@ from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.rubric import read_rubric
+from tests.classroom.gradebooks import mark
 
 LAYOUTS = ("folders", "prefixed", "teams", "nbgrader", "moodle", "canvas")
 NAMES = ("alice", "bob", "cal")

@@ -19,7 +19,6 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of
-from grader.classroom.gradebook.marks import mark as add_mark
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.lms.filling import Conflict, Preflight, RowNote
 from grader.classroom.students import ClassSubmission
@@ -38,6 +37,7 @@ from tests.classroom.gradebooks import (
     refusal,
     write_submission,
 )
+from tests.classroom.gradebooks import mark as add_mark
 from tests.classroom.lab6_class import read_class
 from tests.samples import LAB6, ROOT, opened
 

@@ -68,7 +68,12 @@ def test_who_is_marked(name: str, top: Path) -> None:
         ("ana", "essay", "1", "there is no student 'ana' in the gradebook; did you mean 'anna'?"),
         ("\x1b[31m", "essay", "1", rf"there is no student '\x1b[31m' in the gradebook{EVERYONE}"),
         (b"\xff", "essay", "1", rf"there is no student '\\udcff' in the gradebook{EVERYONE}"),
-        ("dora", "essay", "1", "dora has submitted nothing that could be marked"),
+        (
+            "dora",
+            "essay",
+            "1",
+            "dora has submitted nothing that could be marked; `grader mark dora total POINTS` gives a final mark",
+        ),
         ("anna", "esay", "1", f"the rubric small has no criterion 'esay'; did you mean 'essay'?{CRITERIA}"),
         ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
         ("anna", "essay", "nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),

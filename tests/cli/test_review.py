@@ -12,11 +12,12 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, queued_result
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, queued_result
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.report.screen import Screen
 from grader.usecases import Terminal
 from grader.usecases.review import review as review_class
-from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader
+from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -88,7 +89,7 @@ def test_stopping_and_resuming(top: Path) -> None:
     ("typed", "why"),
     [
         ("?", HELP),
-        ("-", HELP),
+        ("-", "points are a number from 0 to 4, with at most 4 decimals, not '-'"),
         ("good", "points are a number from 0 to 4, with at most 4 decimals, not 'good'"),
         ("4.5 very good", "essay is worth 0 to 4 points, not 4.5"),
         ("-1", "essay is worth 0 to 4 points, not -1"),

@@ -17,9 +17,10 @@ from grader.checks.placement import centre_at, frame_at
 from grader.checks.registry import describe
 from grader.checks.tree import held_by, urdf_loads
 from grader.errors import InputError, MissingElement
+from grader.grading.criterion import Criterion
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
-from grader.grading.rubric import Criterion, Part, Rubric
+from grader.grading.rubric import Part, Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh
 from grader.robot.reader import Reading

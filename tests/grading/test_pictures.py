@@ -11,9 +11,9 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
 from grader.documents.pictures import Picture
+from grader.grading.criterion import Criterion
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
-from grader.grading.rubric import Criterion
 from grader.source import Location
 from tests.checks.submissions import Submitted, gif, png
 

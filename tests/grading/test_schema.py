@@ -11,7 +11,7 @@ import pytest
 
 from grader.checks.registry import check_names, own_checks
 from grader.errors import RubricError
-from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
+from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from tests.command_line import ROOT, run
 
@@ -57,6 +57,7 @@ check = "frame_at"
 with = { link = "tip", relative_to = "base", xyz = [0, 0, 1], tolerance = 0.002, rpy = [0, 0, 0], angle = 1 }
 at = { shoulder = 90, slide = 0.1 }
 requires = ["box"]
+bonus = false
 
 [criterion.carried]
 from = ["box"]
@@ -78,6 +79,10 @@ due = 2026-11-20T23:59:00+01:00
 grace_minutes = 15
 percent_per_day = 10
 floor_percent = 50
+
+[adjust.box]
+action = "drop"
+reason = "The handout had another size."
 """
 WITH_DEFAULTS = """\
 id = "lab0"
@@ -170,6 +175,7 @@ def test_every_key_is_valid(tmp_path: Path) -> None:
     frame = every["criterion"][1]
     used = [(RUBRIC, every), (PART, every["part"][0]), (CRITERION, every["criterion"][0] | frame)]
     used += [(CARRIED, frame["carried"]), (EVIDENCE, every["evidence"][0]), (LATE, every["late"])]
+    used += [(ADJUSTMENT, every["adjust"]["box"])]
     used += [(TEST, every["test"]), (IGNORE, every["test"]["ignore"][0])]
     used += [(DEFAULTS, tomllib.loads(WITH_DEFAULTS)["defaults"])]
     for table, row in used:

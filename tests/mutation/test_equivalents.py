@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.mutation.equivalents import FAMILIES, FORBIDDEN, Equivalent, Equivalents, forbidden
 from grader.mutation.trees import copied
 from grader.robot.frames import placed_by

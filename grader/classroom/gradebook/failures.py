@@ -6,7 +6,7 @@ from math import acos, degrees, isfinite, radians
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 
 _MAX_MISTAKE = 200  # characters
 _DIGITS = 6  # of a measured value

@@ -1,7 +1,7 @@
 """The current grades in a gradebook: look up students, list those that need attention, build their reports."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import datetime
 from decimal import Decimal
@@ -17,10 +17,11 @@ from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFil
 from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.grading.criterion import Criterion
 from grader.grading.hints.record import with_hints
 from grader.grading.record import Template, from_record
-from grader.grading.report import ManualMark, Report, Result
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.report import ManualComment, ManualMark, Report, Result
+from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.text import shell_quoted
 
@@ -28,20 +29,20 @@ _MAX_NAMED = 5
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
 _COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
 _POINTS = ("score", "out_of", "pending")
-_TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted")
+_TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted", "section", "marker")
+_TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
 _OTHERS = (
     "deadline",
     "extension",
     "days_late",
     "is_on_roster",
-    "is_gone",
-    "is_late",
+    "final",
     "files",
     "source",
     "fingerprint",
     "digest",
 )
-_COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
+_COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
 _QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
 
@@ -119,7 +120,8 @@ class Grades:
     def needing_attention(self, limit: int) -> AttentionList:
         """Return who needs attention: no readable submission, an error of the grader, a grade or mark that may be outdated."""
         newest = self.newest_rubric().sha256
-        where = "WHERE verdict <> 'graded' OR faults OR older_marks OR over_marks OR is_gone OR is_on_roster = 0 OR rubric <> ?"
+        where = "WHERE (verdict <> 'graded' OR faults OR rubric <> ?) AND final IS NULL AND NOT is_excused"
+        where += " OR older_marks OR over_marks OR is_gone OR is_on_roster = 0 OR final_is_older"
         ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}", newest)
         grades = self._select(f"{where} ORDER BY key LIMIT ?", newest, limit)
         return AttentionList(tuple(AttentionItem(grade.student.key, grade.why_attention) for grade in grades), count)
@@ -152,17 +154,25 @@ class Grades:
         report = from_record(record, rubric, sources, self._template(grade.rubric, template))
         hints = self.book.first("SELECT hints FROM hint WHERE result = ?", grade.result)
         report = with_hints(report, hints[0]) if hints is not None else report
-        marks = self._manual_marks(grade)
-        return replace(report, results=_with_marks(report, marks)) if marks else report
+        results = _with_marks(report, self._manual_marks(grade), self._comments(grade))
+        return replace(report, results=results)
 
     def _manual_marks(self, grade: StudentGrade) -> dict[str, ManualMark]:
+        """Return the manual marks by criterion; marks of adjusted criteria do not count."""
         if not grade.marks:
             return {}
         query = "SELECT criterion, points, grader_name, comment FROM manual_mark WHERE student = ?"
+        adjusted = {row.id for row in self.rubric(grade.rubric).criteria if row.adjustment is not None}
         return {
             name: ManualMark(Decimal(points) / UNITS_PER_POINT, by, comment)
             for name, points, by, comment in self.book.rows(query, grade.id)
+            if name not in adjusted
         }
+
+    def _comments(self, grade: StudentGrade) -> dict[str, ManualComment]:
+        """Return the comments of criteria without manual points."""
+        query = "SELECT criterion, comment, grader_name FROM current_mark WHERE student = ? AND kind = 'comment'"
+        return {name: ManualComment(comment, by) for name, comment, by in self.book.rows(query, grade.id)}
 
     def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
         for row in self.book.rows(f"{_QUERY} {condition}", *values):
@@ -172,18 +182,23 @@ class Grades:
         counts = {name: values[name] for name in _COUNTS}
         points = {name: Decimal(values[name] or 0) / UNITS_PER_POINT for name in _POINTS}
         texts = {name: values[name] or "" for name in _TEXTS}
-        rubric, is_late, is_on_roster = texts["rubric"], bool(values["is_late"]), values["is_on_roster"]
+        truths = {name: bool(values[name]) for name in _TRUTHS}
+        rubric, is_on_roster = texts["rubric"], values["is_on_roster"]
+        final = None if values["final"] is None else Decimal(values["final"]) / UNITS_PER_POINT
         extension = float(values["extension"] or 0)
-        times = SubmissionTimes(is_late, texts["submitted"], values["deadline"], extension, values["days_late"])
+        times = SubmissionTimes(
+            truths["is_late"], texts["submitted"], values["deadline"], extension, values["days_late"]
+        )
         paths, names, attempt, earlier = json.loads(values["files"])
         is_outdated = bool(rubric) and rubric != self._newest_sha256
         fingerprint, digest = values["fingerprint"] or "", values["digest"] or ""
+        late = lateness(self.rubric(rubric), times, points["score"], self._deadline) if rubric else Lateness()
+        if final is not None or truths["is_excused"]:
+            late = replace(late, points=Decimal(0))
         return StudentGrade(
-            **{**counts, **points, **texts, "faults": counts["faults"] or 0},
+            **{**counts, **points, **texts, **truths, "faults": counts["faults"] or 0},
             student=Student(*(values[name] for name in STUDENT_COLUMNS)),
             is_on_roster=None if is_on_roster is None else bool(is_on_roster),
-            is_gone=bool(values["is_gone"]),
-            is_late=is_late,
             is_outdated=is_outdated,
             has_other_parts=bool(rubric)
             and not is_outdated
@@ -193,14 +208,19 @@ class Grades:
             ),
             attempt=attempt,
             earlier=tuple(earlier),
-            late=lateness(self.rubric(rubric), times, points["score"], self._deadline) if rubric else Lateness(),
+            late=late,
+            final=final,
         )
 
 
-def _with_marks(report: Report, marks: dict[str, ManualMark]) -> tuple[Result, ...]:
-    """Return the results with the manual marks, also those of criteria in parts that were not submitted."""
+def _with_marks(
+    report: Report, marks: Mapping[str, ManualMark], comments: Mapping[str, ManualComment]
+) -> tuple[Result, ...]:
+    """Return the results with manual marks and comments, also those of criteria in parts that were not submitted."""
     results = {result.criterion.id: result for result in report.results}
     not_submitted = Outcome("skipped", "not graded: this part was not submitted")
+    for name in comments.keys() & results.keys():
+        results[name] = results[name]._replace(comment=comments[name])
     for criterion in report.rubric.criteria:
         if criterion.id in marks:
             result = results.get(criterion.id) or Result(criterion, not_submitted)

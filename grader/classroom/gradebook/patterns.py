@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.reasons import GRADED, manual_units
 from grader.classroom.gradebook.result import EARNED, NOT_GRADED, UNITS_PER_POINT
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 
-COLUMNS = "statuses, score, out_of, pending"
+COLUMNS = "statuses, score, out_of, pending, final"
 
 
 class Pattern(NamedTuple):
@@ -18,48 +19,45 @@ class Pattern(NamedTuple):
 
     `marks` are manual points in ten-thousandths, `earned` those of each criterion, None where it is not decided; a criterion without
     points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the sum over the others. `undecided`
-    are the automatic points that need manual grading, of `automatic`.
+    are the automatic points that need manual grading, of `automatic`. `decided` are the points of the maximum that need no manual
+    grading any more. `final` is a final mark, which replaces the grade.
     """
 
     statuses: str
     score: int
     out_of: int
     pending: int
+    final: int | None
     students: int
     marks: Mapping[str, int]
     earned: Sequence[int | None]
     total: int
     undecided: int
     automatic: int
+    decided: int
 
     @property
     def counts(self) -> bool:
-        """Return whether it has a grade: points are decided, and not most of the automatic ones undecided."""
-        return self.decided > 0 and 2 * self.undecided <= self.automatic
-
-    @property
-    def decided(self) -> int:
-        """The points that need no manual grading any more."""
-        return self.out_of - self.pending
+        """Return whether it has a grade: a final one, or points are decided, and not most of the automatic ones undecided."""
+        return self.final is not None or (self.decided > 0 and 2 * self.undecided <= self.automatic)
 
     def grade(self, most: int) -> int:
-        """Return the share that was earned of the decided points, times the maximum."""
-        return round(self.score * most / self.decided)
+        """Return the final mark, else the share that was earned of the decided points, times the maximum."""
+        return self.final if self.final is not None else round(self.score * most / self.decided)
 
 
 def patterns_of(book: Gradebook, rubric: Rubric) -> Iterator[Pattern]:
     """Yield the combinations of results among the newest submissions; each student with a manual mark is one."""
-    unmarked = book.rows(f"SELECT {COLUMNS}, count(*), 0 {GRADED} AND marks = 0 GROUP BY {COLUMNS}", rubric.sha256)
-    marked = book.rows(f"SELECT {COLUMNS}, 1, id {GRADED} AND marks", rubric.sha256)
-    for statuses, score, out_of, pending, students, student in chain(unmarked, marked):
-        yield pattern_of(rubric, (statuses, score, out_of, pending), manual_units(book, student), students)
+    unmarked = book.rows(f"SELECT count(*), 0, {COLUMNS} {GRADED} AND marks = 0 GROUP BY {COLUMNS}", rubric.sha256)
+    marked = book.rows(f"SELECT 1, id, {COLUMNS} {GRADED} AND marks", rubric.sha256)
+    for students, student, *columns in chain(unmarked, marked):
+        yield pattern_of(rubric, tuple(columns), manual_units(book, student), students)
 
 
-def pattern_of(
-    rubric: Rubric, columns: tuple[str, int, int, int], marks: Mapping[str, int], students: int = 1
-) -> Pattern:
+def pattern_of(rubric: Rubric, columns: tuple[Any, ...], marks: Mapping[str, int], students: int = 1) -> Pattern:
     """Return the combination of results in some COLUMNS of the gradebook, with these manual marks."""
-    statuses = columns[0]
+    statuses, score, out_of, pending, final = columns
+    marks = {row.id: marks[row.id] for row in rubric.criteria if row.id in marks and row.adjustment is None}
     earned = [
         marks.get(criterion.id, (units_of(criterion) or 1) * EARNED[status] if status in EARNED else None)
         for criterion, status in zip(rubric.criteria, statuses, strict=True)
@@ -71,7 +69,22 @@ def pattern_of(
         if row.check.function not in MANUAL_CHECKS and statuses[row.position] != NOT_GRADED
     ]
     undecided = sum(units_of(row) for row in graded if statuses[row.position] == "?" and row.id not in marks)
-    return Pattern(*columns, students, marks, earned, total, undecided, sum(map(units_of, graded)))
+    waiting = (row for row in rubric.criteria if statuses[row.position] == "?" and row.id not in marks)
+    decided = out_of - sum(int(row.maximum * UNITS_PER_POINT) for row in waiting)
+    return Pattern(
+        statuses,
+        score,
+        out_of,
+        pending,
+        final,
+        students,
+        marks,
+        earned,
+        total,
+        undecided,
+        sum(map(units_of, graded)),
+        decided,
+    )
 
 
 def units_of(criterion: Criterion) -> int:

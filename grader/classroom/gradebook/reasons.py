@@ -11,7 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.grading.rubric import Rubric
 
-GRADED = "FROM grade WHERE verdict = 'graded' AND rubric = ?"
+GRADED = "FROM grade WHERE verdict = 'graded' AND NOT is_excused AND rubric = ?"
 _MARKS = "SELECT criterion, points FROM manual_mark WHERE student = ?"
 
 
@@ -32,10 +32,11 @@ def failure_counts(book: Gradebook, rubric: Rubric) -> Counter[Failure]:
 
 
 def failures_in(failures: str, rubric: Rubric, marks: Mapping[str, int]) -> Iterator[Failure]:
-    """Yield the failures of a submission that are stored as JSON, except where a manual mark gives all points."""
+    """Yield the failures of a submission that are stored as JSON, except of adjusted criteria, or where a mark gives all points."""
     for failure in map(Failure.from_json, json.loads(failures)):
         criterion = rubric.criteria[failure.position]
-        if marks.get(criterion.id) != int(criterion.points * UNITS_PER_POINT):
+        is_full = marks.get(criterion.id) == int(criterion.points * UNITS_PER_POINT)
+        if criterion.adjustment is None and not is_full:
             yield failure
 
 

@@ -46,8 +46,12 @@ def graded_on(rubric: Rubric, statuses: str) -> tuple[str, ...]:
 
 
 def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
-    """Return the points of each criterion: the manual mark, else the automatic points, else None."""
-    return {
-        criterion.id: marks.get(criterion.id, criterion.points * EARNED[status] if status in EARNED else None)
+    """Return the points of each criterion: the manual mark, else the automatic points, else None. Marks of adjusted ones do not count."""
+    automatic = (
+        criterion.points * EARNED[status] if status in EARNED else None
         for criterion, status in zip(rubric.criteria, statuses, strict=True)
+    )
+    return {
+        criterion.id: points if criterion.adjustment is not None else marks.get(criterion.id, points)
+        for criterion, points in zip(rubric.criteria, automatic, strict=True)
     }

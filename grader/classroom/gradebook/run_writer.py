@@ -119,7 +119,10 @@ def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
     execute("INSERT OR IGNORE INTO rubric VALUES (?, ?, ?, ?, ?)", row)
     for position, criterion in enumerate(rubric.criteria):
         units = int(criterion.points * UNITS_PER_POINT)
-        execute("INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?)", (sha256, criterion.id, position, units))
+        kinds = int(criterion.bonus), int(criterion.adjustment is not None)
+        execute(
+            "INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?, ?, ?)", (sha256, criterion.id, position, units, *kinds)
+        )
         if criterion.answer:
             answer = (sha256, criterion.id, storable(criterion.answer))
             execute("INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)", answer)

@@ -12,7 +12,8 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.patterns import Pattern, patterns_of, units_of
 from grader.classroom.gradebook.reasons import failure_counts, undecided_reasons
 from grader.classroom.gradebook.result import CARRIED, UNITS_PER_POINT
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20

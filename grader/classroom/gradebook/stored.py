@@ -16,6 +16,8 @@ class Enrolment(NamedTuple):
     extension: float = 0.0  # days
     days_late: float | None = None
     roster_entry: str = ""  # the row of the roster as JSON, for a later run without --roster
+    section: str = ""
+    marker: str = ""  # the person who grades the student manually
 
 
 STUDENT_COLUMNS = ("key", "name", "email", "login", "sis", "canvas", "moodle")

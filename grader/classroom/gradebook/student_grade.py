@@ -69,7 +69,8 @@ class StudentGrade:
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed, `older_marks` marks
     that were given for an earlier submission or result, `over_marks` marks above the criterion's current maximum. `is_gone` means
     that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
-    the parts have that a submission is graded on.
+    the parts have that a submission is graded on. `final` is a final mark for the whole submission, which an excuse has none of;
+    `final_is_older` means that either was given for an earlier submission. `section` and `marker` come from the roster.
     """
 
     id: int
@@ -97,16 +98,24 @@ class StudentGrade:
     attempt: int
     earlier: tuple[str, ...]
     late: Lateness
+    final: Decimal | None = None
+    is_excused: bool = False
+    final_is_older: bool = False
+    section: str = ""
+    marker: str = ""
 
     @property
     def total(self) -> Decimal:
-        """The points after the late penalty."""
-        return self.score + self.late.points
+        """The final mark, else the points after the late penalty."""
+        return self.final if self.final is not None else self.score + self.late.points
 
     @property
     def why_not_final(self) -> str:
         """Why this grade must not be exported yet; empty if it is final."""
+        if self.final is not None:
+            return ""
         reasons = (
+            (self.is_excused, "excused"),
             (self.verdict == "missing", "nothing was submitted"),
             (self.faults and self.reason, f"the grader failed: {self.reason}"),
             (self.faults, "the grader failed on a criterion"),
@@ -125,7 +134,8 @@ class StudentGrade:
     @property
     def why_attention(self) -> str:
         """Why an instructor should look at this grade."""
-        is_ungraded = self.verdict != "graded" or self.faults
+        has_final = self.final is not None or self.is_excused
+        is_ungraded = (self.verdict != "graded" or self.faults) and not has_final
         older = f"{counted(self.older_marks, 'manual mark')} {'is' if self.older_marks == 1 else 'are'}"
         reasons = (
             (is_ungraded, self.why_not_final or "it could not be graded, and was marked manually"),
@@ -133,6 +143,10 @@ class StudentGrade:
             (self.is_outdated, "graded with an earlier version of the rubric"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.is_on_roster is False, "not on the roster"),
+            (
+                self.final_is_older,
+                f"the {'excuse' if self.is_excused else 'final mark'} is from before the newest submission",
+            ),
             (self.older_marks, f"{older} from before the submission or the points changed"),
         )
         return "; ".join(reason for holds, reason in reasons if holds)

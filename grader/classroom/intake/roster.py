@@ -13,8 +13,8 @@ from grader.classroom.students import ClassSubmission, Student
 class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
-    `section` is the group or team that submits together, or else the section: only a submission shows which of the two it is.
-    `aliases` are other logins, such as the one at GitHub in addition to the one at the university.
+    Without a `group`, the `section` may be a team that submits together: only a submission shows which of the two it is. `marker`
+    is the person who grades the student manually. `aliases` are other logins, such as the one at GitHub in addition to the one at the university.
     Gradebooks store entries as JSON with these field names.
     """
 
@@ -26,6 +26,13 @@ class RosterEntry:
     is_late: bool | None = None
     days_late: float | None = None
     aliases: tuple[str, ...] = ()
+    group: str = ""
+    marker: str = ""
+
+    @property
+    def team(self) -> str:
+        """The group, else the section, which may be a team."""
+        return self.group or self.section
 
 
 class RosterMatch(NamedTuple):
@@ -56,7 +63,7 @@ class Roster:
         self._people = People(clues_of(entry.student, entry.aliases) for entry in self.entries)
         self._groups: dict[str, list[int]] = {}
         for index, entry in enumerate(self.entries):
-            if group := plain_group(entry.section):
+            if group := plain_group(entry.team):
                 self._groups.setdefault(group, []).append(index)
 
     def with_lms_numbers(self, students: Iterable[Student]) -> "Roster":
@@ -122,7 +129,7 @@ class Roster:
         if elsewhere:
             entry = self.entries[elsewhere[0]]
             no_group = "who has no group on the roster (its column group names the team folders)"
-            group_words = f"whose group is {entry.section!r}" if entry.section else no_group
+            group_words = f"whose group is {entry.team!r}" if entry.team else no_group
             return RosterMatch(None, found.clue, f"is named like {entry.student.key}, {group_words}")
         return RosterMatch(None)
 
@@ -155,6 +162,6 @@ def roster_from_json(entries: Iterable[str]) -> Roster | None:
 
 def entry_from_json(text: str) -> RosterEntry:
     """Return a row of a roster that a gradebook has stored."""
-    row = json.loads(text)
+    row = json.loads(text)  # of an earlier version without a group and a marker
     student = {**row["student"], "maybe_canvas": ()}
     return RosterEntry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})

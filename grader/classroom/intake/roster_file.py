@@ -27,6 +27,7 @@ _ALIASES = {
     "moodle": "moodle moodleid participantid participant identifier",
     "group": "group groupname team teamname gruppe",
     "section": "section class tutorial",
+    "marker": "marker gradedby assignedgrader teachingassistant ta",
     "due": "due duedate dueat deadline dueuntil extendeduntil extensionuntil",
     "extension": "extension extensiondays extradays",
     "submitted": "submitted submittedat submissiontime",
@@ -95,11 +96,13 @@ def _entry(row: dict[str, str], where: str) -> RosterEntry:
         raise InputError(f"{where} has no id, login, name or email address: add one of them")
     return RosterEntry(
         Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
-        row["group"] or row["section"],
+        row["section"],
         *_due(row, where),
         iso_time(row["submitted"]),
         *_late(row["late"], where),
         (row["github"],) if row["github"] not in ("", login) else (),
+        row["group"],
+        row["marker"],
     )
 
 

@@ -4,17 +4,21 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import (
-    Mark,
-    NewerMarkError,
+from grader.classroom.gradebook.manual_queue import (
     QueuedResult,
-    account,
-    criterion_of,
     manual_grading_queue,
-    mark,
-    newest_mark,
     queued_result,
     reusable_comments,
+)
+from grader.classroom.gradebook.marks import (
+    WITHDRAWN,
+    Entry,
+    Mark,
+    NewerMarkError,
+    account,
+    add_mark,
+    criterion_of,
+    newest_mark,
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
@@ -123,9 +127,10 @@ class ReviewSession:
         shown = item.newest if shown is None else shown
         book, criterion = self._grades.book, item.result.criterion
         newest = newest_mark(book, item.grade.id, criterion.id)
-        if newest is not None and (newest.id, newest.points, newest.comment) == (shown, points, comment):
+        entry = Entry("points", points, comment)
+        if newest is not None and (newest.id, newest.entry) == (shown, entry):
             return
-        added = mark(book, item.grade, criterion, points, self._by, comment, shown=shown)
+        added = add_mark(book, item.grade, criterion.id, entry, self._by, shown=shown)
         self._given.append(_Given(self.position, added.before))
         self._own[self.position] = added.id
 
@@ -146,10 +151,10 @@ class ReviewSession:
             self.position = here - 1
             self.next()
             raise InputError(f"not undone: {_NOT_GRADED}")
-        before = given.before or Mark(0, None, self._by, "", "")
+        entry, by = (given.before.entry, given.before.by) if given.before else (WITHDRAWN, self._by)
         try:
-            added = mark(
-                self._grades.book, item.grade, item.result.criterion, before.points, before.by, before.comment,
+            added = add_mark(
+                self._grades.book, item.grade, item.result.criterion.id, entry, by,
                 shown=self._own[given.position], author=self._by or account(),
             )  # fmt: skip
         except NewerMarkError:

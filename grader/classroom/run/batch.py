@@ -11,7 +11,7 @@ from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import GradingResult, graded_on
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
-from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
+from grader.classroom.gradebook.stored import Enrolment, StoredSubmission, storable
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json
@@ -195,7 +195,8 @@ class Batch:
         if entry is None:
             return Enrolment(0)
         days_late = 0.0 if entry.is_late is False and entry.days_late is None else entry.days_late
-        return Enrolment(1, entry.due, entry.extension_days, days_late, entry_to_json(entry))
+        profile = storable(entry.section), storable(entry.marker)
+        return Enrolment(1, entry.due, entry.extension_days, days_late, entry_to_json(entry), *profile)
 
     def _report(self, verdicts: Iterable[str]) -> None:
         for verdict in verdicts:

@@ -161,10 +161,15 @@ def result_of(
     causes: Counter[str] = Counter()
     for result in report.results:
         criterion, outcome, carried = result.criterion, result.outcome, result.carried
-        statuses[criterion.position] = CARRIED if carried else STATUS_LETTERS[outcome.status]
+        is_given = carried or (criterion.is_given and outcome.status != "passed")
+        statuses[criterion.position] = CARRIED if is_given else STATUS_LETTERS[outcome.status]
         if outcome.status == "failed" and not carried:
             failures.append(failure_of(criterion, outcome))
-        elif outcome.status == "pending" and criterion.check.function not in MANUAL_CHECKS:
+        elif (
+            outcome.status == "pending"
+            and criterion.adjustment is None
+            and criterion.check.function not in MANUAL_CHECKS
+        ):
             causes[outcome.mistake or f"{criterion.check.name} could not be decided"] += int(
                 criterion.points * UNITS_PER_POINT
             )

@@ -6,9 +6,9 @@ from itertools import combinations
 from typing import NamedTuple
 
 from grader.edits import FITTED, Proposal
+from grader.grading.criterion import Criterion
 from grader.grading.hints.proposing import Proposing
 from grader.grading.hints.trials import Edits, Results, State, Trials, joined
-from grader.grading.rubric import Criterion
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_PAIRS = 60

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from grader.edits import Proposal
 from grader.errors import MissingElement, NotDecided
+from grader.grading.criterion import Criterion
 from grader.grading.hints.targets import Targets, moving_child, targets_of
 from grader.grading.hints.trials import State
-from grader.grading.rubric import Criterion
 from grader.grading.subjects import named_links
 from grader.robot.edits.bodies import body_proposals
 from grader.robot.edits.candidates import proposals

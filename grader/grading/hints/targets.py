@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.selectors import selected_link, texts_in

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.members import Member
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 from grader.report.class_words import VERDICTS, span
 from grader.text import counted, enumerated, format_points
 

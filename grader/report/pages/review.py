@@ -5,9 +5,9 @@ from decimal import Decimal
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.classroom.gradebook.marks import QueuedResult
+from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.documents.pictures import NotShown, Picture
-from grader.grading.rubric import Criterion
+from grader.grading.criterion import Criterion
 from grader.report.pages.shell import render_page
 from grader.report.review import files_text, mark_text, place_text, who
 from grader.text import counted, counted_points, format_points, shell_quoted

@@ -12,9 +12,9 @@ from grader.classroom.gradebook import run_writer as module
 from grader.classroom.gradebook.changes import Change, PointsChange, Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.classroom.gradebook.marks import criterion_of
 from grader.errors import InputError
-from tests.classroom.gradebooks import graded_as, lab, record_run
+from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 LAB = lab()
 OTHER = lab(box="5")

@@ -16,11 +16,10 @@ from hypothesis import strategies as st
 from grader.classroom.gradebook import gradebook as module
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal, units
+from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units
 
 LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
 STUDENTS = ("anna", "ben", "cleo")
@@ -62,7 +61,7 @@ def test_a_new_file(book: Gradebook) -> None:
         "application_id": APPLICATION_ID,
     }
     with pytest.raises(InputError, match="FOREIGN KEY"), book.input_errors():
-        book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99, '')")
+        book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99, '', 'points')")
 
 
 @pytest.mark.parametrize(
@@ -71,7 +70,7 @@ def test_a_new_file(book: Gradebook) -> None:
         "UPDATE mark SET points = 40000",
         "UPDATE mark SET comment = ''",
         "DELETE FROM mark",
-        "INSERT OR REPLACE INTO mark SELECT id, student, criterion, 0, '', '', '', result, '' FROM mark",
+        "INSERT OR REPLACE INTO mark SELECT id, student, criterion, 0, '', '', '', result, '', 'points' FROM mark",
         "REPLACE INTO mark SELECT * FROM mark",
         "UPDATE result SET score = 0",
         "DELETE FROM result",

@@ -8,13 +8,13 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import graded_as, lab, record_run
+from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 LAB = lab()
 PEOPLE = (

@@ -11,16 +11,10 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import (
-    QueuedCriterion,
-    criterion_of,
-    manual_grading_queue,
-    mark,
-    queued_result,
-    read_points,
-)
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
+from grader.classroom.gradebook.marks import TAKE_BACK, criterion_of, read_points
 from grader.errors import InputError
-from tests.classroom.gradebooks import graded_as, lab, record_run
+from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 LAB = lab(essay="4.25")
 ESSAY = criterion_of(LAB, "essay")
@@ -39,7 +33,8 @@ def standings(tmp_path: Path) -> Iterator[Grades]:
 def put(standings: Grades, key: str, name: str, points: str) -> None:
     """Mark a criterion manually."""
     criterion = criterion_of(LAB, name)
-    mark(standings.book, standings.find(key), criterion, read_points(points, criterion), "me", "why")
+    given = None if points == TAKE_BACK else read_points(points, name, criterion.points)
+    mark(standings.book, standings.find(key), criterion, given, "me", "why")
 
 
 def is_open(standings: Grades, queued: QueuedCriterion) -> bool:
@@ -67,7 +62,7 @@ def is_open(standings: Grades, queued: QueuedCriterion) -> bool:
 )
 def test_points(text: str, points: str) -> None:
     """Points from 0 to the maximum, with up to 4 decimals after a point or a comma."""
-    assert read_points(text, ESSAY) == Decimal(points)
+    assert read_points(text, ESSAY.id, ESSAY.points) == Decimal(points)
 
 
 @pytest.mark.parametrize(
@@ -90,6 +85,8 @@ def test_points(text: str, points: str) -> None:
         ("inf", "points are a number"),
         ("-inf", "points are a number"),
         ("", "points are a number"),
+        ("1_0", "points are a number"),
+        ("-", "points are a number"),
         ("--", "points are a number"),
         ("four", "points are a number"),
         ("3/4", "points are a number"),
@@ -101,25 +98,25 @@ def test_points(text: str, points: str) -> None:
 def test_invalid_points(text: str, why: str) -> None:
     """One line says which points are valid."""
     with pytest.raises(InputError, match=why):
-        read_points(text, ESSAY)
+        read_points(text, ESSAY.id, ESSAY.points)
 
 
 @given(st.text())
 def test_any_text_is_points_or_refused(text: str) -> None:
     """Any text is refused or gives points between 0 and the maximum."""
     try:
-        points = read_points(text, ESSAY)
+        points = read_points(text, ESSAY.id, ESSAY.points)
     except InputError:
         return
-    assert points is None or (0 <= points <= ESSAY.points and points * 10_000 % 1 == 0)
+    assert 0 <= points <= ESSAY.points and points * 10_000 % 1 == 0
 
 
 def test_a_criterion_without_points() -> None:
     """A mark on a criterion without points can only add a comment."""
     nothing = replace(ESSAY, points=Decimal(0))
-    assert read_points("0", nothing) == 0
+    assert read_points("0", nothing.id, nothing.points) == 0
     with pytest.raises(InputError, match="is worth 0 to 0 points, not 1"):
-        read_points("1", nothing)
+        read_points("1", nothing.id, nothing.points)
 
 
 def test_a_misspelt_criterion() -> None:

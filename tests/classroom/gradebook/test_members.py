@@ -6,10 +6,10 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.gradebook.members import members
 from grader.classroom.gradebook.statistics import statistics
-from tests.classroom.gradebooks import graded_as, lab, record_run
+from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 SIGNS = {"anna": "ppppp", "ben": "fpfpf", "cleo": "pfp?p", "dora": "??pp?", "finn": "fpf?p"}
 

@@ -16,9 +16,8 @@ import pytest
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.statistics import ClassStatistics, PointTotals, statistics
-from tests.classroom.gradebooks import graded_as, grader, lab, record_run
+from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run
 from tests.samples import LAB6, ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts

@@ -11,15 +11,16 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import mark, newest_mark
+from grader.classroom.gradebook.marks import newest_mark
 from grader.classroom.gradebook.schema import STEPS
 from grader.classroom.gradebook.statistics import statistics
 from grader.errors import InputError
 from grader.usecases.export import grades_csv
+from tests.classroom.gradebooks import mark
 
 DATA = Path(__file__).parent / "data"
 # A class of five in two runs, with five marks: written by grader 0.1.0 with these schema versions, dumped as SQL.
-VERSIONS = (3, 4, 5)
+VERSIONS = (3, 4, 5, 6)
 TABLES = {
     "rubric": "rubric", "criterion": "criterion", "template": "template", "student": "student", "run": "run",
     "result": "result", "seen": "submission", "mark": "mark", "model_answer": "model_answer",

@@ -99,7 +99,7 @@ def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
     """Moodle gives a group's number beside its name; a column of groups takes precedence over one of sections."""
     (tmp_path / "roster.csv").write_text("id,section,Team\naash,A,Team Red\nbbirch,A,\nccedar,B,team red\n")
     known = read_roster(tmp_path / "roster.csv")
-    assert [entry.section for entry in known.entries] == ["Team Red", "A", "team red"]
+    assert [entry.team for entry in known.entries] == ["Team Red", "A", "team red"]
     top = lay_out(tmp_path / "class", "Team Red_7_assignsubmission_file/lab6.zip")
     submissions = list(read_class(top, known).submissions())
     assert [submission.student.key for submission in submissions] == ["aash", "ccedar"]

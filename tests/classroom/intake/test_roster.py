@@ -75,12 +75,14 @@ def test_a_moodle_worksheet(tmp_path: Path) -> None:
 def test_all_columns(tmp_path: Path) -> None:
     """All known columns are read, and an unknown one is ignored."""
     text = (
-        "First name,Surname,Login,GitHub username,SIS ID,Canvas ID,Moodle ID,Group,Due date,Extension,Submitted at,Late,Shoe\n"
-        "Ann,Ash,aash,annie,s1,11,22,A,2026-09-01T23:59+02:00,2 days,2026-09-02 10:00:00Z,1.5,44\n"
+        "First name,Surname,Login,GitHub username,SIS ID,Canvas ID,Moodle ID,Group,Section,Marker,Due date,Extension,Submitted at,Late,Shoe\n"
+        "Ann,Ash,aash,annie,s1,11,22,A,B,Kim Kowhai,2026-09-01T23:59+02:00,2 days,2026-09-02 10:00:00Z,1.5,44\n"
     )
     assert only(tmp_path, text) == RosterEntry(
         Student("s1", "Ann Ash", "", "aash", "s1", "11", "22"),
-        section="A",
+        group="A",
+        section="B",
+        marker="Kim Kowhai",
         due="2026-09-01T23:59:00+02:00",
         extension_days=2.0,
         submitted="2026-09-02T10:00:00Z",

@@ -1,0 +1,69 @@
+"""Read the tables of a rubric: values are converted, and every mistake is collected with the path of its key."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from grader.checks.toml_types import WrongValue
+from grader.grading.keys import KeyTable
+from grader.grading.toml_lines import Path
+from grader.names import did_you_mean
+
+_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
+_MAX_SHOWN = 40  # characters of a value
+_MAX_BITS = 1000  # of a whole number that is written out
+
+TomlRow = dict[str, Any]
+_NOTHING: Mapping[str, Any] = {}
+
+
+class RowReader:
+    """Reads tables; `complaints` are the mistakes so far."""
+
+    def __init__(self) -> None:
+        self.complaints: list[tuple[Path, str]] = []
+        self._guesses = _MAX_GUESSES
+
+    def row(self, where: Path, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
+        """Return the valid values of a table, converted; complain of the others and of missing ones."""
+        parsed: TomlRow = {**defaults}
+        for key, value in row.items():
+            if key not in table.keys:
+                hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
+                self.complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
+                continue
+            try:
+                parsed[key] = table.keys[key].parse(value)
+            except WrongValue as error:
+                self.complain((*where, key), f"{key} must be {error}, not {shown(value)}")
+        for key in table.required:
+            if key not in row and key not in defaults:
+                self.complain(where, f"this {table.name} has no {key}")
+        return parsed
+
+    def guess(self, name: str, known: Iterable[str]) -> str:
+        """Return which known name a misspelt one may mean, as a clause; empty if none is similar."""
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
+
+    def complain(self, where: Path, message: str) -> None:
+        """Add a mistake in the value of a key."""
+        self.complaints.append((where, message))
+
+
+def shown(value: Any) -> str:
+    """Return a value of TOML in a few characters."""
+    match value:
+        case list():
+            text = ", ".join(map(shown, value[:6]))
+            return f"[{text}{', ...' if len(value) > 6 else ''}]"
+        case dict():
+            text = f"{{ {', '.join(f'{key} = {shown(it)}' for key, it in value.items())} }}" if value else "{}"
+        case bool():
+            return str(value).lower()
+        case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits
+            text = "a number with too many digits"
+        case str():
+            text = repr(value)
+        case _:
+            text = str(value)
+    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
