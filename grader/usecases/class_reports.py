@@ -19,7 +19,7 @@ from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
 from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
-from grader.usecases.writing import refuse_symlinks, save
+from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3
@@ -48,10 +48,7 @@ def write_reports(
     executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None, warn: Warn
 ) -> None:
     """Write a report for every student with a result; with the format HTML, also the class's page. Raises InputError."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
+    make_folder(folder)
     with Gradebook(book) as opened:
         names = report_names(opened)
     earlier = update_index(folder, names)
