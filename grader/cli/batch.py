@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import (
+    ClassVerboseOption,
     DueOption,
     FormatOption,
     GradebookOption,
@@ -53,6 +54,7 @@ def batch(
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     ignore_file: Annotated[list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE)] = None,
+    verbose: ClassVerboseOption = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Grade a class into a gradebook, in parallel.
@@ -75,6 +77,6 @@ def batch(
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
         path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
-        tuple(ignore_file or ()), reports, formats, csv,
+        tuple(ignore_file or ()), reports, formats, csv, verbose,
     )  # fmt: skip
     return grade_class(request, output_format, screen(), progress_display, warn)

@@ -157,6 +157,7 @@ CLASS_SCHEMA = _document(
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "needs_a_look": _TOTAL,
+        "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },

@@ -16,7 +16,6 @@ from grader.usecases.report_names import CLASS_PAGE
 from grader.usecases.saves import address
 from grader.usecases.writing import save
 
-_MAX_ATTENTION = 100  # students in the list
 _MAX_TRIED = 3  # students whose submissions may have changed since they were graded
 
 
@@ -26,7 +25,7 @@ def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[s
 
     with Gradebook(book) as opened:
         grades = Grades(opened, due)
-        summary = summary_of(grades, with_fixes=True, listed=_MAX_ATTENTION)
+        summary = summary_of(grades, with_fixes=True)
         there = {grade.student.key: grade for grade in grades.all() if grade.student.key in names and not grade.is_gone}
         links = {key: address(f"{names[key]}.{Format.HTML.ending}") for key in there}
         examples = {

@@ -10,6 +10,7 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError, RubricError
 from grader.grading.report import Report
@@ -45,7 +46,13 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
 
 
 def write_reports(
-    executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None, warn: Warn
+    executor: Executor,
+    book: Path,
+    folder: Path,
+    formats: Sequence[Format],
+    due: datetime | None,
+    warn: Warn,
+    show: Callable[[Progress], None],
 ) -> None:
     """Write a report for every student with a result; with the format HTML, also the class's page. Raises InputError."""
     make_folder(folder)
@@ -58,8 +65,11 @@ def write_reports(
 
     chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
     lost: dict[str, str] = {}
+    done = 0
     for some, task in [(some, write(some)) for some in chunks]:
         lost |= _lost(write, some, task)
+        done += len(some)
+        show(Progress(len(names), done))
     if Format.HTML in formats:
         write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
     warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")

@@ -9,6 +9,7 @@ from urllib.parse import unquote
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
 from grader.report.formats import Format
@@ -41,7 +42,7 @@ def test_pages_of_a_class(top: Path) -> None:
     assert [row["name"] for row in rows] == sorted(NAMES.values())
     assert {row["key"]: row["status"] for row in rows} == {
         **dict.fromkeys(("anna", "ben", "emil"), "graded"),
-        "cleo": "it could not be graded: cleo.zip cannot be read as an archive: File is not a zip file",
+        "cleo": "could not be graded: cleo.zip cannot be read as an archive: File is not a zip file",
         "dora": "nothing was submitted",
     }
     assert {row["key"]: (row["score"], row["pending"], row["lost"]) for row in rows} == {
@@ -212,7 +213,11 @@ class FailingWorkers(Executor):
 def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
     """The others have theirs, the class's page has no link to it, and standard error says why."""
     lines: list[str] = []
-    write_reports(FailingWorkers(error), top / "book.db", top / "pages", [Format.HTML], None, lines.append)
+    progress: list[Progress] = []
+    write_reports(
+        FailingWorkers(error), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append
+    )
+    assert [state.done for state in progress] == [4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
         f"no report for ben: {why}",
@@ -224,5 +229,11 @@ def test_a_full_disk_ends_the_command(top: Path) -> None:
     """It concerns all pages: none is blamed on a student."""
     with pytest.raises(InputError, match="No space left"):
         write_reports(
-            FailingWorkers(InputError("No space left")), top / "book.db", top / "pages", [Format.HTML], None, print
+            FailingWorkers(InputError("No space left")),
+            top / "book.db",
+            top / "pages",
+            [Format.HTML],
+            None,
+            print,
+            print,
         )
