@@ -67,6 +67,22 @@ def batch(
       grader batch submissions.zip --gradebook lab6.db --roster roster.csv
 
       grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
+
+      grader batch section-b.zip --gradebook lab6.db --add
+
+    Recipes:
+
+      Resubmissions, a rubric fix, an interruption: rerun the same command.
+
+      Late submissions: [late] in the rubric, --due, and columns due and extension in the roster.
+
+      Submissions without a student: add their login, email address or LMS number to the roster, and rerun with --roster.
+
+      A student without a submission, or with a wrong result: grader mark.
+
+      Teams: a column group in the roster.
+
+      Nothing works, now what? See docs/grade-a-class.md.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class

@@ -22,6 +22,15 @@ def stats(
       grader stats --gradebook lab6.db
 
       grader stats --gradebook lab6.db --format json
+
+    Recipes:
+
+      Who still needs attention, by name: --verbose.
+
+      A criterion that most students fail: a low share, and the common mistakes below. If the rubric is wrong, see "Regrade after a
+      rubric fix" in docs/grade-a-class.md.
+
+      The next lecture: the edits that would fix the most.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics

@@ -64,6 +64,7 @@ def write_reports(
         return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
 
     chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
+    show(Progress(len(names)))
     lost: dict[str, str] = {}
     done = 0
     for some, task in [(some, write(some)) for some in chunks]:

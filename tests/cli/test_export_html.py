@@ -217,7 +217,7 @@ def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
     write_reports(
         FailingWorkers(error), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append
     )
-    assert [state.done for state in progress] == [4]
+    assert [state.done for state in progress] == [0, 4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
         f"no report for ben: {why}",
