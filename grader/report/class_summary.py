@@ -119,7 +119,8 @@ def _print_attention(attention: Attention, console: Console, *, verbose: bool) -
             _print_rest(rest, console)
         else:
             more = [f"... and {rest} more"] if rest > 0 else []
-            wrapped(console, head + Text(printable(f": {', '.join([*shown, *more])}"), "not bold"), 4, Text("  "))
+            separator = "; " if any("," in name for name in shown) else ", "  # some systems write Doe, Jane
+            wrapped(console, head + Text(printable(f": {separator.join([*shown, *more])}"), "not bold"), 4, Text("  "))
     if is_cut:
         wrapped(console, Text(ATTENTION_NOTE, style="dim"), 2)
 
