@@ -56,5 +56,8 @@ def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
 
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened)
-        drawn = (thumbnail(grades.report(grades.find(key)), criteria) for key in keys)
-        return next(filter(None, drawn), "")
+        for key in keys:
+            with suppress(Exception):  # a robot that cannot be drawn: the next one may be
+                if drawn := thumbnail(grades.report(grades.find(key)), criteria):
+                    return drawn
+    return ""
