@@ -154,6 +154,12 @@ def marks_of(book: Gradebook, student: int, criterion: str, most: int) -> list[M
     return [_mark(*row) for row in book.rows(query, student, criterion, most)]
 
 
+def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
+    """Return the marks of a student that count, by criterion; that of the whole submission is named TOTAL."""
+    query = f"SELECT criterion, {_COLUMNS} FROM current_mark WHERE student = ?"
+    return {criterion: _mark(*row) for criterion, *row in book.rows(query, student)}
+
+
 def _mark(identity: int, kind: str, units: int | None, by: str, comment: str, at: str) -> Mark:
     points = None if units is None else Decimal(units) / UNITS_PER_POINT
     return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at)
