@@ -146,6 +146,15 @@ _STUDENT = _object(
         **_all(_array(_TEXT), "paths earlier carried"),
     }
 )
+_GROUP = _object(
+    {
+        "name": _TEXT,
+        **_all(_TOTAL, "students graded late"),
+        "late_points": _POINTS,
+        **_all(_nullable(_POINTS), "mean median"),
+        "shares": {"type": "object", "additionalProperties": _nullable(_POINTS)},
+    }
+)
 CLASS_SCHEMA = _document(
     "class",
     {
@@ -156,11 +165,14 @@ CLASS_SCHEMA = _document(
         "statistics": _STATISTICS,
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
+        "comparison": _object(
+            {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
+        ),
         "needs_a_look": _TOTAL,
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },
-    optional=("run",),
+    optional=("run", "comparison"),
 )
 
 _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _object({"sha256": _HASH})})

@@ -53,7 +53,8 @@ def canvas_name(paths: Iterable[str], members: Collection[Student], ending: str)
     if fitting:
         return fitting[0][1], ""
     if certain:
-        return "", f"Canvas would show the report as {certain[0]!r}, which could not be opened"
+        advice = "; Markdown could be" if PurePosixPath(certain[0]).suffix.lower() in _TEXT else ""
+        return "", f"Canvas would show the report as {certain[0]!r}, which could not be opened{advice}"
     why = "Canvas would find another student, or none, by the name" if names else "submitted no file in Canvas"
     return "", f"{why} {names[0]!r}" if names else why
 
