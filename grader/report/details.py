@@ -57,7 +57,7 @@ def result_details(result: Result, report: Report) -> Details:
             (sentence(outcome.message), result.why_given), location=outcome.location, expected=_expected(result)
         )
     if outcome.status == "skipped":
-        return Details((f"Skipped because {result.because} failed.",))
+        return Details((f"Skipped because {result.because} failed." if result.because else sentence(outcome.message),))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
         return Details(sentences, *answers)

@@ -154,6 +154,15 @@ _AGREEMENT = _object(
         "largest": _array(_DIFFERENCE),
     }
 )
+_GROUP = _object(
+    {
+        "name": _TEXT,
+        **_all(_TOTAL, "students graded late"),
+        "late_points": _POINTS,
+        **_all(_nullable(_POINTS), "mean median"),
+        "shares": {"type": "object", "additionalProperties": _nullable(_POINTS)},
+    }
+)
 CLASS_SCHEMA = _document(
     "class",
     {
@@ -165,12 +174,15 @@ CLASS_SCHEMA = _document(
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "agreement": _AGREEMENT,
+        "comparison": _object(
+            {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
+        ),
         "needs_a_look": _TOTAL,
         "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },
-    optional=("run",),
+    optional=("run", "comparison"),
 )
 
 _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _object({"sha256": _HASH})})
