@@ -17,7 +17,7 @@ def diff(
     after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
-    """Show whose grade changed between two runs, by how much, and why.
+    """Show whose grade changed between two runs, and why.
 
     Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
     manual marks; marks that were given after the older run count as changes. Late penalties are not included. Runs count
@@ -28,6 +28,12 @@ def diff(
       grader diff lab6.db
 
       grader diff before.db after.db --format json
+
+    Recipes:
+
+      What a rubric fix changed: rerun `grader batch`, then compare the last two runs.
+
+      What a resubmission or a manual mark changed: the same command; each student has the reason.
     """
     from grader.usecases.diff import diff as compare
 

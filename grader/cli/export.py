@@ -29,7 +29,7 @@ def export(
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
 ) -> int:
-    """Export the current grades for a spreadsheet, an LMS or a browser.
+    """Export the grades for a spreadsheet, an LMS or a browser.
 
     A grade is the sum of automatic points and manual marks, minus the late penalty. For Canvas and Moodle, give the file that the LMS
     exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import

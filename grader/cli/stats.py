@@ -1,12 +1,15 @@
 """grader stats: statistics of a class."""
 
-from grader.cli.options import DueOption, FormatOption, GradebookOption
+from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
 from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 
 
 def stats(
-    gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = OutputFormat.TERMINAL
+    gradebook: GradebookOption,
+    due: DueOption = None,
+    verbose: ClassVerboseOption = False,
+    output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show statistics of a class: grades, criteria, mistakes, fixes.
 
@@ -19,8 +22,17 @@ def stats(
       grader stats --gradebook lab6.db
 
       grader stats --gradebook lab6.db --format json
+
+    Recipes:
+
+      Who still needs attention, by name: --verbose.
+
+      A criterion that most students fail: a low share, and the common mistakes below. If the rubric is wrong, see "Regrade after a
+      rubric fix" in docs/grade-a-class.md.
+
+      The next lecture: the edits that would fix the most.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics
 
-    return class_statistics(gradebook, due, output_format, screen(), progress_display, warn)
+    return class_statistics(gradebook, due, output_format, screen(), progress_display, warn, verbose=verbose)

@@ -8,6 +8,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
@@ -26,7 +27,15 @@ def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int]
                 {"students": list(work.students), "same_file": list(map(list, work.same_file))}
                 for work in summary.identical
             ],
+            "agreement": agreement_json(summary.agreement),
             "needs_a_look": summary.attention.total,
+            "attention": [
+                {
+                    "reason": group.reason,
+                    "students": [{"id": item.key, "detail": item.detail} for item in group.items],
+                }
+                for group in summary.attention.groups
+            ],
             "evidence_without_urdf": summary.evidence_only,
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }

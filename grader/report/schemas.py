@@ -146,6 +146,14 @@ _STUDENT = _object(
         **_all(_array(_TEXT), "paths earlier carried"),
     }
 )
+_DIFFERENCE = _object({**_all(_TEXT, "id criterion"), **_all(_POINTS, "first second max_points")})
+_AGREEMENT = _object(
+    {
+        **_all(_TOTAL, "items same"),
+        "mean_difference_percent": {"type": "number", "minimum": 0},
+        "largest": _array(_DIFFERENCE),
+    }
+)
 CLASS_SCHEMA = _document(
     "class",
     {
@@ -156,7 +164,9 @@ CLASS_SCHEMA = _document(
         "statistics": _STATISTICS,
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
+        "agreement": _AGREEMENT,
         "needs_a_look": _TOTAL,
+        "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },

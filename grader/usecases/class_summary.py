@@ -24,13 +24,20 @@ def read_deadline(text: str | None) -> datetime | None:
 
 
 def class_statistics(
-    gradebook: Path, due: str | None, kind: OutputFormat, screen: Screen, progress: ProgressDisplay, warn: Warn
+    gradebook: Path,
+    due: str | None,
+    kind: OutputFormat,
+    screen: Screen,
+    progress: ProgressDisplay,
+    warn: Warn,
+    *,
+    verbose: bool = False,
 ) -> str:
     """Return the summary of a gradebook's class with the edits that would gain points. Raises InputError."""
     with Gradebook(gradebook) as book:
         grades = Grades(book, read_deadline(due))
         search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
-        return class_summary(grades, kind, screen, with_fixes=True)
+        return class_summary(grades, kind, screen, with_fixes=True, verbose=verbose)
 
 
 def class_summary(
@@ -40,10 +47,11 @@ def class_summary(
     done: "Progress | None" = None,
     *,
     with_fixes: bool = False,
+    verbose: bool = False,
 ) -> str:
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded.
 
-    `with_fixes` shows the edits that would gain points, which takes a search for hints.
+    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students who need attention.
     """
     summary = summary_of(grades, with_fixes=with_fixes)
     if kind is OutputFormat.JSON:
@@ -55,4 +63,4 @@ def class_summary(
         return render_class_json(summary, grades, run)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, summary), screen)
+    return draw(partial(render_class, summary, verbose=verbose), screen)
