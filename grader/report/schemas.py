@@ -52,6 +52,7 @@ _PROBLEM = _object(
 _VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 _EDIT = _object({**_PLACE, **_all(_TEXT, "old new renamed")}, ("renamed",))
 _GAINS: dict[str, Any] = {"type": "object", "additionalProperties": _POINTS}
+_ADJUSTMENT = _object({"action": {"enum": ["drop", "full"]}, "reason": _TEXT})
 _RESULT = _object(
     {
         **_all(_TEXT, "id part title message feedback"),
@@ -63,8 +64,11 @@ _RESULT = _object(
         "location": _nullable(_LOCATION),
         "hints": _array(_object({"message": _TEXT, "edits": _array(_EDIT), "gains": _GAINS, "verified": _FLAG})),
         "mark": _object({"points": _POINTS, **_all(_TEXT, "by comment")}),
+        "bonus": {"const": True},
+        "adjustment": _ADJUSTMENT,
+        "comment": _object(_all(_TEXT, "text by")),
     },
-    optional=("mark",),
+    optional=("mark", "bonus", "adjustment", "comment"),
 )
 _EXHIBIT = _object({**_all(_TEXT, "path heading"), "size": _TOTAL, **_all(_nullable(_COUNT), "width height page")})
 _SUBMISSION = _object(
