@@ -182,8 +182,10 @@ def carried_text(results: tuple[Result, ...]) -> str:
 
 
 def skipped_text(cause: str, results: tuple[Result, ...]) -> str:
-    """Return which criteria are skipped because of another one, and their points."""
+    """Return which criteria are skipped because of another one, or because nothing was submitted, and their points."""
     names = enumerated([result.criterion.id for result in results])
+    if not cause:
+        return printable(f"Not graded, because nothing was submitted: {names} ({points_of(results)}).")
     return printable(f"Skipped because {cause} failed: {names} ({points_of(results)}).")
 
 

@@ -9,6 +9,14 @@ from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
 from grader.text import enumerated, printable, signed_points
 
+SYMBOLS = {
+    "passed": "\u2713",
+    "failed": "\u2717",
+    "skipped": "\u2212",
+    "pending": "?",
+    "errored": "!",
+    "adjusted": "=",
+}  # of each status
 _MAX_NAMED = 2
 
 
@@ -63,7 +71,7 @@ def _details(result: Result, report: Report) -> Details:
             (sentence(outcome.message), result.why_given), location=outcome.location, expected=_expected(result)
         )
     if outcome.status == "skipped":
-        return Details((f"Skipped because {result.because} failed.",))
+        return Details((f"Skipped because {result.because} failed." if result.because else sentence(outcome.message),))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
         return Details(sentences, *answers)

@@ -150,6 +150,23 @@ _STUDENT = _object(
         **_all(_array(_TEXT), "paths earlier carried"),
     }
 )
+_DIFFERENCE = _object({**_all(_TEXT, "id criterion"), **_all(_POINTS, "first second max_points")})
+_AGREEMENT = _object(
+    {
+        **_all(_TOTAL, "items same"),
+        "mean_difference_percent": {"type": "number", "minimum": 0},
+        "largest": _array(_DIFFERENCE),
+    }
+)
+_GROUP = _object(
+    {
+        "name": _TEXT,
+        **_all(_TOTAL, "students graded late"),
+        "late_points": _POINTS,
+        **_all(_nullable(_POINTS), "mean median"),
+        "shares": {"type": "object", "additionalProperties": _nullable(_POINTS)},
+    }
+)
 CLASS_SCHEMA = _document(
     "class",
     {
@@ -160,12 +177,16 @@ CLASS_SCHEMA = _document(
         "statistics": _STATISTICS,
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
+        "agreement": _AGREEMENT,
+        "comparison": _object(
+            {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
+        ),
         "needs_a_look": _TOTAL,
         "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },
-    optional=("run",),
+    optional=("run", "comparison"),
 )
 
 _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _object({"sha256": _HASH})})

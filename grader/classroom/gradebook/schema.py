@@ -25,7 +25,7 @@ CREATE TABLE mark (
     id INTEGER PRIMARY KEY,
     student INTEGER NOT NULL REFERENCES student,
     criterion TEXT NOT NULL,       -- `total` for the whole submission: a final mark, an excuse, a comment
-    points INTEGER CHECK ((points IS NULL) = (kind NOT IN ('points', 'second'))),
+    points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),  -- NULL withdraws a second opinion
     comment TEXT NOT NULL,
     author TEXT NOT NULL,          -- for the audit
     at TEXT NOT NULL,
@@ -49,6 +49,13 @@ CREATE VIEW current_mark AS
 SELECT * FROM mark WHERE kind IN ('points', 'comment', 'excused') AND id = (
     SELECT max(id) FROM mark AS newer
     WHERE newer.student = mark.student AND newer.criterion = mark.criterion AND newer.kind <> 'second'
+);
+
+-- The newest second opinion of each grader on a student's criterion, also one that withdraws it.
+CREATE VIEW second_mark AS
+SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WHERE kind = 'second' AND mark.id = (
+    SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
+        AND newer.kind = 'second' AND newer.grader_name = mark.grader_name
 );
 
 -- The manual marks of criteria.
