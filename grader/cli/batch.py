@@ -6,6 +6,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import (
+    ClassVerboseOption,
     DueOption,
     FormatOption,
     GradebookOption,
@@ -53,6 +54,7 @@ def batch(
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     ignore_file: Annotated[list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE)] = None,
+    verbose: ClassVerboseOption = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Grade a class into a gradebook, in parallel.
@@ -65,6 +67,22 @@ def batch(
       grader batch submissions.zip --gradebook lab6.db --roster roster.csv
 
       grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
+
+      grader batch section-b.zip --gradebook lab6.db --add
+
+    Recipes:
+
+      Resubmissions, a rubric fix, an interruption: rerun the same command.
+
+      Late submissions: [late] in the rubric, --due, and columns due and extension in the roster.
+
+      Submissions without a student: add their login, email address or LMS number to the roster, and rerun with --roster.
+
+      A student without a submission, or with a wrong result: grader mark.
+
+      Teams: a column group in the roster.
+
+      Nothing works, now what? See docs/grade-a-class.md.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
@@ -75,6 +93,6 @@ def batch(
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
         path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
-        tuple(ignore_file or ()), reports, formats, csv,
+        tuple(ignore_file or ()), reports, formats, csv, verbose,
     )  # fmt: skip
     return grade_class(request, output_format, screen(), progress_display, warn)

@@ -28,6 +28,12 @@ def diff(
       grader diff lab6.db
 
       grader diff before.db after.db --format json
+
+    Recipes:
+
+      What a rubric fix changed: rerun `grader batch`, then compare the last two runs.
+
+      What a resubmission or a manual mark changed: the same command; each student has the reason.
     """
     from grader.usecases.diff import diff as compare
 

@@ -32,11 +32,19 @@ def progress_display(work: str) -> Iterator[Callable[["Progress"], None]]:
         yield print_line
         return
     with _bar() as bar:
-        task = bar.add_task(work, total=None, rate="", found="")
+        task = bar.add_task(work, total=None, rate="", found="", visible=False)  # until the total is known
 
         def move(progress: "Progress") -> None:
             rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"
-            bar.update(task, total=progress.total, completed=progress.done, rate=rate, found=_counts(progress))
+            bar.update(
+                task,
+                total=progress.total,
+                completed=progress.done,
+                rate=rate,
+                found=", ".join(_faults(progress)),
+                visible=True,
+                refresh=not progress.done,  # a short pass would end before its start is drawn
+            )
 
         yield move
 
@@ -44,26 +52,31 @@ def progress_display(work: str) -> Iterator[Callable[["Progress"], None]]:
 def _bar() -> "Bar":
     from rich import progress
     from rich.console import Console
+    from rich.table import Column
 
     columns = (
         progress.TextColumn("{task.description}"),
-        progress.BarColumn(),
+        progress.BarColumn(None, table_column=Column(ratio=1)),  # the space that the other columns leave
         progress.MofNCompleteColumn(),
         progress.TextColumn("{task.fields[rate]}"),
         progress.TimeRemainingColumn(),
         progress.TextColumn("{task.fields[found]}"),
     )
-    return progress.Progress(*columns, console=Console(stderr=True), transient=True)
+    return progress.Progress(*columns, console=Console(stderr=True), transient=True, expand=True)
 
 
-def _counts(progress: "Progress") -> str:
-    counts = [(progress.errored, "errored"), (progress.unreadable, "unreadable"), (progress.unchanged, "unchanged")]
-    return ", ".join(f"{count} {status}" for count, status in counts if count)
+def _faults(progress: "Progress") -> list[str]:
+    """Return how many are errored and unreadable: 80 columns have no room for more beside the bar."""
+    return _counts((progress.errored, "errored"), (progress.unreadable, "unreadable"))
+
+
+def _counts(*counts: tuple[int, str]) -> list[str]:
+    return [f"{count} {status}" for count, status in counts if count]
 
 
 def _line(progress: "Progress", seconds: float) -> str:
     rate = progress.done / seconds if seconds else 0.0
     left = (progress.total - progress.done) / rate if rate else 0.0
-    counts = _counts(progress)
+    counts = ", ".join([*_faults(progress), *_counts((progress.unchanged, "unchanged"))])
     time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
     return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"

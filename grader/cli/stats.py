@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import DueOption, FormatOption, GradebookOption
+from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
 from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 
@@ -15,6 +15,7 @@ def stats(
     gradebook: GradebookOption,
     by: Annotated[Literal["section", "marker"] | None, typer.Option(metavar="section|marker", help=_BY)] = None,
     due: DueOption = None,
+    verbose: ClassVerboseOption = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show statistics of a class: grades, criteria, mistakes, fixes.
@@ -33,8 +34,17 @@ def stats(
       grader stats --gradebook lab6.db --format json
 
       grader stats --gradebook lab6.db --by section
+
+    Recipes:
+
+      Who still needs attention, by name: --verbose.
+
+      A criterion that most students fail: a low share, and the common mistakes below. If the rubric is wrong, see "Regrade after a
+      rubric fix" in docs/grade-a-class.md.
+
+      The next lecture: the edits that would fix the most.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics
 
-    return class_statistics(gradebook, by, due, output_format, screen(), progress_display, warn)
+    return class_statistics(gradebook, by, due, output_format, screen(), progress_display, warn, verbose=verbose)

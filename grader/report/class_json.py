@@ -31,6 +31,13 @@ def render_class_json(
             ],
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_a_look": summary.attention.total,
+            "attention": [
+                {
+                    "reason": group.reason,
+                    "students": [{"id": item.key, "detail": item.detail} for item in group.items],
+                }
+                for group in summary.attention.groups
+            ],
             "evidence_without_urdf": summary.evidence_only,
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }

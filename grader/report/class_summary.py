@@ -6,16 +6,20 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from grader.classroom.gradebook.attention import Attention
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure, CriterionStatistics
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.report.class_words import (
+    ATTENTION_NOTE,
     CRITERIA_NOTE,
     FIXES_NOTE,
     IDENTICAL_NOTE,
+    MAX_DETAILS,
     MAX_GROUPS,
     MAX_LISTED,
+    MAX_NAMED,
     counts_line,
     earlier_line,
     edit_lines,
@@ -35,8 +39,11 @@ _INDENT = 8
 _STYLES = {"-": "red", "+": "green"}
 
 
-def render_class(summary: ClassSummary, console: Console) -> None:
-    """Print the summary of a class. Text of submissions is never interpreted as markup or control codes."""
+def render_class(summary: ClassSummary, console: Console, *, verbose: bool = False) -> None:
+    """Print the summary of a class. Text of submissions is never interpreted as markup or control codes.
+
+    Only with `verbose`, all students who need attention are named.
+    """
     statistics = summary.statistics
     wrapped(console, Text(printable(summary.rubric.title), style="bold"), 0)
     for line in filter(None, (counts_line(statistics), earlier_line(statistics))):
@@ -47,7 +54,7 @@ def render_class(summary: ClassSummary, console: Console) -> None:
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
     _print_identical(summary.identical, console)
-    _print_attention(summary, console)
+    _print_attention(summary.attention, console, verbose=verbose)
     if evidence := without_urdf(summary):
         console.print()
         wrapped(console, Text(evidence), 0)
@@ -93,13 +100,29 @@ def _print_identical(identical: Sequence[IdenticalWork], console: Console) -> No
     _print_rest(len(identical) - MAX_GROUPS, console)
 
 
-def _print_attention(summary: ClassSummary, console: Console) -> None:
-    listed, total = summary.attention
-    if total:
+def _print_attention(attention: Attention, console: Console, *, verbose: bool) -> None:
+    """Print each reason with its students: names side by side, or one line each if there are details."""
+    is_cut = False
+    if attention.total:
         _print_heading("Needs attention", console)
-    for item in listed:
-        wrapped(console, Text(printable(f"{item.who}: {item.why}")), 4, Text("  "))
-    _print_rest(total - len(listed), console)
+    for group in attention.groups:
+        has_details = any(item.detail for item in group.items)
+        most = len(group.items) if verbose else MAX_DETAILS if has_details else MAX_NAMED
+        head, rest = Text(f"{group.reason} ({len(group.items)})", style="bold"), len(group.items) - most
+        is_cut = is_cut or rest > 0
+        shown = [item.who for item in group.items[:most]]
+        if has_details:
+            wrapped(console, head, 4, Text("  "))
+            lines = [f"{item.who}: {item.detail}" if item.detail else item.who for item in group.items[:most]]
+            for line in lines:
+                wrapped(console, Text(printable(line)), 6, Text("    "))
+            _print_rest(rest, console)
+        else:
+            more = [f"... and {rest} more"] if rest > 0 else []
+            separator = "; " if any("," in name for name in shown) else ", "  # some systems write Doe, Jane
+            wrapped(console, head + Text(printable(f": {separator.join([*shown, *more])}"), "not bold"), 4, Text("  "))
+    if is_cut:
+        wrapped(console, Text(ATTENTION_NOTE, style="dim"), 2)
 
 
 def _print_heading(title: str, console: Console, note: str = "") -> None:

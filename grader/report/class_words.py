@@ -25,10 +25,12 @@ IDENTICAL_NOTE = (
     "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students who"
     " follow the handout and make the same mistake have the same robot."
 )
+ATTENTION_NOTE = "--verbose lists all students."
+MAX_DETAILS = 5  # students with details who need attention for one reason
 MAX_LISTED = 10  # mistakes, and edits
 MAX_GROUPS = 20  # of identical work
 _LOW_DISCRIMINATION = 0.2
-_MAX_NAMED = 12
+MAX_NAMED = 12
 _TOTALS = ("earned", "lost", "need manual grading")
 _MAX_EDITS, _MAX_LINES, _MAX_CRITERIA = 4, 6, 4
 _MAX_WIDTH = 200  # characters of a line of a student's file
@@ -111,13 +113,13 @@ def same_file(work: IdenticalWork) -> str:
     """Return which of the students with the same robot have the same file; empty if none have."""
     if work.students in work.same_file:
         return "the same file"
-    return "; ".join(f"the same file: {enumerated(keys, _MAX_NAMED)}" for keys in work.same_file)
+    return "; ".join(f"the same file: {enumerated(keys, MAX_NAMED)}" for keys in work.same_file)
 
 
 def identical_line(work: IdenticalWork) -> str:
     """Return the students of one group of identical work."""
     same = same_file(work)
-    return f"{enumerated(work.students, _MAX_NAMED)}{f' ({same})' if same else ''}"
+    return f"{enumerated(work.students, MAX_NAMED)}{f' ({same})' if same else ''}"
 
 
 def without_urdf(summary: ClassSummary) -> str:

@@ -9,6 +9,13 @@ from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
 from grader.text import enumerated, printable, signed_points
 
+SYMBOLS = {
+    "passed": "\u2713",
+    "failed": "\u2717",
+    "skipped": "\u2212",
+    "pending": "?",
+    "errored": "!",
+}  # of each status
 _MAX_NAMED = 2
 
 

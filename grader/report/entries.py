@@ -10,19 +10,13 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import Details, location_text, result_details, short_hint, status_of
+from grader.report.details import SYMBOLS, Details, location_text, result_details, short_hint, status_of
 from grader.report.diff import diff_lines
 from grader.report.order import Failure
 from grader.text import printable, signed_points
 
 STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
-_SYMBOLS = {
-    "passed": ("\u2713", "+"),
-    "failed": ("\u2717", "X"),
-    "skipped": ("\u2212", "-"),
-    "pending": ("?", "?"),
-    "errored": ("!", "!"),
-}
+_ASCII = dict(zip(SYMBOLS, "+X-?!", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
@@ -39,7 +33,7 @@ class Page(NamedTuple):
 
 def mark(status: str, console: Console) -> Text:
     """Return the symbol of a status in its colour."""
-    return Text(symbol(console, *_SYMBOLS[status]), STYLES[status])
+    return Text(symbol(console, SYMBOLS[status], _ASCII[status]), STYLES[status])
 
 
 def show_failure(failure: Failure, page: Page) -> None:

@@ -8,7 +8,7 @@ from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import Details, location_text, result_details, status_of
+from grader.report.details import SYMBOLS, Details, location_text, result_details, status_of
 from grader.report.diff import diff_lines
 from grader.report.evidence import evidence
 from grader.report.markdown_text import code, escaped, fenced, folded
@@ -16,7 +16,6 @@ from grader.report.order import Group, alike, groups, has_passed, in_order
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
 from grader.text import enumerated, printable
 
-_MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
@@ -125,7 +124,7 @@ def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> 
 
 
 def _start(result: Result) -> str:
-    return f"{_MARKS[status_of(result)]} {content.earned_text((result,))}"
+    return f"{SYMBOLS[status_of(result)]} {content.earned_text((result,))}"
 
 
 def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:

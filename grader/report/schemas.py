@@ -169,6 +169,7 @@ CLASS_SCHEMA = _document(
             {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
         ),
         "needs_a_look": _TOTAL,
+        "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },

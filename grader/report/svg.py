@@ -2,8 +2,7 @@
 
 from lxml import etree
 
-from grader.drawing.picture import Picture, picture_of
-from grader.drawing.scene import scene_of
+from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
 from grader.report.content import score_text, summary, why_no_picture
@@ -27,9 +26,7 @@ def render_svg(report: Report) -> str:
 def inspection_svg(inspection: Inspection) -> str:
     """Return the drawing of an inspected robot as a file, with its joints at the given positions."""
     robot = inspection.robot
-    picture = None
-    if robot is not None and inspection.relative_to is not None:
-        picture = Picture(scene_of(robot, inspection.relative_to), None, (), (), ())
+    picture = plain_picture(robot, inspection.relative_to)
     name = robot.robot.name if robot is not None else inspection.path
     positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
     words = f"{inspection.path}: {effect(inspection.reading)}{f'; {positions}' if positions else ''}"

@@ -68,6 +68,7 @@ def _run(searches: Iterable[HintSearch], total: int, options: HintOptions, progr
     workers = options.jobs or processors()
     with Processes(workers, options.timeout) as executor, progress("searching hints") as show:
         done = Progress(total)
+        show(done)
         for search in searches:
             for verdict in search.run(executor, workers):
                 done = done.with_result(verdict)

@@ -32,6 +32,8 @@ def class_statistics(
     screen: Screen,
     progress: ProgressDisplay,
     warn: Warn,
+    *,
+    verbose: bool = False,
 ) -> str:
     """Return the summary of a gradebook's class with the edits that would gain points, or a comparison of groups.
 
@@ -45,7 +47,7 @@ def class_statistics(
 
             return draw(partial(render_sections, comparison), screen)
         search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
-        return class_summary(grades, kind, screen, with_fixes=True, comparison=comparison)
+        return class_summary(grades, kind, screen, with_fixes=True, verbose=verbose, comparison=comparison)
 
 
 def class_summary(
@@ -55,11 +57,13 @@ def class_summary(
     done: "Progress | None" = None,
     *,
     with_fixes: bool = False,
+    verbose: bool = False,
     comparison: Comparison | None = None,
 ) -> str:
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded.
 
-    `with_fixes` shows the edits that would gain points, which takes a search for hints; `comparison` is added to JSON.
+    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students who need
+    attention; `comparison` is added to JSON.
     """
     summary = summary_of(grades, with_fixes=with_fixes)
     if kind is OutputFormat.JSON:
@@ -71,4 +75,4 @@ def class_summary(
         return render_class_json(summary, grades, run, comparison)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, summary), screen)
+    return draw(partial(render_class, summary, verbose=verbose), screen)

@@ -20,5 +20,5 @@ def export_pages(gradebook: Path, folder: Path | None, due: str | None, progress
     with Gradebook(gradebook) as book:
         refuse_report_folder(folder, (Format.HTML,), sorted({Path(run.source) for run in book.runs()}))
         search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=True)
-    with Processes(processors(), REPORT_SECONDS) as executor:
-        write_reports(executor, gradebook, folder, (Format.HTML,), deadline, warn)
+    with Processes(processors(), REPORT_SECONDS) as executor, progress("writing pages") as show:
+        write_reports(executor, gradebook, folder, (Format.HTML,), deadline, warn, show)

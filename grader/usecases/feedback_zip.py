@@ -30,19 +30,21 @@ _MAX_LISTED = 50  # students without a file
 class Feedback:
     """The reports of the students who have a result or a final mark, and the students who get none, with the reason."""
 
-    def __init__(self, grades: Grades, kind: Format, due: datetime | None) -> None:
+    def __init__(self, grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay) -> None:
         self.grades = [grade for grade in grades.all() if grade.result is not None or grade.final is not None]
         self.name = f"{file_names([grades.newest_rubric().id]).popitem()[1]}-feedback.{kind.ending}"
         self.ending = f".{kind.ending}"
         self.without: dict[str, str] = {}
-        self._reports = self._rendered(grades, kind, due)
+        self._reports = self._rendered(grades, kind, due, progress)
 
     def __iter__(self) -> Iterator[tuple[StudentGrade, bytes]]:
         return (
             (grade, self._reports[grade.student.key]) for grade in self.grades if grade.student.key in self._reports
         )
 
-    def _rendered(self, grades: Grades, kind: Format, due: datetime | None) -> dict[str, bytes]:
+    def _rendered(
+        self, grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay
+    ) -> dict[str, bytes]:
         """Return the reports by student; those with a submission come from other processes, which a submission may crash."""
         rendered = {
             grade.student.key: render(report_of(grades, grade), kind).encode("utf-8", "backslashreplace")
@@ -50,8 +52,12 @@ class Feedback:
             if grade.result is None
         }
         names = {grade.student.key: str(number) for number, grade in enumerate(self.grades) if grade.result is not None}
-        with tempfile.TemporaryDirectory() as folder, Processes(processors(), REPORT_SECONDS) as executor:
-            self.without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names)
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            Processes(processors(), REPORT_SECONDS) as executor,
+            progress("writing reports") as show,
+        ):
+            self.without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show)
             for key in names.keys() - self.without.keys():
                 rendered[key] = Path(folder, f"{names[key]}.{kind.ending}").read_bytes()
         return rendered
@@ -72,7 +78,7 @@ def feedback_zip(
     `worksheet` is Moodle's, if it is given: its participants get the reports.
     """
     search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=False)
-    feedback = Feedback(grades, kind, due)
+    feedback = Feedback(grades, kind, due, progress)
     files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, worksheet)
     if not files:
         why = next(iter(feedback.without.values()), "no student has a result or a final mark")

@@ -60,6 +60,7 @@ class ClassRequest:
     reports: Path | None
     report_formats: tuple[Format, ...]
     csv: Path | None
+    verbose: bool
 
     @property
     def root(self) -> Path:
@@ -98,11 +99,12 @@ def grade_class(
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
         with_fixes = _search_hints(request, kind, book, progress, warn)
         if request.reports is not None:
-            with _processes(request.jobs, REPORT_SECONDS) as executor:
-                write_reports(executor, request.gradebook, request.reports, request.report_formats, deadline, warn)
+            with _processes(request.jobs, REPORT_SECONDS) as executor, progress("writing reports") as show:
+                formats = request.report_formats
+                write_reports(executor, request.gradebook, request.reports, formats, deadline, warn, show)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
-        return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes)
+        return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes, verbose=request.verbose)
 
 
 def _search_hints(

@@ -119,7 +119,7 @@ def test_sections_with_their_own_rosters(tmp_path: Path) -> None:
     assert "not on the roster" not in batch(tmp_path).stdout
     shutil.rmtree(tmp_path / "class/bea")
     done = batch(tmp_path, roster="id\nann\nabe\n")
-    assert "bea: no longer in the class folder; not on the roster" in done.stdout
+    assert "no longer in the class folder (1): bea\n  not on the roster (1): bea\n" in done.stdout
     assert "cal" not in done.stdout.partition("Needs attention")[2]
 
 

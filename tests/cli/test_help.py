@@ -54,6 +54,17 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
         parse(line)
 
 
+@pytest.mark.parametrize("command", ["batch", "stats", "diff", "export"])
+def test_recipes(command: str) -> None:
+    """Commands for a class have a recipe for each situation, one sentence each."""
+    text = run((command, "--help")).stdout.decode()
+    recipes = re.search(r"\n  Recipes:\n\n((?:    .*\n|\n)+)", text)
+    assert recipes is not None
+    paragraphs = [paragraph for paragraph in recipes[1].split("\n\n") if paragraph.strip()]
+    assert len(paragraphs) > 1
+    assert all(paragraph.rstrip().endswith((".", "?")) for paragraph in paragraphs)
+
+
 @pytest.mark.parametrize("path", [path for path in PATHS if path], ids=" ".join)
 def test_the_summary_is_one_line(path: tuple[str, ...]) -> None:
     """The list of commands shows the whole first sentence beside the name."""

@@ -152,7 +152,7 @@ def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:
     done = grader("mark", "anna", "behaves", "1.5", *book, **where)
     assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
     assert status() == ("errored", 2.5, True)
-    assert "it could not be graded, and was marked manually" in grader("stats", *book, **where).stdout
+    assert "could not be graded, and was marked manually (1): anna" in grader("stats", *book, **where).stdout
 
 
 def test_no_run_loses_a_mark(top: Path) -> None:
@@ -171,7 +171,9 @@ def test_no_run_loses_a_mark(top: Path) -> None:
     (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
     assert score_after() == 7  # the check that needs the box is skipped now
     listed = grader("stats", "--gradebook", top / "book.db").stdout
-    assert "2 manual marks are from before the submission or the points changed" in " ".join(listed.split())
+    assert "marked before the submission or the points changed (1) Anna Ek (anna): 2 manual marks" in " ".join(
+        listed.split()
+    )
     (top / "other.toml").write_text(lab_text(loads="2", extra="0.5"))
     assert score_after(rubric=top / "other.toml") == 6.5
     (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))

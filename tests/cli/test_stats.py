@@ -39,8 +39,8 @@ def test_at_a_glance(top: Path) -> None:
     assert "box           2.5       2       0   3    67%           -0.19\n" in text
     assert "essay           4       0       2   3    38%                \n" in text
     assert "     1  box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
-    assert "Needs attention\n  cleo: it could not be graded: " in text
-    assert "  dora: nothing was submitted\n" in text
+    assert "Needs attention\n  could not be graded (1)\n    Cleo Ray (cleo): " in text
+    assert "  nothing was submitted (1): Dora Fi (dora)\n" in text
 
 
 def test_as_json(top: Path) -> None:
@@ -115,7 +115,7 @@ def test_older_rubrics_are_reported(tmp_path: Path) -> None:
         record_run(book, new, [graded_as(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
     assert "2 graded\n1 graded by an earlier rubric only: not in these statistics\n" in text
-    assert "  ben: graded with an earlier version of the rubric\n" in text
+    assert "  graded with an earlier version of the rubric (1): ben\n" in text
 
 
 def test_names_are_escaped(top: Path) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import datetime
 from decimal import Decimal
 from functools import cache, cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -44,20 +44,6 @@ _OTHERS = (
 )
 _COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
 _QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
-
-
-class AttentionItem(NamedTuple):
-    """A student who needs attention, and why."""
-
-    who: str
-    why: str
-
-
-class AttentionList(NamedTuple):
-    """The first students who need attention, and how many there are in total."""
-
-    listed: tuple[AttentionItem, ...]
-    total: int
 
 
 class Grades:
@@ -117,14 +103,9 @@ class Grades:
         """Yield the grades with keys from `first` to `last`, both included, in the order of the keys."""
         return self._select("WHERE key BETWEEN ? AND ? ORDER BY key", first, last)
 
-    def needing_attention(self, limit: int) -> AttentionList:
-        """Return who needs attention: no readable submission, an error of the grader, a grade or mark that may be outdated."""
-        newest = self.newest_rubric().sha256
-        where = "WHERE (verdict <> 'graded' OR faults OR rubric <> ?) AND final IS NULL AND NOT is_excused"
-        where += " OR older_marks OR over_marks OR is_gone OR is_on_roster = 0 OR final_is_older"
-        ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}", newest)
-        grades = self._select(f"{where} ORDER BY key LIMIT ?", newest, limit)
-        return AttentionList(tuple(AttentionItem(grade.student.key, grade.why_attention) for grade in grades), count)
+    def where(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
+        """Yield the grades that meet a condition on the view `grade`, in the order of the keys."""
+        return self._select(f"WHERE {condition} ORDER BY key", *values)
 
     def find(self, name: str) -> StudentGrade:
         """Return the grade of the student with this key, else login, address, number or full name; raises InputError."""

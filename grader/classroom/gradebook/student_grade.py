@@ -1,8 +1,10 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
+from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,6 +19,21 @@ from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Urdf
 from grader.text import counted, counted_points
+
+
+class Reason(StrEnum):
+    """Why a grade needs attention, the most urgent reason first."""
+
+    FAILED = "the grader failed"
+    UNREADABLE = "could not be graded"
+    MISSING = "nothing was submitted"
+    GONE = "no longer in the class folder"
+    OUTDATED = "graded with an earlier version of the rubric"
+    OVER = "a manual mark exceeds the criterion's maximum"
+    NOT_ON_ROSTER = "not on the roster"
+    OLDER_FINAL = "the final mark or excuse is from before the newest submission"
+    OLDER_MARKS = "marked before the submission or the points changed"
+    MARKED = "could not be graded, and was marked manually"
 
 
 class SubmissionFiles(NamedTuple):
@@ -132,21 +149,32 @@ class StudentGrade:
         return next((reason for holds, reason in reasons if holds), "")
 
     @property
-    def why_attention(self) -> str:
-        """Why an instructor should look at this grade."""
+    def concerns(self) -> Iterator[tuple[Reason, str]]:
+        """Yield why an instructor should look at this grade, each reason with its details."""
         has_final = self.final is not None or self.is_excused
-        is_ungraded = (self.verdict != "graded" or self.faults) and not has_final
-        older = f"{counted(self.older_marks, 'manual mark')} {'is' if self.older_marks == 1 else 'are'}"
+        is_errored = self.verdict == "errored" or self.faults
+        is_open = not has_final and (self.faults or self.pending)
+        is_ungraded = not has_final and self.verdict in ("errored", "unreadable")
+        older = counted(self.older_marks, "manual mark")
         reasons = (
-            (is_ungraded, self.why_not_final or "it could not be graded, and was marked manually"),
-            (self.is_gone, "no longer in the class folder"),
-            (self.is_outdated, "graded with an earlier version of the rubric"),
-            (self.over_marks, "a manual mark exceeds the criterion's maximum"),
-            (self.is_on_roster is False, "not on the roster"),
             (
-                self.final_is_older,
-                f"the {'excuse' if self.is_excused else 'final mark'} is from before the newest submission",
+                is_open and is_errored,
+                Reason.FAILED,
+                self.reason or f"on {counted(self.faults, 'criterion', 'criteria')}",
             ),
-            (self.older_marks, f"{older} from before the submission or the points changed"),
+            (is_open and self.verdict == "unreadable", Reason.UNREADABLE, self.reason),
+            (is_ungraded and not is_open, Reason.MARKED, ""),
+            (not has_final and self.verdict == "missing", Reason.MISSING, ""),
+            (self.is_gone, Reason.GONE, ""),
+            (not has_final and self.is_outdated, Reason.OUTDATED, ""),
+            (self.over_marks, Reason.OVER, ""),
+            (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
+            (self.final_is_older, Reason.OLDER_FINAL, ""),
+            (self.older_marks, Reason.OLDER_MARKS, older),
         )
-        return "; ".join(reason for holds, reason in reasons if holds)
+        return ((reason, detail) for holds, reason, detail in reasons if holds)
+
+    @property
+    def why_attention(self) -> str:
+        """Why an instructor should look at this grade; empty if nothing is unusual."""
+        return "; ".join(f"{reason}: {detail}" if detail else str(reason) for reason, detail in self.concerns)

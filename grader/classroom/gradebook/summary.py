@@ -2,14 +2,13 @@
 
 from typing import NamedTuple
 
+from grader.classroom.gradebook.attention import Attention, attention
 from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.fixes import CommonFix, common_fixes
-from grader.classroom.gradebook.grades import AttentionList, Grades
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.grading.rubric import Rubric
-
-_MAX_LISTED = 20
 
 
 class ClassSummary(NamedTuple):
@@ -21,23 +20,22 @@ class ClassSummary(NamedTuple):
     rubric: Rubric
     statistics: ClassStatistics
     fixes: tuple[CommonFix, ...]
-    attention: AttentionList
+    attention: Attention
     identical: tuple[IdenticalWork, ...]
     evidence_only: int
 
 
-def summary_of(grades: Grades, *, with_fixes: bool, listed: int = _MAX_LISTED) -> ClassSummary:
+def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
     """Return the summary of a gradebook; raises InputError if nothing was graded.
 
-    `with_fixes` includes the edits that would gain points, as far as hints have been searched; `listed` is how many students who
-    need attention are named.
+    `with_fixes` includes the edits that would gain points, as far as hints have been searched.
     """
     book, rubric = grades.book, grades.newest_rubric()
     return ClassSummary(
         rubric,
         statistics(book, rubric),
         common_fixes(book, rubric) if with_fixes else (),
-        grades.needing_attention(listed),
+        attention(grades),
         tuple(identical_work(book)),
         count_evidence_only(book, rubric),
     )

@@ -106,6 +106,7 @@ class Batch:
         writer = RunWriter(book, settings.root, settings.layout, self._rubric, settings.deadline, assignment)
         self._writer = writer
         writer.add_handed_out(settings.handed_out)
+        self._report(())  # the total, before the first result
         students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
         for submission in intake.submissions():

@@ -34,6 +34,7 @@ from grader.report.pages.shell import render_page
 from grader.text import counted, format_points, printable
 
 MAX_DRAWINGS = MAX_LISTED
+_MAX_ATTENTION = 100  # students for one reason
 _ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
 
 
@@ -71,6 +72,7 @@ def render_class_page(
         "identical": [_identical(work) for work in summary.identical],
         "identical_note": IDENTICAL_NOTE,
         "attention": summary.attention,
+        "max_attention": _MAX_ATTENTION,
         "evidence": without_urdf(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,

@@ -13,7 +13,6 @@ from grader.text import printable, signed_points
 
 _AROUND = 2  # lines of the source before and after the marked one
 _MAX_WIDTH = 160  # characters of a line
-SYMBOLS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 
 
 class SourceLines(NamedTuple):

@@ -1,6 +1,6 @@
 """A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
@@ -8,10 +8,10 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import group_status, status_of
+from grader.report.details import SYMBOLS, group_status, status_of
 from grader.report.evidence import evidence
 from grader.report.order import alike, failures, groups, in_order
-from grader.report.pages.criteria import SYMBOLS, card_of, failure_card
+from grader.report.pages.criteria import card_of, failure_card
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
@@ -19,13 +19,17 @@ from grader.text import format_points, printable
 
 
 class Row(NamedTuple):
-    """A criterion in the list of all criteria. `title` is empty unless it passed."""
+    """A criterion in the list of all criteria. `title` is empty unless it passed.
+
+    `card` is the criterion with the card for it: itself, or the one that it is skipped because of; empty if neither has one.
+    """
 
     id: str
     title: str
     status: str
     points: str
     because: str
+    card: str
 
 
 class Rows(NamedTuple):
@@ -77,6 +81,7 @@ def _summary(report: Report) -> dict[str, object]:
 def _criteria(report: Report) -> dict[str, object]:
     order, shown = in_order(report), set[str]()
     skipped = alike(order.skipped, lambda result: result.because or "")
+    cards = {result.criterion.id for result in (*(one.result for one in order.failures), *order.pending, *order.marked)}
     return {
         "symbols": SYMBOLS,
         "failures": [failure_card(failure, report, shown) for failure in order.failures],
@@ -86,7 +91,7 @@ def _criteria(report: Report) -> dict[str, object]:
             for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked))
             if results
         ],
-        "parts": [*_parts(report)],
+        "parts": [*_parts(report, cards)],
     }
 
 
@@ -106,20 +111,26 @@ def _shares(report: Report) -> tuple[float, float]:
     return round(earned, 2), round(possible, 2)
 
 
-def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
+def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, list[Rows]]]:
     """Yield the title, the points and the groups of each part."""
     titles = {part.id: part.title for part in report.rubric.parts}
     for part, found in groupby(groups(report), key=lambda group: group.part):
         some = [*found]
         rows = [
-            Rows(group.title, content.earned_text(group.results), tuple(map(_row, group.results)), group_status(group))
+            Rows(
+                group.title,
+                content.earned_text(group.results),
+                tuple(_row(result, cards) for result in group.results),
+                group_status(group),
+            )
             for group in some
         ]
         yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
 
 
-def _row(result: Result) -> Row:
+def _row(result: Result, cards: Collection[str]) -> Row:
     status = status_of(result)
     title = result.criterion.title if status == "passed" else ""
     because = (result.because or "") if result.manual_mark is None else ""
-    return Row(result.criterion.id, title, status, content.earned_text((result,)), because)
+    card = next((name for name in (result.criterion.id, because) if name in cards), "")
+    return Row(result.criterion.id, title, status, content.earned_text((result,)), because, card)

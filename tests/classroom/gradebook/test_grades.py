@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.classroom.gradebook.attention import attention
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of
@@ -69,7 +70,8 @@ def test_an_unknown_name(book: Gradebook, name: str, guess: str) -> None:
 
 def notices(book: Gradebook) -> dict[str, str]:
     """Return who needs attention, and why."""
-    return {notice.who: notice.why for notice in Grades(book).needing_attention(99).listed}
+    found = {item.key: "" for group in attention(Grades(book)).groups for item in group.items}
+    return {key: Grades(book).find(key).why_attention for key in found}
 
 
 def put(book: Gradebook, key: str, name: str = "essay") -> None:
@@ -88,13 +90,19 @@ def test_who_needs_attention(tmp_path: Path) -> None:
             save_student(book, Student("dora"), Enrolment(1))
             save_student(book, Student("fay"), Enrolment(0))
         assert notices(book) == {
-            "ben": "the grader failed on a criterion",
-            "cleo": "it could not be graded: no zip",
+            "ben": "the grader failed: on 1 criterion",
+            "cleo": "could not be graded: no zip",
             "dora": "nothing was submitted",
             "fay": "not on the roster",
         }
-        short = Grades(book).needing_attention(1)
-        assert ([notice.who for notice in short.listed], short.total) == (["ben"], 4)
+        found = attention(Grades(book))
+        assert [(group.reason, [item.who for item in group.items]) for group in found.groups] == [
+            ("the grader failed", ["ben"]),
+            ("could not be graded", ["cleo"]),
+            ("nothing was submitted", ["dora"]),
+            ("not on the roster", ["fay"]),
+        ]
+        assert found.total == 4
 
 
 @pytest.mark.parametrize(
@@ -113,7 +121,7 @@ def test_an_older_mark(rubric: Rubric, digest: str, is_older: bool, tmp_path: Pa
         put(book, "anna")
         assert notices(book) == {}
         record_run(book, rubric, [graded_as(rubric, "anna", "ppp?f", digest)])
-        why = "1 manual mark is from before the submission or the points changed"
+        why = "marked before the submission or the points changed: 1 manual mark"
         assert notices(book) == ({"anna": why} if is_older else {})
         assert Grades(book).find("anna").marks == 1
 
@@ -125,11 +133,11 @@ def test_a_mark_on_an_unreadable_submission_is_listed(tmp_path: Path) -> None:
         record_run(book, LAB, [broken])
         put(book, "anna")
         record_run(book, LAB, [broken])
-        assert "from before" not in notices(book)["anna"]
+        assert "marked before" not in notices(book)["anna"]
         record_run(book, LAB, [broken._replace(reason="no tar")])
-        assert "from before" not in notices(book)["anna"]  # the same record: nothing new was found
+        assert "marked before" not in notices(book)["anna"]  # the same record: nothing new was found
         record_run(book, LAB, [graded_as(LAB, "anna", "?????", reason="no tar")])
-        assert "from before" in notices(book)["anna"]
+        assert "marked before" in notices(book)["anna"]
 
 
 def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:

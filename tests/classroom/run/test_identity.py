@@ -100,7 +100,7 @@ def test_a_folders_key_that_the_roster_gives_to_another(top: Path) -> None:
     assert "alice is 101 now" in done.stderr
     assert {key: student["marks_by_hand"] for key, student in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
     assert students(top)["101"]["score"] == 93.5
-    assert "./101: no longer in the class folder" in done.stdout
+    assert "no longer in the class folder (1): ./101" in done.stdout
 
 
 def test_removed_submissions_have_no_grade(top: Path) -> None:
@@ -110,7 +110,7 @@ def test_removed_submissions_have_no_grade(top: Path) -> None:
     assert students(top)["alice"]["is_final"]
     (top / "class" / "alice").rename(top / "away")
     done = batch(top)
-    assert "alice: no longer in the class folder" in done.stdout
+    assert "no longer in the class folder (1): alice" in done.stdout
     assert not students(top)["alice"]["is_final"]
     assert batch(top).stdout == done.stdout
     (top / "away").rename(top / "class" / "alice")
