@@ -61,11 +61,9 @@ def export(
 
     Recipes:
 
-      Publish in Canvas: export with --into and --only, then import the file under Grades. Upload the zip of --comments with "Upload
-      Submissions" of the assignment.
+      Publish in Canvas: --into and --only, then import the file. Upload the zip of --comments with "Upload Submissions".
 
-      Publish in Moodle: export with --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple
-      feedback files in a zip".
+      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple feedback files".
 
       A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
 
