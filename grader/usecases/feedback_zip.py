@@ -15,7 +15,6 @@ from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
-from grader.files.reading import sha256_of
 from grader.files.zip_writing import zip_of
 from grader.report.formats import Format, render
 from grader.text import counted, first_lines, printable
@@ -130,7 +129,7 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
     for paths, members in submissions.items():
         students = [grade.student for grade, _ in members]
         name, why = canvas_name(filter(None, paths) if paths[0] else (), students, feedback.ending)
-        if len({_content(grade, report) for grade, report in members}) > 1:
+        if len({report for _, report in members}) > 1:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
             report = members[0][1]
@@ -138,8 +137,3 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
         else:
             feedback.without |= {student.key: why for student in students}
     return files
-
-
-def _content(grade: StudentGrade, report: bytes) -> str:
-    """Return what distinguishes the report of one member of a group from those of the others: all but the student's key."""
-    return sha256_of(report.replace(grade.student.key.encode(), b""))

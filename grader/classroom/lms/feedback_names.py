@@ -19,7 +19,7 @@ from grader.classroom.students import Student
 
 _MAX_NAME = 60
 _PLAIN = re.compile(
-    r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_.+", re.DOTALL
+    r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL
 )  # can be read in one way
 _TEXT = frozenset({".txt", ".urdf", ".xacro", ".xml", ".py", ".yaml", ".yml", ".rst"})
 ZIP = ".zip"
