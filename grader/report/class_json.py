@@ -14,7 +14,7 @@ from grader.report.json_data import edit, exact, rounded, to_json
 
 def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int] | None) -> str:
     """Return the statistics and all current grades; `run` counts what a batch has just done."""
-    rubric = summary.rubric
+    rubric, late = summary.rubric, summary.late
     return to_json(
         {
             "schema": "grader/class/v1",
@@ -37,6 +37,10 @@ def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int]
                 for group in summary.attention.groups
             ],
             "evidence_without_urdf": summary.evidence_only,
+            "late": {
+                "count": late.students,
+                **{name: exact(getattr(late, name)) for name in ("lost", "least", "most")},
+            },
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )

@@ -16,11 +16,20 @@ from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_cla
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
+    from grader.grading.rubric import Rubric
 
 
 def read_deadline(text: str | None) -> datetime | None:
     """Return the time that `--due` gives. Raises InputError."""
     return read_time(text) if text else None
+
+
+def warn_of_due(due: str | None, rubric: "Rubric", warn: Warn) -> None:
+    """Say that `--due` changes no grade if the rubric has no late penalty."""
+    if due and rubric.late is None:
+        warn(
+            f"--due has no effect on grades: the rubric {rubric.id} has no [late]. The days late are shown nevertheless"
+        )
 
 
 def class_statistics(
@@ -36,6 +45,7 @@ def class_statistics(
     """Return the summary of a gradebook's class with the edits that would gain points. Raises InputError."""
     with Gradebook(gradebook) as book:
         grades = Grades(book, read_deadline(due))
+        warn_of_due(due, grades.newest_rubric(), warn)
         search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
         return class_summary(grades, kind, screen, with_fixes=True, verbose=verbose)
 

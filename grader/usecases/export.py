@@ -23,7 +23,7 @@ from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_hints import ProgressDisplay
-from grader.usecases.class_summary import class_summary, read_deadline
+from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.export_pages import export_pages
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
@@ -62,6 +62,8 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
         if request.output is not None:
             refuse_symlinks(request.output, classes)
         grades = Grades(book, read_deadline(request.due))
+        if request.due:
+            warn_of_due(request.due, grades.newest_rubric(), warn)
         if request.into is not None:
             filled = _fill(request, request.into, grades)
             for line in preflight_lines(filled.preflight):
