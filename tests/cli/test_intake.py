@@ -1,6 +1,8 @@
 """Downloads of an LMS on the command line: groups, anonymous students, lateness, and mistakes in rosters."""
 
 import json
+import shlex
+import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -140,3 +142,49 @@ def test_the_last_line_of_a_batch(tmp_path: Path, late: str, words: str) -> None
     write(tmp_path, roster, ("ash.urdf", "birch.urdf", "cedar.urdf"))
     last = batch(tmp_path).stdout.splitlines()[-1]
     assert last == words if words else "late" not in last
+
+
+CANVAS = ("ashann_101_1_robot.urdf", "birchbea_LATE_102_2_robot.urdf", "birchbea_102_3_picture.png")
+MOODLE = ("Ann Ash_11_assignsubmission_file/robot.urdf", "Bea Birch_12_assignsubmission_file/robot.urdf")
+NBGRADER = ("submitted/ash/small/robot.urdf", "submitted/birch/small/robot.urdf", "source/small/a.ipynb")
+
+
+@pytest.mark.parametrize("form", ["folder", "zip"])
+@pytest.mark.parametrize("wrapper", ["", "our submissions/"])
+@pytest.mark.parametrize(("lms", "files"), [("Canvas", CANVAS), ("Moodle", MOODLE), ("nbgrader", NBGRADER)])
+def test_a_class_is_not_one_submission(
+    tmp_path: Path, lms: str, files: tuple[str, ...], wrapper: str, form: str
+) -> None:
+    """`grade` refuses a whole class, and names the command that grades it; that command works as it is printed."""
+    write(tmp_path, "", tuple(f"{wrapper}{file}" for file in files))
+    path = tmp_path / "class"
+    if form == "zip":
+        path = Path(shutil.make_archive(str(tmp_path / "our class"), "zip", tmp_path / "class"))
+    rubric = tmp_path / "small.toml"
+    done = grader("grade", path, "--rubric", rubric, "--part", "robot")
+    assert (done.returncode, done.stdout) == (2, "")
+    head, last = (line.removeprefix("grader: ") for line in done.stderr.splitlines())
+    assert head == f"{path} is a download of {lms} with the submissions of 2 students: nothing was graded"
+    assert last == (
+        f"to grade all: grader batch {shlex.quote(str(path))} --gradebook small.db --rubric {rubric} --part robot"
+    )
+    if wrapper:
+        words = shlex.split(last.partition(": grader ")[2].replace("small.db", f"{tmp_path}/small.db"))
+        assert "2 submissions" in grader(*words).stderr
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        CANVAS[1:],  # of one student
+        MOODLE[:1],
+        ("robot.urdf", "step_8_1_a.png", "step_18_2_b.png", "step_36_3_c.png"),  # numbers as those of users
+        ("robot.urdf", "submitted/lab6/final/notes.txt", "submitted/lab5/final/notes.txt"),
+        ("src/my_robot_pkg/robot.urdf", "src/my_robot_sim/a.txt"),
+    ],
+)
+def test_the_submission_of_one_student_is_graded(tmp_path: Path, files: tuple[str, ...]) -> None:
+    """Whatever its files are called."""
+    write(tmp_path, "", files)
+    done = grader("grade", tmp_path / "class", "--rubric", tmp_path / "small.toml", "--part", "robot")
+    assert done.returncode == 0, done.stderr
