@@ -111,10 +111,10 @@ def claims_of(student: Student) -> Clues:
     """Return the clues in the name of a submission, or in what a person types: a word may be any kind of id."""
     words = {_composed(word) for word in (student.key, student.login, student.name if student.team else "")}
     lower = {plain_word(word) for word in words}
-    in_canvas = student.key.rpartition("_")[0] if student.canvas or student.maybe_canvas else ""
+    in_canvas = student.key.rpartition("_")[0] if student.readings else ""
     return _present(
         {
-            Clue.CANVAS: (student.canvas, *student.maybe_canvas),
+            Clue.CANVAS: (student.canvas, *(number for _, number in student.readings)),
             Clue.MOODLE: (student.moodle,),
             Clue.WORD: words,
             Clue.ANY_CASE: lower,

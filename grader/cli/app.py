@@ -20,7 +20,7 @@ from grader.usecases.writing import write_stdout
 
 # In the order of the help. Each is a function, or a group of commands, in the module of its name.
 COMMANDS = (
-    "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "rubric",
+    "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "gradebook", "rubric",
 )  # fmt: skip
 COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")

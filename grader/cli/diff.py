@@ -17,7 +17,7 @@ def diff(
     after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
-    """Show whose grade changed between two runs, by how much, and why.
+    """Show whose grade changed between two runs, and why.
 
     Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
     manual marks; marks that were given after the older run count as changes. Late penalties are not included. Runs count

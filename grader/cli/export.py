@@ -38,7 +38,7 @@ def export(
         Literal["markdown", "html"], typer.Option(metavar="markdown|html", help="The format of these reports.")
     ] = "markdown",
 ) -> int:
-    """Export the current grades for a spreadsheet, an LMS or a browser.
+    """Export the grades for a spreadsheet, an LMS or a browser.
 
     A grade is the sum of automatic points and manual marks, minus the late penalty, or the final mark. For Canvas, Moodle,
     Blackboard and Brightspace, give the file that the LMS exported: only the cells of the grade (and Moodle's feedback) change. Rows

@@ -39,8 +39,9 @@ def stats(
 
       Who still needs attention, by name: --verbose.
 
-      A criterion that most students fail: a low share, and the common mistakes below. If the rubric is wrong, see "Regrade after a
-      rubric fix" in docs/grade-a-class.md.
+      A criterion that most students fail: a low share, and the common mistakes.
+
+      A criterion that is wrong: "Regrade after a rubric fix" in docs/grade-a-class.md.
 
       The next lecture: the edits that would fix the most.
     """

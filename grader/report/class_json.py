@@ -9,6 +9,7 @@ from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
@@ -29,6 +30,7 @@ def render_class_json(
                 {"students": list(work.students), "same_file": list(map(list, work.same_file))}
                 for work in summary.identical
             ],
+            "agreement": agreement_json(summary.agreement),
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_a_look": summary.attention.total,
             "attention": [

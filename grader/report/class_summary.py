@@ -11,6 +11,7 @@ from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure, CriterionStatistics
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.class_agreement import agreement_lines
 from grader.report.class_words import (
     ATTENTION_NOTE,
     CRITERIA_NOTE,
@@ -53,6 +54,7 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
         _print_criteria(statistics.criteria, console)
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
+    _print_agreement([*agreement_lines(summary.agreement)], console)
     _print_identical(summary.identical, console)
     _print_attention(summary.attention, console, verbose=verbose)
     if evidence := without_urdf(summary):
@@ -90,6 +92,13 @@ def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
             head = Text(f"{' ' * _INDENT}{sign} ", style=style)
             wrapped(console, Text(printable(line), style=style), _INDENT + 2, head)
         wrapped(console, Text(gain(fix), style="dim"), _INDENT)
+
+
+def _print_agreement(lines: Sequence[str], console: Console) -> None:
+    if lines:
+        _print_heading("Agreement of two graders", console)
+    for line in lines:
+        wrapped(console, Text(line), 4, Text("  "))
 
 
 def _print_identical(identical: Sequence[IdenticalWork], console: Console) -> None:

@@ -52,6 +52,7 @@ _PROBLEM = _object(
 _VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 _EDIT = _object({**_PLACE, **_all(_TEXT, "old new renamed")}, ("renamed",))
 _GAINS: dict[str, Any] = {"type": "object", "additionalProperties": _POINTS}
+_ADJUSTMENT = _object({"action": {"enum": ["drop", "full"]}, "reason": _TEXT})
 _RESULT = _object(
     {
         **_all(_TEXT, "id part title message feedback"),
@@ -63,8 +64,11 @@ _RESULT = _object(
         "location": _nullable(_LOCATION),
         "hints": _array(_object({"message": _TEXT, "edits": _array(_EDIT), "gains": _GAINS, "verified": _FLAG})),
         "mark": _object({"points": _POINTS, **_all(_TEXT, "by comment")}),
+        "bonus": {"const": True},
+        "adjustment": _ADJUSTMENT,
+        "comment": _object(_all(_TEXT, "text by")),
     },
-    optional=("mark",),
+    optional=("mark", "bonus", "adjustment", "comment"),
 )
 _EXHIBIT = _object({**_all(_TEXT, "path heading"), "size": _TOTAL, **_all(_nullable(_COUNT), "width height page")})
 _SUBMISSION = _object(
@@ -146,6 +150,14 @@ _STUDENT = _object(
         **_all(_array(_TEXT), "paths earlier carried"),
     }
 )
+_DIFFERENCE = _object({**_all(_TEXT, "id criterion"), **_all(_POINTS, "first second max_points")})
+_AGREEMENT = _object(
+    {
+        **_all(_TOTAL, "items same"),
+        "mean_difference_percent": {"type": "number", "minimum": 0},
+        "largest": _array(_DIFFERENCE),
+    }
+)
 _GROUP = _object(
     {
         "name": _TEXT,
@@ -165,6 +177,7 @@ CLASS_SCHEMA = _document(
         "statistics": _STATISTICS,
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
+        "agreement": _AGREEMENT,
         "comparison": _object(
             {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
         ),
@@ -183,7 +196,17 @@ DIFF_SCHEMA = _document(
     {
         "schema": {"const": "grader/diff/v1"},
         **_all(_RUN, "from to"),
-        "students": _array(_object({**_CHANGE, "because": _array(_TEXT), "criteria": _array(_object(_CHANGE))})),
+        "students": _array(
+            _object(
+                {
+                    **_CHANGE,
+                    "name": _TEXT,
+                    "because": _array(_TEXT),
+                    "criteria": _array(_object(_CHANGE)),
+                    "rubric": _array(_object({**_all(_TEXT, "id key"), **_all(_VALUE, "before after")})),
+                }
+            )
+        ),
     },
 )
 

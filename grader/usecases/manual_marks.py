@@ -1,29 +1,160 @@
-"""Give a manual mark by command."""
+"""Give, withdraw or undo a manual mark by command."""
 
+import re
+from collections.abc import Callable
+from decimal import Decimal
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import TAKE_BACK, WITHDRAWN, Entry, add_mark, criterion_of, read_points
+from grader.classroom.gradebook.manual_queue import numbered_comments
+from grader.classroom.gradebook.marks import (
+    TAKE_BACK,
+    WITHDRAWN,
+    WITHDRAWN_SECOND,
+    Entry,
+    Mark,
+    add_mark,
+    criterion_of,
+    newest_mark,
+    read_points,
+    undo_mark,
+)
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.errors import InputError
+from grader.grading.criterion import Criterion
+from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
 from grader.text import counted_points, format_points, printable
 from grader.usecases import Warn
 
+_NUMBER = re.compile(r"#([0-9]{1,9})")
 
-def give_mark(gradebook: Path, submission: str, criterion: str, points: str, by: str, comment: str, warn: Warn) -> str:
-    """Add a manual mark and return the student's new score. Raises InputError."""
+
+class MarkRequest(NamedTuple):
+    """What `grader mark` records for a criterion or the whole submission. `points` is None without POINTS."""
+
+    submission: str
+    criterion: str
+    points: str | None = None
+    comment: str = ""
+    by: str = ""
+    excused: bool = False
+    undo: bool = False
+    second: bool = False
+    comments: bool = False
+
+    @property
+    def is_total(self) -> bool:
+        """Return whether it is about the whole submission."""
+        return self.criterion == TOTAL
+
+    def check(self) -> None:
+        """Raise InputError if the options contradict each other, or say nothing."""
+        has_points = self.points is not None
+        has_entry = bool(has_points or self.comment or self.excused or self.second)
+        rules = (
+            (self.comments and (has_entry or self.undo), "--comments lists comments and records nothing: use it alone"),
+            (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
+            (self.excused and has_points, "--excused has no POINTS"),
+            (self.excused and self.second, "--second cannot be used with --excused"),
+            (self.excused and not self.is_total, f"--excused is for the whole submission: use `{TOTAL}` as CRITERION"),
+            (self.second and self.is_total, "--second is for one criterion, not for the whole submission"),
+            (self.second and not has_points, "--second needs POINTS"),
+            (self.second and not self.by, "--second needs --by: agreement is between two named graders"),
+            (not (has_entry or self.undo or self.comments), "give POINTS, --comment, --excused or --undo"),
+        )
+        for is_broken, message in rules:
+            if is_broken:
+                raise InputError(message)
+
+
+def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
+    """Record a manual mark and return what counts for the student now; or list comments. Raises InputError."""
+    request.check()
     with Gradebook(gradebook) as book:
         grades = Grades(book)
-        grade = grades.find(submission)
+        grade = grades.find(request.submission)
         rubric = grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric()
-        marked = criterion_of(rubric, criterion)
-        if points.strip() == TAKE_BACK:
-            entry = WITHDRAWN._replace(comment=comment)
-        else:
-            entry = Entry("points", read_points(points, marked.id, marked.points), comment)
-        before = add_mark(book, grade, marked.id, entry, by).before
+        criterion = None if request.is_total else criterion_of(rubric, request.criterion)
+        if request.comments:
+            return _listed(numbered_comments(book, request.criterion))
+        most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
+        before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
-    if before is not None and before.points is not None:
-        warn(f"this replaces the newest mark of {marked.id}: {mark_text(before)}")
-    rest = f"; needs manual grading: {counted_points(now.pending)}" if now.pending else ""
-    return printable(f"{now.student.key}: {format_points(now.score)} of {format_points(now.out_of)} points{rest}")
+        whole = sum((row.maximum for row in grades.criteria), Decimal(0))
+    _report_replaced(before, criterion, request, warn)
+    if request.second:
+        return printable(f"{now.student.key}: second opinion on {request.criterion}; the grade stays the same") + "\n"
+    return printable(f"{now.student.key}: {_grade_text(now, whole)}") + "\n"
+
+
+def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
+    """Write what is requested, and return the mark that was the newest before."""
+    if request.undo:
+        return undo_mark(book, grade, request.criterion, request.by)
+    if request.second:
+        _refuse_own_opinion(newest_mark(book, grade.id, request.criterion), request)
+    comment = _comment(book, request, warn)
+    entry = _entry(request, lambda text: read_points(text, request.criterion, most))
+    return add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
+
+
+def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
+    match request:
+        case MarkRequest(excused=True):
+            return Entry("excused")
+        case MarkRequest(points=None):
+            return Entry("comment")
+        case MarkRequest(points=str(points)) if points.strip() == TAKE_BACK:
+            return WITHDRAWN_SECOND if request.second else WITHDRAWN
+    return Entry("second" if request.second else "points", read(request.points or ""))
+
+
+def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
+    """Return the comment; `#2` is an earlier one, which is repeated on standard error."""
+    number = _NUMBER.fullmatch(request.comment.strip())
+    if number is None:
+        return request.comment
+    comment = numbered_comments(book, request.criterion).get(int(number[1]))
+    if comment is None:
+        raise InputError(
+            f"{request.criterion} has no comment {number[0]}: "
+            f"`grader mark STUDENT {request.criterion} --comments` lists the earlier comments"
+        )
+    warn(f"comment {number[0]}: {' '.join(comment.split())}")
+    return comment
+
+
+def _refuse_own_opinion(first: Mark | None, request: MarkRequest) -> None:
+    if first is not None and first.points is not None and first.by == request.by:
+        raise InputError(f"the mark of {request.criterion} is by {request.by}: a second opinion is of somebody else")
+
+
+def _report_replaced(before: Mark | None, criterion: Criterion | None, request: MarkRequest, warn: Warn) -> None:
+    name = request.criterion
+    is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == WITHDRAWN_SECOND
+    if before is not None and not is_withdrawn:
+        what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
+        warn(f"this {'undoes' if request.undo else 'replaces'} the newest {what} of {name}: {mark_text(before)}")
+    if criterion is not None and criterion.adjustment is not None:
+        warn(f"the rubric adjusts {name}: its manual marks do not count")
+
+
+def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
+    """Return what counts: an excuse, a final mark, or the points of the criteria."""
+    of_criteria = f"{format_points(grade.score)} of {format_points(grade.out_of)} points"
+    if grade.is_excused:
+        return "excused"
+    if grade.final is not None:
+        not_counted = f"; the criteria give {of_criteria}" if grade.result is not None else ""
+        return f"final mark {format_points(grade.final)} of {format_points(whole)} points{not_counted}"
+    if grade.result is None:
+        return "no submission"
+    return of_criteria + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+
+
+def _listed(comments: dict[int, str]) -> str:
+    lines = [printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments.items()]
+    return "".join(f"{line}\n" for line in lines) or "no comments yet\n"

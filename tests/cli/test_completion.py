@@ -41,7 +41,7 @@ def in_bash(line: str) -> list[str]:
     ("line", "offered"),
     [
         ("grader ", list(COMMANDS)),
-        ("grader gr", ["grade"]),
+        ("grader gr", ["grade", "gradebook"]),
         ("grader --v", ["--version"]),
         ("grader --show-completion ", ["bash", "zsh", "fish"]),
         ("grader rubric ", ["list", "show", "checks", "new", "check", "test"]),

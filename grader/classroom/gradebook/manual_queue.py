@@ -60,8 +60,19 @@ def queued_result(grades: Grades, queued: QueuedCriterion) -> QueuedResult | Non
     return None
 
 
-def reusable_comments(book: Gradebook, criterion: str, most: int) -> list[str]:
-    """Return the comments of a criterion's marks, without duplicates, the most frequent first."""
-    query = "SELECT comment FROM manual_mark WHERE criterion = ? AND comment <> '' GROUP BY comment"
+def reusable_comments(book: Gradebook, criterion: str, most: int, *, second: bool = False) -> list[str]:
+    """Return the comments of a criterion's marks, or of its second opinions, without duplicates, the most frequent first."""
+    table = "second_mark" if second else "current_mark"
+    query = f"SELECT comment FROM {table} WHERE criterion = ? AND comment <> '' GROUP BY comment"
     rows = book.rows(f"{query} ORDER BY count(*) DESC, min(id) LIMIT ?", criterion, most)
     return [str(comment) for (comment,) in rows]
+
+
+def numbered_comments(book: Gradebook, criterion: str, *, second: bool = False) -> dict[int, str]:
+    """Return all comments ever given on a criterion, or in second opinions on it, in the order of their first use.
+
+    The numbers from 1 never change, because no mark is ever deleted.
+    """
+    query = "SELECT comment FROM mark WHERE criterion = ? AND comment <> '' AND (kind = 'second') = ? GROUP BY comment"
+    rows = book.rows(f"{query} ORDER BY min(id)", criterion, second)
+    return {number: str(comment) for number, (comment,) in enumerate(rows, 1)}

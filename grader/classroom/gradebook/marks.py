@@ -1,5 +1,7 @@
 """Manual marks: what a person says of a criterion or of the whole submission, stored in addition to the automatic points."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
 from typing import Literal, NamedTuple, cast
@@ -16,7 +18,8 @@ from grader.names import did_you_mean
 from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
-_COLUMNS = "id, kind, points, grader_name, comment, at"
+MARK_COLUMNS = "id, kind, points, comment, grader_name, at, result"
+_NEW = "student, criterion, kind, points, comment, author, grader_name, at, result"
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
@@ -24,7 +27,7 @@ Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 class Entry(NamedTuple):
     """What a person says: points and a comment, a comment alone, that a mark is withdrawn, or that a submission is excused.
 
-    A comment alone keeps the points that count. A second opinion has points that never count.
+    A comment alone keeps the points that count. A second opinion has points that never count, or none if it is withdrawn.
     """
 
     kind: Kind
@@ -33,15 +36,17 @@ class Entry(NamedTuple):
 
 
 WITHDRAWN = Entry("withdrawn")
+WITHDRAWN_SECOND = Entry("second")
 
 
 class Mark(NamedTuple):
-    """An entry in the gradebook, with its id, the name of the grader (empty without `--by`), and when it was made."""
+    """An entry in the gradebook: its id, the name of the grader (empty without `--by`), when it was made, the result it was made for."""
 
     id: int
     entry: Entry
     by: str
-    at: str
+    at: str = ""
+    result: int | None = None
 
     @property
     def points(self) -> Decimal | None:
@@ -93,52 +98,80 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
 
 
 def add_mark(
-    book: Gradebook,
-    grade: StudentGrade,
-    criterion: str,
-    entry: Entry,
-    by: str = "",
-    *,
-    shown: int | None = None,
-    author: str = "",
+    book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str = "", *, shown: int | None = None
 ) -> AddedMark:
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
     `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none: if there is a
-    newer one, nothing is written and NewerMarkError holds it. `author` is the name for the audit, if it differs from `by`. Raises
-    InputError for a criterion of a student who has submitted nothing.
+    newer one, nothing is written and NewerMarkError holds it. A comment for a mark keeps its points, and the result that they were
+    given for. Raises InputError for a criterion of a student who has submitted nothing.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key
         raise InputError(
             f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
         )
-    at = datetime.now(UTC).isoformat(timespec="seconds")
-    name = storable(by)
-    author = storable(author) or name or storable(account())
-    with book.input_errors():
-        book.connection.execute("PRAGMA synchronous = FULL")  # a manual mark must survive a power cut
-    with book.transaction():
-        before = newest_mark(book, grade.id, criterion)
-        if before is not None and shown is not None and before.id != shown:
-            raise NewerMarkError(before)
+    with _writing(book):
+        before = _seen(book, grade, criterion, entry, by, shown)
+        mark = Mark(0, entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            entry = before.entry._replace(comment=entry.comment)
-        units = None if entry.points is None else int(entry.points * UNITS_PER_POINT)
-        row = (grade.id, criterion, entry.kind, units, storable(entry.comment), author, name, at, grade.result)
-        columns = "student, criterion, kind, points, comment, author, grader_name, at, result"
-        added = book.connection.execute(f"INSERT INTO mark ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
-    return AddedMark(int(added.lastrowid or 0), before)
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment), by=by or before.by)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
 
 
-def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Entry:
-    """Add an entry that repeats the one before the newest, or withdraws the only one; return it. Raises InputError without a mark."""
+def restore_mark(
+    book: Gradebook, grade: StudentGrade, criterion: str, mark: Mark | Entry, by: str = "", *, shown: int
+) -> AddedMark:
+    """Add an entry that repeats an earlier mark, with its name and result, or an entry that withdraws the newest one.
+
+    The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
+    """
+    mark = Mark(0, mark, by, result=grade.result) if isinstance(mark, Entry) else mark
+    with _writing(book):
+        before = _seen(book, grade, criterion, mark.entry, by, shown)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
+
+
+def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Mark:
+    """Add an entry that repeats the one before the newest, or withdraws the only one; return the newest. Raises InputError without one."""
     marks = marks_of(book, grade.id, criterion, 2)
     if not marks:
         raise InputError(f"there is no mark of {criterion} to undo for {grade.student.key}")
-    entry = marks[1].entry if len(marks) > 1 else WITHDRAWN
-    add_mark(book, grade, criterion, entry, by, shown=marks[0].id)
-    return entry
+    restore_mark(book, grade, criterion, marks[1] if len(marks) > 1 else WITHDRAWN, by, shown=marks[0].id)
+    return marks[0]
+
+
+@contextmanager
+def _writing(book: Gradebook) -> Iterator[None]:
+    """Commit what is written inside, so that it survives a power cut."""
+    with book.input_errors():
+        book.connection.execute("PRAGMA synchronous = FULL")
+    with book.transaction():
+        yield
+
+
+def _seen(
+    book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, shown: int | None
+) -> Mark | None:
+    """Return the newest mark, or the newest second opinion of this grader for one; raises NewerMarkError if it was not shown."""
+    before = (
+        newest_second(book, grade, criterion, by) if entry.kind == "second" else newest_mark(book, grade.id, criterion)
+    )
+    if before is not None and shown is not None and before.id != shown:
+        raise NewerMarkError(before)
+    return before
+
+
+def insert_mark(
+    book: Gradebook, student: int, criterion: str, mark: Mark, author: str, result: int | None, at: str = ""
+) -> int:
+    """Add a row to the table of marks, without a transaction; return its id. Without a time it is made now."""
+    entry, name = mark.entry, storable(mark.by)
+    units = None if entry.points is None else int(entry.points * UNITS_PER_POINT)
+    at = at or datetime.now(UTC).isoformat(timespec="seconds")
+    row = (student, criterion, entry.kind, units, storable(entry.comment), storable(author), name, at, result)
+    added = book.connection.execute(f"INSERT INTO mark ({_NEW}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
+    return int(added.lastrowid or 0)
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
@@ -146,23 +179,33 @@ def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
     return next(iter(marks_of(book, student, criterion, 1)), None)
 
 
+def newest_second(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> Mark | None:
+    """Return the newest second opinion of a grader on a criterion of the student's newest submission."""
+    query = (
+        f"SELECT {MARK_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
+    )
+    row = book.first(f"{query} ORDER BY id DESC", grade.id, criterion, storable(by), grade.files.digest)
+    return mark_of_row(*row) if row is not None else None
+
+
 def marks_of(book: Gradebook, student: int, criterion: str, most: int) -> list[Mark]:
     """Return the newest marks of a student's criterion, the newest first, without second opinions."""
-    query = (
-        f"SELECT {_COLUMNS} FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
-    )
-    return [_mark(*row) for row in book.rows(query, student, criterion, most)]
+    query = f"SELECT {MARK_COLUMNS} FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
+    return [mark_of_row(*row) for row in book.rows(query, student, criterion, most)]
 
 
 def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
     """Return the marks of a student that count, by criterion; that of the whole submission is named TOTAL."""
-    query = f"SELECT criterion, {_COLUMNS} FROM current_mark WHERE student = ?"
-    return {criterion: _mark(*row) for criterion, *row in book.rows(query, student)}
+    query = f"SELECT criterion, {MARK_COLUMNS} FROM current_mark WHERE student = ?"
+    return {criterion: mark_of_row(*row) for criterion, *row in book.rows(query, student)}
 
 
-def _mark(identity: int, kind: str, units: int | None, by: str, comment: str, at: str) -> Mark:
+def mark_of_row(
+    identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None
+) -> Mark:
+    """Return a row of MARK_COLUMNS."""
     points = None if units is None else Decimal(units) / UNITS_PER_POINT
-    return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at)
+    return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at, result)
 
 
 def account() -> str:

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from grader.classroom.gradebook.agreement import Agreement, agreement
 from grader.classroom.gradebook.attention import Attention, attention
 from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.fixes import CommonFix, common_fixes
@@ -23,6 +24,7 @@ class ClassSummary(NamedTuple):
     attention: Attention
     identical: tuple[IdenticalWork, ...]
     evidence_only: int
+    agreement: Agreement
 
 
 def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
@@ -38,4 +40,5 @@ def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
         attention(grades),
         tuple(identical_work(book)),
         count_evidence_only(book, rubric),
+        agreement(book, rubric),
     )

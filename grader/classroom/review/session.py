@@ -15,10 +15,10 @@ from grader.classroom.gradebook.marks import (
     Entry,
     Mark,
     NewerMarkError,
-    account,
     add_mark,
     criterion_of,
     newest_mark,
+    restore_mark,
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
@@ -151,11 +151,10 @@ class ReviewSession:
             self.position = here - 1
             self.next()
             raise InputError(f"not undone: {_NOT_GRADED}")
-        entry, by = (given.before.entry, given.before.by) if given.before else (WITHDRAWN, self._by)
         try:
-            added = add_mark(
-                self._grades.book, item.grade, item.result.criterion.id, entry, by,
-                shown=self._own[given.position], author=self._by or account(),
+            added = restore_mark(
+                self._grades.book, item.grade, item.result.criterion.id, given.before or WITHDRAWN, self._by,
+                shown=self._own[given.position],
             )  # fmt: skip
         except NewerMarkError:
             self._forget(given.position)

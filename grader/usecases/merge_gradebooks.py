@@ -1,0 +1,73 @@
+"""Merge the marks of two gradebooks, and ask which of two different marks counts."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.histories import MergeItem, compare
+from grader.classroom.gradebook.merge import Choice, Conflict, Merged, conflict_of, copy_of, merge
+from grader.errors import InputError
+from grader.report.review import mark_text
+from grader.text import counted, printable, printable_path
+from grader.usecases import Terminal
+from grader.usecases.exit_codes import ExitCode
+
+_ANSWERS: dict[str, Choice | None] = {
+    "k": "first", "keep": "first", "t": "second", "take": "second", "s": None, "skip": None,
+}  # fmt: skip
+
+
+def merge_gradebooks(first: Path, second: Path, keep: Choice | None, terminal: Terminal) -> tuple[str, ExitCode]:
+    """Add the marks of the second gradebook to the first one; return what was merged and the exit code.
+
+    Conflicts are decided by `keep`, else on the terminal, before anything is written. Raises InputError.
+    """
+    if first.exists() and second.exists() and first.samefile(second):
+        raise InputError(f"{printable_path(first)} cannot be merged into itself: name two gradebooks")
+    with Gradebook(first) as book, copy_of(second) as other:
+        conflicts = [item for item in compare(book, other).items if item.is_conflict]
+        names = book.shown, other.shown
+        choices = {conflict_of(item): keep for item in conflicts} if keep else _asked(conflicts, names, terminal)
+        merged = merge(book, other, choices)
+    is_complete = not merged.conflicts and not merged.unmatched
+    return "".join(f"{line}\n" for line in _lines(merged, names)), ExitCode.PASSED if is_complete else ExitCode.FAILED
+
+
+def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Terminal) -> dict[Conflict, Choice]:
+    """Ask which mark counts in each conflict, until the end of the input."""
+    choices: dict[Conflict, Choice] = {}
+    prompt = f"k to keep the mark of {names[0]}, t to take that of {names[1]}, s to skip: "
+    for item in conflicts:
+        terminal.show("".join(f"{line}\n" for line in _conflict_lines(item, names)))
+        answer = terminal.ask(prompt)
+        while answer is not None and answer.strip().lower() not in _ANSWERS:
+            answer = terminal.ask(prompt)
+        if answer is None:
+            terminal.show("\n")
+            break
+        if choice := _ANSWERS[answer.strip().lower()]:
+            choices[conflict_of(item)] = choice
+    return choices
+
+
+def _lines(merged: Merged, names: tuple[str, str]) -> Iterator[str]:
+    """Yield what was merged, and what was not."""
+    if merged.entries:
+        yield f"{counted(merged.entries, 'entry', 'entries')} of {counted(merged.students, 'student')} merged into {names[0]}"
+    elif not merged.conflicts and not merged.unmatched:
+        yield f"nothing to merge: {names[0]} has all marks of {names[1]}"
+    if merged.conflicts:
+        yield f"not merged, because both gradebooks have new marks (--keep first or --keep second decides): {len(merged.conflicts)}"
+    for item in merged.conflicts:
+        yield from (f"  {line}" for line in _conflict_lines(item, names))
+    if merged.unmatched:
+        yield f"not merged, because {names[0]} has no such student: {len(merged.unmatched)}"
+    for student in merged.unmatched:
+        yield printable(f"  {student.key}: {counted(student.entries, 'entry', 'entries')}")
+
+
+def _conflict_lines(item: MergeItem, names: tuple[str, str]) -> Iterator[str]:
+    yield printable(f"{item.key}, {item.criterion}:")
+    for name, entry in zip(names, item.newest, strict=True):
+        if entry is not None:
+            yield f"  {name}: {mark_text(entry.mark)}"
