@@ -49,8 +49,8 @@ def report_data(report: Report) -> dict[str, Any]:
 
 
 def _result(result: Result) -> dict[str, Any]:
-    criterion, outcome, ruling = result.criterion, result.outcome, result.manual_mark
-    mark = {"points": exact(ruling.points), "by": ruling.by, "comment": ruling.comment} if ruling else None
+    criterion, outcome = result.criterion, result.outcome
+    is_failed = outcome.status == "failed" and not result.why_given
     return {
         "id": criterion.id,
         "part": criterion.part,
@@ -66,10 +66,22 @@ def _result(result: Result) -> dict[str, Any]:
         "because": result.because,
         "carried": result.carried or None,
         "location": location(outcome.location),
-        "feedback": criterion.feedback if outcome.status == "failed" and not result.carried else "",
+        "feedback": criterion.feedback if is_failed else "",
         "hints": list(map(_hint, result.hints)),
-        **({"mark": mark} if mark else {}),
+        **additions(result),
     }
+
+
+def additions(result: Result) -> dict[str, Any]:
+    """Return the keys that few criteria have: extra credit, an adjustment, a manual mark, a comment without points."""
+    mark, comment, adjustment = result.manual_mark, result.comment, result.criterion.adjustment
+    found = {
+        "bonus": True if result.criterion.bonus else None,
+        "adjustment": adjustment._asdict() if adjustment else None,
+        "mark": {"points": exact(mark.points), "by": mark.by, "comment": mark.comment} if mark else None,
+        "comment": comment._asdict() if comment else None,
+    }
+    return {key: value for key, value in found.items() if value is not None}
 
 
 def _hint(hint: Hint) -> dict[str, Any]:

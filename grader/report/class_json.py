@@ -5,6 +5,7 @@ from typing import Any
 from grader import __version__
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
@@ -12,8 +13,10 @@ from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
-def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int] | None) -> str:
-    """Return the statistics and all current grades; `run` counts what a batch has just done."""
+def render_class_json(
+    summary: ClassSummary, grades: Grades, run: dict[str, int] | None, comparison: Comparison | None = None
+) -> str:
+    """Return the statistics and all current grades; `run` counts what a batch has just done, `comparison` is of sections."""
     rubric, late = summary.rubric, summary.late
     return to_json(
         {
@@ -28,6 +31,7 @@ def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int]
                 for work in summary.identical
             ],
             "agreement": agreement_json(summary.agreement),
+            **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_a_look": summary.attention.total,
             "attention": [
                 {
@@ -112,4 +116,25 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {"criterion": failure.criterion.id, "message": failure.message, "count": failure.count}
             for failure in statistics.failures
         ],
+    }
+
+
+def _comparison(comparison: Comparison) -> dict[str, Any]:
+    """Return the comparison as plain data, shares rounded to 1e-6."""
+    return {
+        "by": comparison.by,
+        "groups": [
+            {
+                "name": section.name,
+                **{name: getattr(section, name) for name in ("students", "graded", "late")},
+                "late_points": exact(section.late_points),
+                "mean": rounded(section.mean),
+                "median": rounded(section.median),
+                "shares": {
+                    row.id: rounded(share) for row, share in zip(comparison.criteria, section.shares, strict=True)
+                },
+            }
+            for section in comparison.sections
+        ],
+        "differing": [comparison.criteria[position].id for position in comparison.differing],
     }

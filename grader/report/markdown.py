@@ -83,7 +83,7 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
         yield f"{item}\n\n{indent(text, '  ')}" if text else item
     for cause, some in alike(order.skipped, lambda result: result.because or ""):
         yield escaped(content.skipped_text(cause, some))
-    for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked)):
+    for title, results in (("Needs manual grading", order.pending), *order.remarks):
         if results:
             yield f"## {title}"
             yield from (_item(result, report, shown, answers=answers) for result in results)
@@ -108,7 +108,7 @@ def _passed(group: Group) -> str:
 
 def _head(report: Report) -> Iterator[str]:
     yield f"# {escaped(content.score_text(report))}: {escaped(printable(report.rubric.title))}"
-    yield from (escaped(line) for line in (content.summary(report), content.package_line(report)) if line)
+    yield from map(escaped, content.summaries(report))
     if report.pending:
         yield f"**{escaped(content.pending_line(report))}**"
     yield escaped(provenance(report))
@@ -118,7 +118,8 @@ def _head(report: Report) -> Iterator[str]:
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion = result.criterion
     details = result_details(result, report)
-    name = code(criterion.id) if details.expected else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
+    is_bare = bool(details.expected) or result.is_adjusted
+    name = code(criterion.id) if is_bare else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
     blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
     return "\n\n".join((f"- {_start(result)} {name}", *blocks))
 
@@ -129,7 +130,7 @@ def _start(result: Result) -> str:
 
 def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """Yield the text about a criterion, block by block, without feedback that is shown already."""
-    yield from map(escaped, details.sentences)
+    yield from map(escaped, details.words)
     if details.expected:
         yield escaped(details.expected)
     if details.location is not None:

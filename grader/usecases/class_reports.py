@@ -7,13 +7,15 @@ from datetime import datetime
 from itertools import islice
 from pathlib import Path
 
+from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError, RubricError
-from grader.grading.report import Report
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
@@ -60,6 +62,28 @@ def write_reports(
         names = report_names(opened)
     earlier = update_index(folder, names)
 
+    lost = render_reports(executor, book, folder, formats, due, names, show)
+    if Format.HTML in formats:
+        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
+    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
+    for key, why in lost.items():
+        warn(printable(f"no report for {key}: {why}"))
+    if earlier:
+        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
+        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
+
+
+def render_reports(
+    executor: Executor,
+    book: Path,
+    folder: Path,
+    formats: Sequence[Format],
+    due: datetime | None,
+    names: dict[str, str],
+    show: Callable[[Progress], None],
+) -> dict[str, str]:
+    """Write the reports of students with a result into a folder, by their file names; return who has none, and why."""
+
     def write(some: dict[str, str]) -> "Future[None]":
         return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
 
@@ -71,14 +95,7 @@ def write_reports(
         lost |= _lost(write, some, task)
         done += len(some)
         show(Progress(len(names), done))
-    if Format.HTML in formats:
-        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
-    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
-    for key, why in lost.items():
-        warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
+    return lost
 
 
 def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
@@ -114,11 +131,18 @@ def _write_some(
 
 
 def report_of(grades: Grades, grade: StudentGrade) -> Report:
-    """Return the report on a student's newest submission; the late penalty is a note of its own."""
-    report = grades.report(grade)
-    if not grade.late.reason:
-        return report
+    """Return the report on a student's newest submission; final mark, excuse, comment and late penalty are notes of their own.
+
+    Of a student who has submitted nothing, it has no points, and the notes.
+    """
+    report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason
     if grade.late.points:
         note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
-    return replace(report, notes=(*report.notes, note))
+    return replace(report, notes=(*report.notes, *remarks_of(grades, grade).notes, *([note] if note else [])))
+
+
+def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:
+    outcome = Outcome("skipped", "not graded, because nothing was submitted")
+    results = tuple(Result(criterion, outcome) for criterion in grades.criteria)
+    return Report(GradedSubmission(grade.student.key), grades.newest_rubric(), grades.parts, results)

@@ -72,7 +72,7 @@ class GradeResult(NamedTuple):
         from grader.report.content import undecided
 
         names = ", ".join(result.criterion.id for result in undecided(self.report))
-        if self.exit_code != ExitCode.FAILED or not names or self.report.counts("failed", "skipped"):
+        if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 

@@ -29,7 +29,7 @@ from grader.usecases import Warn
 from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
-from grader.usecases.export import grades_csv
+from grader.usecases.grades_csv import grades_csv
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_symlinks, save
 
 _MAX_LINES = 10

@@ -54,7 +54,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
         parse(line)
 
 
-@pytest.mark.parametrize("command", ["batch", "stats", "diff"])
+@pytest.mark.parametrize("command", ["batch", "stats", "diff", "export"])
 def test_recipes(command: str) -> None:
     """Commands for a class have a recipe for each situation, one sentence each."""
     text = run((command, "--help")).stdout.decode()

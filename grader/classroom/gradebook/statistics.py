@@ -11,7 +11,7 @@ from grader.classroom.gradebook.failures import grouped
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.patterns import Pattern, patterns_of, units_of
 from grader.classroom.gradebook.reasons import failure_counts, undecided_reasons
-from grader.classroom.gradebook.result import CARRIED, UNITS_PER_POINT
+from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
@@ -108,7 +108,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
     graded_letters = {(index, status) for pattern in patterns for index, status in enumerate(pattern.statuses)}
-    letters = f"pfs?!{CARRIED}"
+    letters = f"pfs?!{SETTLED}"
     criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in letters)]
     failures = grouped(failure_counts(book, rubric))[:_MAX_FAILURES]
     return ClassStatistics(
@@ -135,7 +135,8 @@ def _totals(patterns: Iterable[Pattern]) -> PointTotals:
     for pattern in patterns:
         earned += pattern.score * pattern.students
         pending += pattern.pending * pattern.students
-        lost += max(0, pattern.decided - pattern.score) * pattern.students  # a mark may exceed the maximum
+        without_bonus = pattern.score - pattern.bonus
+        lost += max(0, pattern.decided - without_bonus) * pattern.students  # a mark may exceed the maximum
     return PointTotals(_points(earned), _points(lost), _points(pending))
 
 
@@ -162,7 +163,7 @@ def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionSt
     variances = (count * xx - x * x) * (count * rr - r * r)
     correlation = (count * xr - x * r) / sqrt(variances) if variances else None
     share = x / (count * (units_of(criterion) or 1)) if count else None
-    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{CARRIED}fs?!")
+    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{SETTLED}fs?!")
     counts = count, passed, marked, carried, failed, skipped, pending, errored
     return CriterionStatistics(criterion, *counts, share, correlation)
 

@@ -69,7 +69,7 @@ def _summary(report: Report) -> dict[str, object]:
         "score": format_points(report.score),
         "maximum": format_points(report.max_score),
         "shares": _shares(report),
-        "summary": [*filter(None, (content.summary(report), content.package_line(report)))],
+        "summary": content.summaries(report),
         "pending": content.pending_line(report),
         "notes": content.notes(report),
         "next": command,
@@ -88,7 +88,7 @@ def _criteria(report: Report) -> dict[str, object]:
         "skipped": [content.skipped_text(cause, some) for cause, some in skipped],
         "sections": [
             (title, [card_of(result, report) for result in results])
-            for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked))
+            for title, results in (("Needs manual grading", order.pending), *order.remarks)
             if results
         ],
         "parts": [*_parts(report, cards)],
@@ -108,7 +108,7 @@ def _shares(report: Report) -> tuple[float, float]:
     """Return the percentages of the maximum that are earned, and that are earned or need manual grading."""
     whole = report.max_score or Decimal(1)
     earned, possible = (float(100 * points / whole) for points in (report.score, report.score + report.pending))
-    return round(earned, 2), round(possible, 2)
+    return min(100, round(earned, 2)), min(100, round(possible, 2))
 
 
 def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, list[Rows]]]:

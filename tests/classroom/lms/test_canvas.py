@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.filling import Conflict, Filled, RowNote
+from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
@@ -28,11 +28,10 @@ def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str =
     return "".join(row + end for row in (header, points, *rows) if row).encode()
 
 
-def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
-    required = ("lab6", "A wheeled base")
-    return fill_gradebook(
-        data, grades, out_of=Decimal(out_of), rubric_names=required, column=column, any_maximum=any_maximum
-    )
+def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", **more: Any) -> Filled:
+    names = ("lab6", "A wheeled base")
+    options = FillOptions(Decimal(out_of), names, column, shown="the gradebook", **more)
+    return fill_gradebook(data, grades, options)
 
 
 def lines(filled: Filled) -> list[str]:
