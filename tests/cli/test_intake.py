@@ -188,3 +188,23 @@ def test_the_submission_of_one_student_is_graded(tmp_path: Path, files: tuple[st
     write(tmp_path, "", files)
     done = grader("grade", tmp_path / "class", "--rubric", tmp_path / "small.toml", "--part", "robot")
     assert done.returncode == 0, done.stderr
+
+
+def test_who_is_marked(tmp_path: Path) -> None:
+    """`mark` finds the one student who fits; several are listed with their ids, and no mark is recorded."""
+    roster = "id,first name,last name,login\ns1,Jörg,Müller,jm1\ns2,Ann,Müller,am2\ns3,Ann,Cedar,ac3\n"
+    write(tmp_path, roster, ("jm1.urdf", "am2.urdf", "ac3.urdf"))
+    assert batch(tmp_path).returncode == 0
+
+    def mark(name: str) -> tuple[int, str]:
+        done = grader("mark", name, "essay", "1", "--gradebook", tmp_path / "book.db")
+        return done.returncode, (done.stdout or done.stderr).removeprefix("grader: ").partition("points")[0].strip()
+
+    for name in ("Jörg Müller", "Mu\u0308ller, Jörg", "jörg", "JM1", "s1"):
+        code, line = mark(name)
+        assert (code, line.partition(":")[0]) == (0, "s1"), name
+    several = "'s1' (Jörg Müller), 's2' (Ann Müller)"
+    assert mark("Müller") == (2, f"'Müller' is ambiguous: it may be {several}; use one of these ids")
+    assert mark("Mueller") == (2, f"there is no student 'Mueller' in the gradebook; did you mean one of {several}?")
+    assert mark("Ann")[0] == 2
+    assert [row["marks_by_hand"] for row in graded(tmp_path)["students"]] == [1, 0, 0]
