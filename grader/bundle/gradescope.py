@@ -1,14 +1,13 @@
 """The autograder zip for Gradescope: the grader, a rubric, and the scripts that install and run them there."""
 
-import io
 import json
 import re
 import tomllib
-import zipfile
 from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path, PurePosixPath
 
 from grader.errors import InputError
+from grader.files.zip_writing import zip_of
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, shipped_rubrics
 
@@ -19,8 +18,6 @@ DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent
 _EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")
 _RUBRIC = "rubric.toml"
-_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can contain
-_UNIX = 3
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
@@ -42,7 +39,7 @@ def autograder_zip(rubric: Rubric) -> bytes:
     if not rubric.is_shipped:
         files[_RUBRIC] = rubric.data
     files |= _reference(rubric, f"{_PACKAGE.name}/rubrics" if rubric.is_shipped else "")
-    return _zip_of(files)
+    return zip_of(files, _EXECUTABLES)
 
 
 def _reference(rubric: Rubric, folder: str) -> dict[str, bytes]:
@@ -68,21 +65,6 @@ def _reference(rubric: Rubric, folder: str) -> dict[str, bytes]:
         if not any(part.startswith(".") or part == "__pycache__" for part in path.relative_to(root).parts)
     )
     return {str(PurePosixPath(folder, *path.relative_to(root).parts)): path.read_bytes() for path in own}
-
-
-def _zip_of(files: dict[str, bytes]) -> bytes:
-    """Return a zip that depends on the files only.
-
-    It has no timestamps and a fixed order. It is not compressed, because zlib's output differs between its versions.
-    """
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        for path, data in sorted(files.items()):
-            entry = zipfile.ZipInfo(path, _ZIP_EPOCH)
-            entry.create_system = _UNIX  # else unzip ignores the permissions
-            entry.external_attr = (0o100755 if path in _EXECUTABLES else 0o100644) << 16
-            archive.writestr(entry, data)
-    return buffer.getvalue()
 
 
 def package_files() -> dict[str, bytes]:

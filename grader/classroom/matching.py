@@ -39,7 +39,6 @@ CERTAIN = Clue.WORD  # a match by this kind or a more reliable one is certain
 OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # for the name of a submission
 OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
 OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # for two lists of students
-TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # for what a person types, who can be asked to be more exact
 
 
 class Match(NamedTuple):
@@ -82,12 +81,6 @@ class People:
                 return Match(tuple(sorted(found - against)), clue, tuple(sorted(against)))
         return Match(())
 
-    def named(self, name: str) -> tuple[int, ...]:
-        """Return the positions of all people whom a typed id, key, login, address or full name may mean."""
-        claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
-        matches = (self.find({kind: claims.get(kind, ())}, (kind,)) for kind in TYPED)
-        return tuple(sorted({index for match in matches for index in match.people}))
-
 
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
     """Return the clues in a record: a row of a roster or LMS file, or a student of the gradebook."""
@@ -111,10 +104,10 @@ def claims_of(student: Student) -> Clues:
     """Return the clues in the name of a submission, or in what a person types: a word may be any kind of id."""
     words = {_composed(word) for word in (student.key, student.login, student.name if student.team else "")}
     lower = {plain_word(word) for word in words}
-    in_canvas = student.key.rpartition("_")[0] if student.canvas or student.maybe_canvas else ""
+    in_canvas = student.key.rpartition("_")[0] if student.readings else ""
     return _present(
         {
-            Clue.CANVAS: (student.canvas, *student.maybe_canvas),
+            Clue.CANVAS: (student.canvas, *(number for _, number in student.readings)),
             Clue.MOODLE: (student.moodle,),
             Clue.WORD: words,
             Clue.ANY_CASE: lower,

@@ -8,8 +8,8 @@ class Student:
     """A student or a team. `key` is unique in the gradebook; the other fields are empty where they are not known.
 
     `login`, `sis` (the university's id), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are the ids in rosters
-    and LMS files. `team` is the team folder of the submission, in the teams layout. `maybe_canvas` are numbers one of which is
-    Canvas' user id, where a file name can be read in several ways. The gradebook stores neither of these two.
+    and LMS files. `team` is the team folder of the submission, in the teams layout. `readings` are the names of a student or
+    group and the Canvas user ids that the name of a file in Canvas may mean. The gradebook stores neither of these two.
     """
 
     key: str
@@ -20,7 +20,7 @@ class Student:
     canvas: str = ""
     moodle: str = ""
     team: str = ""
-    maybe_canvas: tuple[str, ...] = ()
+    readings: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

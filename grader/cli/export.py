@@ -1,4 +1,4 @@
-"""grader export: the current grades, for a spreadsheet or an LMS."""
+"""grader export: the current grades, for a spreadsheet or an LMS, and feedback for an LMS."""
 
 from pathlib import Path
 from typing import Annotated, Literal, get_args
@@ -9,12 +9,15 @@ from grader.cli.options import DueOption, GradebookOption
 from grader.cli.output import warn
 from grader.usecases.writing import write_stdout
 
-Target = Literal["csv", "canvas", "moodle", "json", "html"]
+Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
+_ONLY = "Leave out the columns of other assignments."
+_EXCEL = "Write CSV that Excel opens with a double click."
+_FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
 def export(
@@ -28,30 +31,50 @@ def export(
     feedback_column: Annotated[str, typer.Option(metavar="TITLE", help="The feedback's column in Moodle.")] = "",
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
+    only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,
+    excel: Annotated[bool, typer.Option("--excel", help=_EXCEL)] = False,
+    feedback: Annotated[Path | None, typer.Option("--feedback", "--comments", metavar="ZIP", help=_FEEDBACK)] = None,
+    feedback_format: Annotated[
+        Literal["markdown", "html"], typer.Option(metavar="markdown|html", help="The format of these reports.")
+    ] = "markdown",
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
-    A grade is the sum of automatic points and manual marks, minus the late penalty. For Canvas and Moodle, give the file that the LMS
-    exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import
-    overwrites no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row.
+    A grade is the sum of automatic points and manual marks, minus the late penalty, or the final mark. For Canvas, Moodle,
+    Blackboard and Brightspace, give the file that the LMS exported: only the cells of the grade (and Moodle's feedback) change. Rows
+    without a grade are omitted, so that the import overwrites no other grade. The maximum in the file must be the rubric's. Exits 1
+    if --strict finds an unmatched row.
 
     With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
 
     Examples:
 
-      grader export csv --gradebook lab6.db --output grades.csv
+      grader export csv --gradebook lab6.db --excel --output grades.csv
 
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
 
+      grader export canvas --gradebook lab6.db --comments feedback.zip
+
+      grader export moodle --gradebook lab6.db --feedback feedback.zip
+
       grader export html --gradebook lab6.db --output pages
+
+    Recipes:
+
+      Publish in Canvas: --into and --only, then import the file. Upload the zip of --comments with "Upload Submissions".
+
+      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple feedback files".
+
+      A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
+
+      Grades that still need manual grading are left out: grade them with `grader review`, or pass --pending-as-zero.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.export import ExportRequest
     from grader.usecases.export import export as export_grades
 
-    request = ExportRequest(
-        target, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
-    )
+    lms = (into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum)
+    request = ExportRequest(target, gradebook, *lms, only, excel, feedback, feedback_format)
     data, code = export_grades(request, progress_display, warn)
     write_stdout(data)
     return code

@@ -43,6 +43,7 @@ def progress_display(work: str) -> Iterator[Callable[["Progress"], None]]:
                 rate=rate,
                 found=", ".join(_faults(progress)),
                 visible=True,
+                refresh=not progress.done,  # a short pass would end before its start is drawn
             )
 
         yield move

@@ -1,12 +1,19 @@
 """grader stats: statistics of a class."""
 
+from typing import Annotated, Literal
+
+import typer
+
 from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
 from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
 
+_BY = "Compare the sections, or the students of each marker."
+
 
 def stats(
     gradebook: GradebookOption,
+    by: Annotated[Literal["section", "marker"] | None, typer.Option(metavar="section|marker", help=_BY)] = None,
     due: DueOption = None,
     verbose: ClassVerboseOption = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
@@ -17,22 +24,28 @@ def stats(
     a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
     rest of the grade. An edit is shown with the number of students who need it: it was tried on one of their robots.
 
+    With --by section, only the sections are shown side by side: students, grades, lateness, and the criteria that differ most. The
+    roster gives each student a section and a marker. JSON has both.
+
     Examples:
 
       grader stats --gradebook lab6.db
 
       grader stats --gradebook lab6.db --format json
 
+      grader stats --gradebook lab6.db --by section
+
     Recipes:
 
       Who still needs attention, by name: --verbose.
 
-      A criterion that most students fail: a low share, and the common mistakes below. If the rubric is wrong, see "Regrade after a
-      rubric fix" in docs/grade-a-class.md.
+      A criterion that most students fail: a low share, and the common mistakes.
+
+      A criterion that is wrong: "Regrade after a rubric fix" in docs/grade-a-class.md.
 
       The next lecture: the edits that would fix the most.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics
 
-    return class_statistics(gradebook, due, output_format, screen(), progress_display, warn, verbose=verbose)
+    return class_statistics(gradebook, by, due, output_format, screen(), progress_display, warn, verbose=verbose)

@@ -111,18 +111,27 @@ def _of_pdf(image: Any) -> bytes:
     """Return a JPEG as it is in the PDF, and plain samples of grey or RGB as a PNG; empty for other kinds."""
     filters = image.get("/Filter", [])
     names = [str(name) for name in (filters if isinstance(filters, list) else [filters])]
+    colours: Any = image["/ColorSpace"] if "/ColorSpace" in image else None  # noqa: SIM401  `get` follows no reference
+    is_indexed = isinstance(colours, list) and colours[0] == "/Indexed"
+    if _is_remapped(image, 255 if is_indexed else 1):
+        return b""
     if names == ["/DCTDecode"]:
         return bytes(image._data)  # noqa: SLF001  `get_data` would decode it
     if image["/BitsPerComponent"] != 8 or not _PLAIN.issuperset(names):
         return b""
-    colours = image["/ColorSpace"]
-    if isinstance(colours, list) and colours[0] == "/Indexed":
+    if is_indexed:
         table = colours[3].get_object()
         palette = table.get_data() if hasattr(table, "get_data") else getattr(table, "original_bytes", b"")
         kind = _PALETTE if _colour_type(colours[1].get_object()) == _RGB and palette else None
     else:
         palette, kind = b"", _colour_type(colours)
     return _png(image["/Width"], image["/Height"], kind, palette, image.get_data()) if kind is not None else b""
+
+
+def _is_remapped(image: Any, highest: int) -> bool:
+    """Return whether a PDF maps the samples of an image to other values, such as inverted ones (ISO 32000-1, 8.9.5.2)."""
+    decode = list(image["/Decode"]) if "/Decode" in image else []
+    return decode != [0, highest] * (len(decode) // 2)
 
 
 def _colour_type(colours: Any) -> int | None:

@@ -9,9 +9,8 @@ from grader.files.tree import File
 
 MAX_BYTES = 20 * 1024 * 1024
 MAX_PIXELS = 100_000_000  # a browser needs 4 bytes of memory for each
-_DIB_SIZES = frozenset(
-    {12, 40, 52, 56, 64, 108, 124}
-)  # of the second header of a BMP file: the signature "BM" alone is too short
+# Sizes of the second header of a BMP file. The signature "BM" alone could also begin a text.
+_DIB_SIZES = frozenset({12, 40, 52, 56, 64, 108, 124})
 
 
 class ImageType(NamedTuple):
@@ -38,7 +37,11 @@ _SIGNATURES = (
 )
 _NOT_SHOWN = (
     (
-        re.compile(rb"\s*(?:<\?xml.*?)?(?:<!.*?>\s*)*<svg[\s>]", re.DOTALL | re.IGNORECASE),
+        # Each alternative begins or goes on in a way of its own: hostile bytes cannot make the search exponential.
+        re.compile(
+            rb"(?:\s|<\?[^>]*>|<!--(?:(?!-->).)*-->|<!(?!--)[^>\[]*(?:\[[^\]]*\]\s*)?>)*<svg[\s>]",
+            re.DOTALL | re.IGNORECASE,
+        ),
         "SVG, which can contain scripts",
     ),
     (re.compile(rb"\s*<(?:!doctype html|html|head|body|script)", re.IGNORECASE), "HTML, which can contain scripts"),

@@ -7,7 +7,7 @@ from itertools import combinations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from grader.drawing.views import VIEWER
+from grader.drawing.views import AXES, VIEWER
 from grader.robot.model import Box, Cylinder
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, cross, unit
@@ -16,7 +16,6 @@ PARALLEL = 1e-9
 _SHRUNK = 1e-4  # metres: an edge less deep below a surface counts as on it, for example that of a wheel beside its base
 _SHARE = 0.01  # of the size of a shape that is smaller
 _NOTHING = (inf, -inf)
-_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 class Cover(NamedTuple):
@@ -62,14 +61,14 @@ class Cover(NamedTuple):
         They are the flat faces, and the planes through the outline that are parallel to the direction to the viewer.
         """
         v = self.to_viewer
-        found = [(_AXES[axis], half) for axis, half in self.halves]
+        found = [(AXES[axis], half) for axis, half in self.halves]
         for (i, half), (j, other) in combinations(self.halves, 2):
             if abs(v[i]) > PARALLEL and abs(v[j]) > PARALLEL:
-                a, b = _AXES[i], _AXES[j]
+                a, b = AXES[i], AXES[j]
                 normal = a[0] / v[i] - b[0] / v[j], a[1] / v[i] - b[1] / v[j], a[2] / v[i] - b[2] / v[j]
                 found.append((normal, half / abs(v[i]) + other / abs(v[j])))
         if self.round_axes:
-            across = unit(cross(v, _AXES[2])) or _AXES[0]
+            across = unit(cross(v, AXES[2])) or AXES[0]
             found += [(across, self.radius), (cross(v, across), self.radius)]
         return found
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 from grader.drawing.cover import Cover
 from grader.drawing.curves import Curve, Extents, outline
 from grader.drawing.scene import Body
+from grader.drawing.views import AXES
 from grader.robot.separation import separation
 from grader.robot.shapes import extent
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import Transform
 
 MAX_PAIRS = 600  # shapes that overlap in a view: more are ordered by their depth, and hide nothing
-_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _SAME = 1e-6  # metres
 _MAJORITY = 3  # places at which one body is in front of the other, more than the other way round
 _INSIDE = (0.95, 0.5)  # of the way from the centre of a shape to its outline
@@ -30,7 +30,7 @@ class Seen(NamedTuple):
     @classmethod
     def of(cls, body: Body, pose: Transform) -> "Seen":
         """Return a body in a view with T_view_shape."""
-        extents = tuple(extent(body.shape, pose, axis) for axis in _AXES)
+        extents = tuple(extent(body.shape, pose, axis) for axis in AXES)
         return cls(body, pose, outline(body.shape, pose), extents, Cover.of(body.shape, pose))
 
     def overlaps(self, other: Extents) -> bool:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
-from grader.drawing.scene import Body, Scene, scene_of
+from grader.drawing.scene import Body, Scene, is_drawable, scene_of
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.hints.targets import selected
@@ -21,16 +21,15 @@ from grader.robot.selectors import texts_in
 from grader.robot.transforms import Vector, minus
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
-_SHAPES = {  # checks of the size and place of what a link shows, and
+# Checks of the size and place of a link's visuals: a failure shows the reference's outlines.
+_SHAPES = {
     "shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "centre_at", "bottom_at_height", "bottoms_at_height", "stands_on",
     "clear_of", "turns_about_itself", "rolls_forward",
 }  # fmt: skip
-_PLACES = {
-    "frame_at",
-    "axis_along",
-    "under_the_base",
-}  # of the frame of a link: outlines and frames show what these expect
-_FRAMES = ("relative_to", "base", "on", "of", "parent")  # and in whose frame
+# Checks of a link's frame: a failure shows the reference's frame as well.
+_PLACES = {"frame_at", "axis_along", "under_the_base"}
+# The arguments that name the frame of a measurement.
+_FRAMES = ("relative_to", "base", "on", "of", "parent")
 _SAME = 0.001  # metres: shapes and frames that differ by less look equal
 _TURNED = 0.02  # radians: the same for frames
 
@@ -60,6 +59,11 @@ class Picture:
     outlines: tuple[Body, ...]
     frames: tuple[str, ...]
     callouts: tuple[Callout, ...]
+
+
+def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | None:
+    """Return the picture of a robot that is not graded, in the frame of one of its links; None without either."""
+    return Picture(scene_of(robot, frame), None, (), (), ()) if robot is not None and frame is not None else None
 
 
 def picture_of(report: Report) -> Picture | None:
@@ -191,12 +195,13 @@ def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
 
 
 def _point(scene: Scene | None, link: str) -> Vector | None:
-    """Return the centre of the link's main visual, else the origin of its frame; None if it has no pose."""
+    """Return the centre of the link's main visual if it can be drawn, else the origin of its frame; None if it has no pose."""
     if scene is None or link not in scene.poses:
         return None
     pose = scene.poses[link]
     if not any(body.link == link for body in scene.bodies):
         return pose.translation
     with suppress(MissingElement, NotDecided):
-        return placed_by(pose, main_visual(scene.robot, link).origin).translation
+        centre = placed_by(pose, main_visual(scene.robot, link).origin).translation
+        return centre if is_drawable(centre) else pose.translation
     return pose.translation

@@ -27,7 +27,10 @@ _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
 class Body(NamedTuple):
-    """A visible shape of a link: its pose in the link's frame in metres, and its colour. Sizes are not negative."""
+    """A visible shape of a link: its pose in the link's frame in metres, and its colour.
+
+    Sizes are not negative, and the channels of the colour are from 0 to 1.
+    """
 
     link: str
     shape: Shape
@@ -36,7 +39,7 @@ class Body(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre, the joint's unit axis, and the unit direction in which it drives at a positive turn.
+    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive turn.
 
     `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it turns.
     """
@@ -44,7 +47,6 @@ class Wheel(NamedTuple):
     link: str
     joint: str
     centre: Vector
-    axis: Vector
     travel: Vector | None
     is_free: bool
 
@@ -103,7 +105,7 @@ def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict
     for link in robot.robot.links:
         try:
             pose = robot.pose(link.name, relative_to=frame)
-            reason = "" if _is_drawable(pose.translation) else "it is too far away"
+            reason = "" if is_drawable(pose.translation) else "it is too far away"
         except _NOT_KNOWN as error:
             reason = str(error)
         if not reason:
@@ -145,12 +147,19 @@ def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
     pose = placed_by(Transform(), visual.origin)
-    if is_empty(shape) or not _is_drawable(sizes) or not _is_drawable(pose.translation):
+    if is_empty(shape) or not is_drawable(sizes) or not is_drawable(pose.translation):
         return None
-    return Body(link, drawn, pose, visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL)
+    return Body(link, drawn, pose, _clamped(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
 
 
-def _is_drawable(values: Vector) -> bool:
+def _clamped(rgba: Rgba) -> Rgba:
+    """Return a colour with channels from 0 to 1; one that is no finite number is 0."""
+    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
+    return red, green, blue, alpha
+
+
+def is_drawable(values: Vector) -> bool:
+    """Return whether a size or place in metres is a number that can be drawn."""
     return all(isfinite(value) and abs(value) <= _MAX_COORDINATE for value in values)
 
 
@@ -186,10 +195,9 @@ def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
         if link not in scene.poses:
             return
         centre = placed_by(scene.poses[link], main_visual(robot, link).origin).translation
-        axis = robot.pose(joint.child, relative_to=frame).rotate(robot.axis(joint))
         travel, _ = travel_of(robot, link, joint, frame, _UP)
     except _NOT_KNOWN:
         return
-    if _is_drawable(centre):
+    if is_drawable(centre):
         is_free = joint.type == "continuous" and joint.mimic is None
-        yield Wheel(link, joint.name, centre, axis, travel, is_free)
+        yield Wheel(link, joint.name, centre, travel, is_free)

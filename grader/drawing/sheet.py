@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene
-from grader.drawing.views import FRONT, SIDE, TOP, View
+from grader.drawing.views import AXES, FRONT, SIDE, TOP, View
 from grader.robot.shapes import extent
 from grader.robot.transforms import Vector
 
@@ -26,7 +26,6 @@ _SMALLEST = 0.02  # metres
 _MAX_FRAMES = 12
 _MAX_FRAMES_ALONE = 60  # where no shape is shown
 _FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
-_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
 
 
@@ -134,7 +133,7 @@ def _extremes(picture: Picture) -> Iterator[Vector]:
 def _corners(scene: Scene, bodies: Iterable[Body]) -> Iterator[Vector]:
     """Yield the least and the largest coordinates of each body."""
     for body in bodies:
-        (a, b), (c, d), (e, f) = (extent(body.shape, scene.pose(body), axis) for axis in _AXES)
+        (a, b), (c, d), (e, f) = (extent(body.shape, scene.pose(body), axis) for axis in AXES)
         yield from ((a, c, e), (b, d, f))
 
 

@@ -22,6 +22,11 @@ class Adjustment(NamedTuple):
     action: str
     reason: str
 
+    @property
+    def message(self) -> str:
+        """What is adjusted, and why."""
+        return f"{'Points given to everybody' if self.action == 'full' else 'Not counted'}: {self.reason}"
+
 
 @dataclass(frozen=True, slots=True)
 class Criterion:

@@ -100,9 +100,8 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion) if criterion.requires or self._subjects.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
-        is_lost = result.outcome.status in ("failed", "skipped")
         self.results[criterion.id] = (
-            self._carried(result, criterion.carried) if criterion.carried and is_lost else result
+            self._carried(result, criterion.carried) if criterion.carried and result.is_lost else result
         )
 
     def _cause(self, criterion: Criterion) -> str | None:
@@ -186,7 +185,9 @@ class _Grading:
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
-        first = self.missed.setdefault((missing.kind, missing.name), criterion.id)
+        own = criterion.id  # the mistake of an adjusted criterion does not count, so it excuses no other one
+        key = missing.kind, missing.name
+        first = self.missed.setdefault(key, own) if criterion.adjustment is None else own
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None

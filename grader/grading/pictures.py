@@ -81,7 +81,7 @@ def _spans(document: Document, result: Result, documents: DocumentCollection) ->
     criterion, outcome = result.criterion, result.outcome
     if isinstance(outcome.measured, str) and outcome.location is not None:
         start = outcome.location.line - 1
-        return [(start, start + len(outcome.measured.splitlines()))]
+        return [(start, start + len(outcome.measured.split("\n")))]
     heads: list[tuple[Document, Heading]] = []
     if _is_evidence(result):
         heads = headed(documents, criterion.arguments["names"])

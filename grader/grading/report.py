@@ -88,25 +88,27 @@ class Result(NamedTuple):
 
     @property
     def why_given(self) -> str:
-        """Why a criterion that did not pass costs no points, as a sentence; empty if it does."""
+        """Why the outcome does not decide the points: the adjustment, or an error that is carried forward; empty if it does."""
         if self.manual_mark is not None:
             return ""
-        adjustment = self.criterion.adjustment
-        if adjustment is not None and self.outcome.status != "passed":
-            return f"{'Points given' if self.criterion.is_given else 'Not counted'}: {adjustment.reason}"
-        return f"Points given: this mistake is already counted in {self.carried}." if self.carried else ""
+        if self.criterion.adjustment is not None:
+            return self.criterion.adjustment.message
+        return f"Points given: this fails only because of {self.carried}." if self.carried else ""
+
+    @property
+    def is_adjusted(self) -> bool:
+        """Return whether the rubric decides the points for everybody: the outcome and manual marks do not count."""
+        return self.criterion.adjustment is not None
 
     @property
     def is_lost(self) -> bool:
         """Return whether the criterion has no points because of a mistake."""
-        is_adjusted = self.criterion.adjustment is not None
-        return self.outcome.status in ("failed", "skipped") and not (self.carried or is_adjusted)
+        return self.outcome.status in ("failed", "skipped") and not (self.carried or self.is_adjusted)
 
     @property
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
-        is_adjusted = self.criterion.adjustment is not None
-        return self.outcome.status == "pending" and self.manual_mark is None and not is_adjusted
+        return self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
 
 
 class Exhibits(NamedTuple):
@@ -202,6 +204,12 @@ class Report:
         return _sum(result.points for result in self.results)
 
     @property
+    def unearned(self) -> tuple[Result, ...]:
+        """The criteria that did not pass and count, without extra credit and what needs manual grading."""
+        counting = (result for result in self.results if not (result.is_adjusted or result.criterion.bonus))
+        return tuple(result for result in counting if result.outcome.status not in ("passed", "pending"))
+
+    @property
     def has_failures(self) -> bool:
         """Return whether a criterion has no points because of a mistake."""
         return any(result.is_lost for result in self.results)
@@ -215,6 +223,17 @@ class Report:
     def pending(self) -> Decimal:
         """The points that still need manual grading."""
         return _sum(result.criterion.points for result in self.results if result.is_open)
+
+    @property
+    def bonus(self) -> Decimal:
+        """The points of extra credit that were earned: they are part of the score."""
+        return _sum(result.points for result in self.results if result.criterion.bonus)
+
+    @property
+    def fault(self) -> str:
+        """The message of the first criterion that counts on which a check or the grader failed; empty if there is none."""
+        errored = (one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted)
+        return next((one.outcome.message for one in errored), "")
 
     def counts(self, *statuses: str) -> int:
         """Return the number of criteria with one of these statuses."""

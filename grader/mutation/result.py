@@ -78,14 +78,13 @@ class RubricTest(NamedTuple):
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """The criteria that the reference does not pass, without those that need manual grading."""
-        results = self.reference.results
-        return tuple(found.criterion.id for found in results if found.outcome.status not in ("passed", "pending"))
+        """The criteria that the reference does not pass, without extra credit and those that need manual grading."""
+        return tuple(found.criterion.id for found in self.reference.unearned)
 
     @property
     def is_faulty(self) -> bool:
         """Return whether a check failed to give an outcome, on the reference or a mutant."""
-        return bool(self.mutants.faults) or self.reference.counts("errored") > 0
+        return bool(self.mutants.faults) or self.reference.fault != ""
 
     @property
     def is_sound(self) -> bool:

@@ -123,7 +123,7 @@ def _check_names(rubric: Rubric, samples: list[Sample]) -> None:
 
 
 def differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
-    """Yield what differs from the expected report: a criterion, or `verdict`, and a message."""
+    """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`, and a message."""
     try:
         submission = sample.open(rubric)
     except InputError as error:
@@ -138,7 +138,7 @@ def differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
 
 def _differing(sample: Sample, report: Report) -> Iterator[tuple[str, str]]:
     graded = {result.criterion.id: result for result in report.results}
-    for criterion in report.rubric.criteria:
+    for criterion in (row for row in report.rubric.criteria if row.adjustment is None):
         result, expected = graded.get(criterion.id), sample.expected(criterion.id)
         actual = _actual(result) if result is not None else "is not graded"
         if actual != expected and (result is not None or expected != "passes"):

@@ -20,11 +20,12 @@ _OF_ROBOT = (".urdf", ".xacro")
 
 
 class Trial:
-    """The reference of a rubric, and what its criteria say of changed copies. Criteria of manual checks do not count."""
+    """The reference of a rubric, and what its criteria say of changed copies. Manual checks and adjusted criteria do not count."""
 
     def __init__(self, report: Report, reference: Submission) -> None:
         self.rubric, self.reference = report.rubric, reference
-        own = (found for found in report.results if found.criterion.check.function not in MANUAL_CHECKS)
+        counting = (found for found in report.results if not found.is_adjusted)
+        own = (found for found in counting if found.criterion.check.function not in MANUAL_CHECKS)
         self.expected: Mapping[str, Result] = {found.criterion.id: found for found in own}
         self.of_robot = {name for name, found in self.expected.items() if found.criterion.check.subject != "package"}
 

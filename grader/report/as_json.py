@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
+from grader.grading.criterion import Criterion
 from grader.grading.report import Hint, Report, Result
 from grader.report.json_data import edit, exact, location, problem, rounded, to_json
 
@@ -49,8 +50,8 @@ def report_data(report: Report) -> dict[str, Any]:
 
 
 def _result(result: Result) -> dict[str, Any]:
-    criterion, outcome, ruling = result.criterion, result.outcome, result.manual_mark
-    mark = {"points": exact(ruling.points), "by": ruling.by, "comment": ruling.comment} if ruling else None
+    criterion, outcome = result.criterion, result.outcome
+    is_failed = outcome.status == "failed" and not result.why_given
     return {
         "id": criterion.id,
         "part": criterion.part,
@@ -66,9 +67,27 @@ def _result(result: Result) -> dict[str, Any]:
         "because": result.because,
         "carried": result.carried or None,
         "location": location(outcome.location),
-        "feedback": criterion.feedback if outcome.status == "failed" and not result.carried else "",
+        "feedback": criterion.feedback if is_failed else "",
         "hints": list(map(_hint, result.hints)),
-        **({"mark": mark} if mark else {}),
+        **additions(result),
+    }
+
+
+def additions(result: Result) -> dict[str, Any]:
+    """Return the keys that few criteria have: extra credit, an adjustment, a manual mark, a comment without points."""
+    mark, comment = result.manual_mark, result.comment
+    return {
+        **kinds(result.criterion),
+        **({"mark": {"points": exact(mark.points), "by": mark.by, "comment": mark.comment}} if mark else {}),
+        **({"comment": comment._asdict()} if comment else {}),
+    }
+
+
+def kinds(criterion: Criterion) -> dict[str, Any]:
+    """Return the keys that few criteria of a rubric have: extra credit, an adjustment."""
+    return {
+        **({"bonus": True} if criterion.bonus else {}),
+        **({"adjustment": criterion.adjustment._asdict()} if criterion.adjustment is not None else {}),
     }
 
 

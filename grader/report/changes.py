@@ -1,32 +1,63 @@
 """The changes between two runs or gradebooks, on a terminal and as JSON."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from decimal import Decimal
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.gradebook.changes import Change, PointsChange
 from grader.classroom.gradebook.gradebook import Run
+from grader.grading.criterion import Adjustment
+from grader.grading.rubric_changes import RubricChange
 from grader.report.console import wrapped
-from grader.report.json_data import exact, to_json
-from grader.text import enumerated, format_points, printable, signed_points
+from grader.report.json_data import exact, rounded, to_json
+from grader.report.rubrics import toml_text
+from grader.text import counted, enumerated, format_points, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12
+K = TypeVar("K", bound=Hashable)
+Steps = tuple[PointsChange, ...]
 
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
-    """Print the two runs, whose grade changed, by how much, in which criteria, and why."""
+    """Print the two runs, whose grade changed, by how much, in which criteria, and why: students with the same reason together."""
     before, after = (f"run {run.id} of {run.started}" for run in runs)
     wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
         wrapped(console, Text("nothing changed"), 0)
+    for (reason, *details), found in _groups(changes, _reason):
+        console.print()
+        wrapped(console, Text(printable(f"{reason}: {counted(len(found), 'student')}"), style="bold"), 0)
+        for line in details:
+            wrapped(console, Text(printable(line)), 2)
+        for steps, some in _groups(found, lambda change: change.steps):
+            _show_students(steps, some, console)
+
+
+def _reason(change: Change) -> tuple[str, ...]:
+    """Return why a grade changed, and a line for each change of the rubric that concerns it."""
+    return "; ".join(change.why) or "unknown reason: please report it", *map(_rubric_line, change.rubric)
+
+
+def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple[K, list[Change]]]:
+    """Return the changes with the same key together, the largest group first, else in the order of the first students."""
+    found: dict[K, list[Change]] = {}
     for change in changes:
-        wrapped(console, Text(printable(f"{change.key}: {_score(change)}"), style="bold"), 0)
-        wrapped(console, Text(printable("; ".join(change.why) or "unknown reason: please report it")), 2)
-        for line in _lines(change.steps):
-            wrapped(console, Text(printable(line)), 4)
+        found.setdefault(key(change), []).append(change)
+    return sorted(found.items(), key=lambda item: -len(item[1]))
+
+
+def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
+    """Print students with the same changes: of one first the name, of several first the changes."""
+    lines = [Text(printable(line)) for line in _lines(steps)]
+    students = [Text(printable(f"{_who(change)}: {_total(change)}"), style="bold") for change in changes]
+    first, then = (students, lines) if len(changes) == 1 or not steps else (lines, students)
+    for text in first:
+        wrapped(console, text, 2)
+    for text in then:
+        wrapped(console, text, 4)
 
 
 def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
@@ -34,12 +65,17 @@ def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str
     listed = [
         {
             "id": change.key,
+            "name": change.name,
             "before": exact(change.before),
             "after": exact(change.after),
             "because": list(change.why),
             "criteria": [
                 {"id": step.criterion, "before": exact(step.before), "after": exact(step.after)}
                 for step in change.steps
+            ],
+            "rubric": [
+                {"id": row.criterion, "key": row.key, "before": _plain(row.before), "after": _plain(row.after)}
+                for row in change.rubric
             ],
         }
         for change in changes
@@ -52,10 +88,51 @@ def _run(run: Run) -> dict[str, Any]:
     return {"run": run.id, "started": run.started, "grader": {"version": run.version}, "rubric": {"sha256": run.rubric}}
 
 
-def _score(change: Change) -> str:
-    if change.steps or change.before is None or change.after is None:
+def _plain(value: Any) -> Any:
+    """Return a value of a rubric as JSON has it."""
+    match value:
+        case Decimal():
+            return exact(value)
+        case Adjustment():
+            return value._asdict()
+        case Mapping():
+            return {key: _plain(item) for key, item in value.items()}
+        case tuple() | list():
+            return [_plain(item) for item in value]
+        case None | bool() | int() | float() | str():
+            return rounded(value)
+    return str(value)
+
+
+def _rubric_line(change: RubricChange) -> str:
+    """Return what changed in the rubric: box: points 2.5 to 3."""
+    name, key, before, after = change
+    about = f"{name}: " if name else "rubric: "
+    match key:
+        case "criterion":
+            return about + ("added" if before is None else "removed")
+        case "adjust":
+            return about + (after.message if isinstance(after, Adjustment) else "no longer adjusted")
+        case "bonus":
+            return about + ("now extra credit" if after else "no longer extra credit")
+    return f"{about}{key} {_value(before)} to {_value(after)}"
+
+
+def _value(value: object) -> str:
+    if isinstance(value, Decimal):
+        return format_points(value)
+    return "none" if value is None else toml_text(value)
+
+
+def _who(change: Change) -> str:
+    return f"{change.name} ({change.key})" if change.name not in ("", change.key) else change.key
+
+
+def _total(change: Change) -> str:
+    """Return the totals before and after."""
+    if change.before != change.after or change.before is None:
         return _span(change.before, change.after)
-    return f"{format_points(change.after)} as before, only the status changed"
+    return f"{format_points(change.before)} as before"
 
 
 def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:

@@ -5,16 +5,20 @@ from typing import Any
 from grader import __version__
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.as_json import kinds
 from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
-def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int] | None) -> str:
-    """Return the statistics and all current grades; `run` counts what a batch has just done."""
-    rubric = summary.rubric
+def render_class_json(
+    summary: ClassSummary, grades: Grades, run: dict[str, int] | None, comparison: Comparison | None = None
+) -> str:
+    """Return the statistics and all current grades; `run` counts what a batch has just done, `comparison` is of sections."""
+    rubric, late = summary.rubric, summary.late
     return to_json(
         {
             "schema": "grader/class/v1",
@@ -28,6 +32,7 @@ def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int]
                 for work in summary.identical
             ],
             "agreement": agreement_json(summary.agreement),
+            **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_a_look": summary.attention.total,
             "attention": [
                 {
@@ -37,6 +42,10 @@ def render_class_json(summary: ClassSummary, grades: Grades, run: dict[str, int]
                 for group in summary.attention.groups
             ],
             "evidence_without_urdf": summary.evidence_only,
+            "late": {
+                "count": late.students,
+                **{name: exact(getattr(late, name)) for name in ("lost", "least", "most")},
+            },
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )
@@ -55,7 +64,9 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "max_score": exact(grade.out_of) if has_result else None,
         "pending": exact(grade.pending) if has_result else None,
         "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
-        "total": exact(grade.total) if has_result else None,
+        "total": exact(grade.total) if has_result or grade.final is not None else None,
+        "final_mark": exact(grade.final),
+        "is_excused": grade.is_excused,
         "is_final": not grade.why_not_final,
         "carried": carried,
         "marks_by_hand": grade.marks,
@@ -81,6 +92,8 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
     return {
         "counts": dict(sorted(statistics.verdicts.items())),
         "max_score": exact(statistics.out_of),
+        "final_marks": statistics.final,
+        "excused": statistics.excused,
         "graded": statistics.graded,
         "pending": statistics.pending,
         "undecided": statistics.undecided,
@@ -96,6 +109,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
+                **kinds(row.criterion),
                 "passed": row.passed,
                 "marked_by_hand": row.marked,
                 **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},
@@ -108,4 +122,25 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {"criterion": failure.criterion.id, "message": failure.message, "count": failure.count}
             for failure in statistics.failures
         ],
+    }
+
+
+def _comparison(comparison: Comparison) -> dict[str, Any]:
+    """Return the comparison as plain data, shares rounded to 1e-6."""
+    return {
+        "by": comparison.by,
+        "groups": [
+            {
+                "name": section.name,
+                **{name: getattr(section, name) for name in ("students", "graded", "late")},
+                "late_points": exact(section.late_points),
+                "mean": rounded(section.mean),
+                "median": rounded(section.median),
+                "shares": {
+                    row.id: rounded(share) for row, share in zip(comparison.criteria, section.shares, strict=True)
+                },
+            }
+            for section in comparison.sections
+        ],
+        "differing": [comparison.criteria[position].id for position in comparison.differing],
     }

@@ -1,16 +1,18 @@
 """A report as Classroom 50's result.json, schema classroom50/result/v1. Its scores are whole numbers.
 
-If points are fractions, all are multiplied by 10, 100 and so on, so that none is rounded.
+If points are fractions, all are multiplied by 10, 100 and so on, so that none is rounded. Classroom 50 refuses scores above their
+maximum (schemas/result-v1.schema.json, validate_result of its runner.py), so the score with extra credit ends there: the test of a bonus shows
+its points, and is not part of the maximum.
 https://github.com/foundation50/classroom50
 """
 
 import re
 from collections.abc import Mapping
-from decimal import Decimal
 from typing import Any
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
+from grader.report.content import earned_text
 from grader.report.json_data import to_json
 from grader.report.order import is_failure
 from grader.report.plain_text import criterion_lines
@@ -57,7 +59,7 @@ def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
         {
             "schema": "classroom50/result/v1",
             **identity,
-            "score": int(report.score * scale),
+            "score": int(min(report.score, report.max_score) * scale),
             "max-score": int(report.max_score * scale),
             "tests": [_test(result, report, scale) for result in report.results],
         }
@@ -72,10 +74,14 @@ def _scale(report: Report) -> int:
 
 
 def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
+    is_decided = result.manual_mark is not None or result.is_adjusted
+    bonus = (
+        [f"Extra credit: {earned_text((result,))}. It is not part of the maximum."] if result.criterion.bonus else []
+    )
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_failure(result) and (result.manual_mark is not None or result.outcome.status == "passed"),
-        "score": int(Decimal(result.points) * scale),
+        "passed": not is_failure(result) and (is_decided or result.outcome.status == "passed"),
+        "score": int(min(result.points, result.criterion.points) * scale),
         "max-score": int(result.criterion.points * scale),
-        "message": "\n".join(criterion_lines(result, report)),
+        "message": "\n".join((*bonus, *criterion_lines(result, report))),
     }

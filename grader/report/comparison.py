@@ -63,7 +63,7 @@ def _rows(before: Report, after: Report) -> Iterator[tuple[str, Sequence[PointsC
 
 def _change(old: Result | None, new: Result) -> str | None:
     """Return how a criterion changed, None if it did not."""
-    if old is None or old.outcome.status != new.outcome.status:
+    if old is None or (old.outcome.status != new.outcome.status and not new.is_adjusted):
         return _STATUSES[new.outcome.status]
     if (old.points, old.criterion.points) != (new.points, new.criterion.points):
         return "with other points"

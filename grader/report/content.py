@@ -5,11 +5,12 @@ from decimal import Decimal
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.grading.report import Report, Result
+from grader.grading.worth import worth
 from grader.problems import Problem
-from grader.report.details import sentence
-from grader.report.order import failures
+from grader.report.details import result_details, sentence
+from grader.report.order import Failure, failures, in_order
 from grader.submission.urdf import Absent
-from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
+from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted, signed_points
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
@@ -18,7 +19,7 @@ _VERDICTS = {
 }
 _MAX_LISTED, _MAX_FILES = 12, 2
 _WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
-_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked manually")
+_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
 
 
 def score_text(report: Report) -> str:
@@ -27,19 +28,23 @@ def score_text(report: Report) -> str:
 
 
 def earned_text(results: tuple[Result, ...]) -> str:
-    """Return the points of some criteria together: 8/14."""
+    """Return the points of some criteria together: 8/14, above the maximum with extra credit; extra credit alone: 5/5 bonus."""
     earned = sum((result.points for result in results), Decimal(0))
-    return f"{format_points(earned)}/{format_points(maximum(results))}"
-
-
-def maximum(results: Iterable[Result]) -> Decimal:
-    """Return the maximum of some criteria together."""
-    return sum((result.criterion.points for result in results), Decimal(0))
+    most = worth(result.criterion for result in results)
+    return f"{format_points(earned)}/{format_points(most.points) if most.points or not most.bonus else most.short}"
 
 
 def points_of(results: Iterable[Result]) -> str:
-    """Return the maximum of some criteria together: 14 points."""
-    return counted_points(maximum(results))
+    """Return the maximum of some criteria together: 14 points, 14 points and 5 bonus points, 5 bonus points."""
+    return worth(result.criterion for result in results).text
+
+
+def cost_text(failure: Failure) -> str:
+    """Return the points that a failure costs: -6 points; of extra credit what was earned: 0/5 bonus."""
+    lost = f"{signed_points(-failure.lost) if failure.lost else '0'} point{'' if failure.lost == 1 else 's'}"
+    if not failure.result.criterion.bonus:
+        return lost
+    return earned_text((failure.result,)) + (f", {lost}" if failure.lost else "")
 
 
 def graded_line(report: Report) -> str:
@@ -60,9 +65,35 @@ def verdict_and_counts(report: Report) -> str:
     urdf = "the URDF could not be read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
         urdf = _VERDICTS[submission.verdict] if submission.verdict else "xacro that cannot be determined statically"
-    statuses = ["marked manually" if result.manual_mark else result.outcome.status for result in report.results]
+    statuses = ["marked manually" if result.manual_mark else _status(result) for result in report.results]
     counts = (f"{statuses.count(status)} {status}" for status in _STATUSES if status in statuses)
     return f"{urdf}; {', '.join(counts)}"
+
+
+def _status(result: Result) -> str:
+    return "adjusted" if result.is_adjusted else result.outcome.status
+
+
+def bonus_line(report: Report) -> str:
+    """Return how much extra credit is in the score; empty if the rubric has none."""
+    bonus = worth(result.criterion for result in report.results).bonus
+    if not bonus:
+        return ""
+    return f"Extra credit: {format_points(report.bonus)} of {counted_points(bonus)}, which are not part of the maximum."
+
+
+def summaries(report: Report) -> list[str]:
+    """Return what a report says first: the URDF, how many criteria passed, the extra credit, and the package."""
+    return [*filter(None, (summary(report), bonus_line(report), package_line(report)))]
+
+
+def remark_lines(report: Report) -> list[str]:
+    """Return what the rubric or a person says of criteria without giving points, a line for each."""
+    order = in_order(report)
+    return [
+        printable(f"{result.criterion.id}: ") + result_details(result, report).words[-1]
+        for result in (*order.adjusted, *order.commented)
+    ]
 
 
 def package_line(report: Report) -> str:
@@ -151,8 +182,10 @@ def carried_text(results: tuple[Result, ...]) -> str:
 
 
 def skipped_text(cause: str, results: tuple[Result, ...]) -> str:
-    """Return which criteria are skipped because of another one, and their points."""
+    """Return which criteria are skipped because of another one, or because nothing was submitted, and their points."""
     names = enumerated([result.criterion.id for result in results])
+    if not cause:
+        return printable(f"Not graded, because nothing was submitted: {names} ({points_of(results)}).")
     return printable(f"Skipped because {cause} failed: {names} ({points_of(results)}).")
 
 

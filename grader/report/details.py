@@ -9,13 +9,21 @@ from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
 from grader.text import enumerated, printable, signed_points
 
+SYMBOLS = {
+    "passed": "\u2713",
+    "failed": "\u2717",
+    "skipped": "\u2212",
+    "pending": "?",
+    "errored": "!",
+    "adjusted": "=",
+}  # of each status
 _MAX_NAMED = 2
 
 
 class Details(NamedTuple):
     """The sentences of a report on a criterion, besides its id and points.
 
-    `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
+    `comment` is that of a person who has given no points. `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
     with its answers. `location` is where to look and `expected` what should be, if the criterion failed; `hints` are changes that
     make it pass, in printable sentences.
     """
@@ -27,6 +35,12 @@ class Details(NamedTuple):
     feedback: str = ""
     expected: str = ""
     hints: tuple[Hint, ...] = ()
+    comment: str = ""
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The sentences, and the comment."""
+        return (*self.sentences, *filter(None, [self.comment]))
 
     @property
     def advice(self) -> tuple[str, ...]:
@@ -36,11 +50,18 @@ class Details(NamedTuple):
 
 def result_details(result: Result, report: Report) -> Details:
     """Return the details of one criterion, whatever its status."""
+    comment = f"Comment{_by(result.comment.by)}: {_one_line(result.comment.text)}" if result.comment is not None else ""
+    return _details(result, report)._replace(comment=sentence(comment) if comment else "")
+
+
+def _details(result: Result, report: Report) -> Details:
     outcome = result.outcome
+    if result.is_adjusted:  # what the check found is not the student's mistake
+        return Details((sentence(_one_line(result.why_given)),))
     answers = (_lines(outcome.measured), _lines(result.criterion.answer)) if outcome.status == "pending" else ()
     if result.manual_mark is not None:
         comment = f": {_one_line(result.manual_mark.comment)}" if result.manual_mark.comment else ""
-        mark = sentence(f"Marked {f'by {result.manual_mark.by}' if result.manual_mark.by else 'manually'}{comment}")
+        mark = sentence(f"Marked{_by(result.manual_mark.by) or ' manually'}{comment}")
         if outcome.status == "pending":
             return Details((mark,), *answers)
         expected = _expected(result) if status_of(result) == "failed" else ""
@@ -50,7 +71,7 @@ def result_details(result: Result, report: Report) -> Details:
             (sentence(outcome.message), result.why_given), location=outcome.location, expected=_expected(result)
         )
     if outcome.status == "skipped":
-        return Details((f"Skipped because {result.because} failed.",))
+        return Details((f"Skipped because {result.because} failed." if result.because else sentence(outcome.message),))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
         return Details(sentences, *answers)
@@ -60,6 +81,10 @@ def result_details(result: Result, report: Report) -> Details:
     feedback = _one_line(result.criterion.feedback) if has_subject else ""
     hints = tuple(hint._replace(message=sentence(hint.message)) for hint in hints_of(result, report))
     return Details(sentences, location=outcome.location, feedback=feedback, expected=_expected(result), hints=hints)
+
+
+def _by(name: str) -> str:
+    return f" by {name}" if name else ""
 
 
 def _expected(result: Result) -> str:
@@ -78,15 +103,21 @@ def _lines(text: object) -> tuple[str, ...]:
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion; a manual mark passes if it gives all points."""
+    """Return the status of a criterion, `adjusted` if the rubric decides its points; a manual mark passes if it gives all points."""
+    if result.is_adjusted:
+        return "adjusted"
     if result.manual_mark is None:
         return result.outcome.status
     return "passed" if result.points >= result.criterion.points else "failed"
 
 
 def group_status(group: Group) -> str:
-    """Return the status of a group: that of its worst criterion. Criteria with all points by a mark or carried forward count as passed."""
-    open_or_lost = [result for result in group.results if result.points < result.criterion.points]
+    """Return the status of a group: that of its worst criterion, without extra credit.
+
+    Criteria with all points by a mark or carried forward count as passed.
+    """
+    counting = [result for result in group.results if not result.criterion.bonus] or group.results
+    open_or_lost = [result for result in counting if result.points < result.criterion.points]
     if any(is_failure(result) for result in open_or_lost):
         return "failed"
     return next((status_of(result) for result in open_or_lost), "passed")

@@ -49,7 +49,7 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     if any(wheel.travel is not None for wheel in scene.wheels):
         yield (
             lambda signs, at: signs.line("arrow", wheel_sign((at[0] - 3.0, at[1]), (1.0, 0.0, 0.0))),
-            "positive turn drives this way",
+            "driving direction, positive turn",
         )
     if any(wheel.travel is None for wheel in scene.wheels):
         yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "wheel does not roll"

@@ -8,6 +8,7 @@ from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
 from grader.drawing.projection import seen_in
 from grader.drawing.sheet import Cell, Place
+from grader.drawing.views import AXES
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
@@ -19,7 +20,7 @@ _HEAD = 6.0
 _RADIUS = 9.0  # of a number
 _END_ON = 0.2  # of its length: an axis that appears shorter is a dot
 _SAME = 0.001  # metres
-_AXES: tuple[tuple[str, Vector], ...] = (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0)))
+_AXES = tuple(zip("xyz", AXES, strict=True))
 _NO_HALO = ("ground", "dot-x", "dot-y", "dot-z")
 
 

@@ -10,19 +10,20 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import Details, location_text, result_details, short_hint, status_of
+from grader.report.details import SYMBOLS, Details, location_text, result_details, short_hint, status_of
 from grader.report.diff import diff_lines
 from grader.report.order import Failure
-from grader.text import printable, signed_points
+from grader.text import printable
 
-STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
-_SYMBOLS = {
-    "passed": ("\u2713", "+"),
-    "failed": ("\u2717", "X"),
-    "skipped": ("\u2212", "-"),
-    "pending": ("?", "?"),
-    "errored": ("!", "!"),
+STYLES = {
+    "passed": "green",
+    "failed": "bold red",
+    "skipped": "yellow",
+    "pending": "cyan",
+    "errored": "bold magenta",
+    "adjusted": "blue",
 }
+_ASCII = dict(zip(SYMBOLS, "+X-?!=", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
@@ -39,7 +40,7 @@ class Page(NamedTuple):
 
 def mark(status: str, console: Console) -> Text:
     """Return the symbol of a status in its colour."""
-    return Text(symbol(console, *_SYMBOLS[status]), STYLES[status])
+    return Text(symbol(console, SYMBOLS[status], _ASCII[status]), STYLES[status])
 
 
 def show_failure(failure: Failure, page: Page) -> None:
@@ -50,6 +51,7 @@ def show_failure(failure: Failure, page: Page) -> None:
     result, console = failure.result, page.console
     details = result_details(result, page.report)
     head, excerpt = [_head(failure, details, console)], [*_excerpt(details, page)]
+    excerpt += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
     skipped = [_skipped(failure, page)] if failure.skipped else []
     room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *skipped)
     hints = [*_hints(details, room - _MIN_MESSAGE, page)]
@@ -63,9 +65,8 @@ def show_failure(failure: Failure, page: Page) -> None:
 def _head(failure: Failure, details: Details, console: Console) -> Text:
     result = failure.result
     status = "errored" if result.outcome.status == "errored" and result.manual_mark is None else "failed"
-    cost = signed_points(-failure.lost) if failure.lost else "0"
     text = Text.assemble(mark(status, console), " ", (printable(result.criterion.id), "bold"))
-    text.append(f"  {cost} point{'' if failure.lost == 1 else 's'}", STYLES[status])
+    text.append(f"  {content.cost_text(failure)}", STYLES[status])
     if details.location is not None:
         text.append(f"  {location_text(details.location)}", "dim")
     return block(console, text, INDENT, Text())
@@ -134,7 +135,7 @@ def show_answer(result: Result, page: Page) -> None:
     title = Text.assemble((printable(result.criterion.title), "bold"), (f"  {result.criterion.id}", "dim"))
     title.append(f"  {content.earned_text((result,))}")
     wrapped(console, title, INDENT, mark(status_of(result), console) + Text(" "))
-    for text in details.sentences:
+    for text in details.words:
         wrapped(console, Text(text), INDENT)
     for name, lines in (("Found", details.answer), ("Model answer", details.model_answer)):
         if lines:

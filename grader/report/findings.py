@@ -8,10 +8,10 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Hint, Report
-from grader.report.content import other_problems, points_of, undecided
+from grader.report.content import earned_text, other_problems, points_of, undecided
 from grader.report.details import location_text, result_details, sentence
 from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
-from grader.report.order import Failure, failures
+from grader.report.order import Failure, failures, in_order
 from grader.source import Location, Source
 from grader.text import printable
 
@@ -42,6 +42,7 @@ def findings(report: Report, base: Base) -> list[Finding]:
     source_of = cache(report.submission.source)  # reads each file once
     found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
     found += _undecided(report, base)
+    found += _remarks(report, base)
     for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
         text = _text((printable(problem.message),), problem.location, base)
         location = in_repository(problem.location, source_of(problem.location.path), base)
@@ -64,13 +65,15 @@ def _fallback(report: Report, base: Base, *, of_package: bool) -> RepositoryLoca
 def _of_criterion(failure: Failure, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
     result = failure.result
     criterion, details = result.criterion, result_details(result, report)
-    lines = [*details.sentences, *details.advice, details.expected]
+    lines = [*details.words, *details.advice, details.expected]
+    if criterion.bonus:
+        lines.append(f"Extra credit: {earned_text((result,))}.")
     if failure.skipped:
         lines.append(f"Skipped because of it: {len(failure.skipped)} more, {points_of(failure.skipped)}.")
     where = details.location
     location = in_repository(where, source_of(where.path), base) if where is not None else None
     fallback = location or _fallback(report, base, of_package=criterion.check.subject == "package")
-    level: Level = "note" if result.why_given else "error"
+    level: Level = "note" if result.why_given or criterion.bonus else "error"
     text = _text(tuple(lines), where, base)
     return Finding(criterion.id, level, text, failure.lost, location, fallback, hints=details.hints)
 
@@ -86,6 +89,16 @@ def _undecided(report: Report, base: Base) -> Iterator[Finding]:
         is_package = all(result.criterion.check.subject == "package" for result in results)
         fallback = _fallback(report, base, of_package=is_package)
         yield Finding(results[0].criterion.id, "warning", text, Decimal(0), None, fallback)
+
+
+def _remarks(report: Report, base: Base) -> Iterator[Finding]:
+    """Yield a note for each criterion that is adjusted, or has a comment and is no other finding."""
+    order = in_order(report)
+    for result in (*order.adjusted, *order.commented):
+        details, criterion = result_details(result, report), result.criterion
+        words = details.words if result.is_adjusted else (details.comment,)
+        fallback = _fallback(report, base, of_package=criterion.check.subject == "package")
+        yield Finding(criterion.id, "note", "\n".join(words), Decimal(0), None, fallback)
 
 
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:

@@ -54,7 +54,7 @@ def _overview(report: Report) -> str:
         lines.append(f"Needs manual grading: {', '.join(pending)}")
     skipped: dict[str, list[str]] = {}
     for result in report.results:
-        if result.because is not None and result.manual_mark is None:
+        if result.because is not None and result.manual_mark is None and not result.is_adjusted:
             skipped.setdefault(result.because, []).append(result.criterion.id)
     lines += [f"Skipped because {cause} failed: {', '.join(names)}" for cause, names in skipped.items()]
     lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]

@@ -1,13 +1,13 @@
 """A rubric as Markdown for the lab's handout: what is examined and what it is worth, without arguments, feedback and answers."""
 
 from collections.abc import Iterator, Sequence
-from decimal import Decimal
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Part, Rubric
+from grader.grading.worth import worth
 from grader.report.markdown_text import code, escaped
-from grader.text import counted_points, format_points, printable
+from grader.text import printable
 
 _EXAMINED = {
     "urdf": "The URDF is examined.",
@@ -18,7 +18,7 @@ _EXAMINED = {
 
 def render_handout(rubric: Rubric) -> str:
     """Return the parts of a rubric, each with a table of its criteria and their points."""
-    blocks = [f"# {_text(rubric.title)}", f"{counted_points(rubric.points)} in total."]
+    blocks = [f"# {_text(rubric.title)}", f"{worth(rubric.criteria).text} in total."]
     for part in rubric.parts:
         criteria = [criterion for criterion in rubric.criteria if criterion.part == part.id]
         if criteria:
@@ -27,8 +27,7 @@ def render_handout(rubric: Rubric) -> str:
 
 
 def _part(part: Part, criteria: Sequence[Criterion]) -> Iterator[str]:
-    points = sum((criterion.points for criterion in criteria), Decimal(0))
-    yield f"## {_text(part.title)} ({counted_points(points)})"
+    yield f"## {_text(part.title)} ({worth(criteria).text})"
     yield _EXAMINED[part.needs]
     rows = [["criterion", "about", "what should be true", "points"], ["---", "---", "---", "---:"]]
     rows += map(_row, criteria, [None, *criteria])
@@ -41,7 +40,8 @@ def _row(criterion: Criterion, before: Criterion | None) -> list[str]:
     name = code(printable(criterion.id)).replace("|", "\\|")
     about = "" if before is not None and before.about == criterion.about else _text(criterion.about)
     manual = " *(graded manually)*" if criterion.check.function in MANUAL_CHECKS else ""
-    return [name, about, _text(criterion.title) + manual, format_points(criterion.points)]
+    adjusted = f" *({_text(criterion.adjustment.message)})*" if criterion.adjustment is not None else ""
+    return [name, about, _text(criterion.title) + manual + adjusted, worth((criterion,)).short]
 
 
 def _text(text: str) -> str:

@@ -1,6 +1,6 @@
 """A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
 
-A failure is the student's, an error the grader's; what needs manual grading is skipped. There are no times: the same submission
+A failure is the student's, an error the grader's; what needs manual grading and extra credit that was not earned are skipped. There are no times: the same submission
 gives the same report.
 """
 
@@ -10,7 +10,7 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import other_problems, score_text
+from grader.report.content import earned_text, other_problems, score_text
 from grader.report.details import result_details
 from grader.report.locations import Base, archive_around
 from grader.report.order import is_failure
@@ -51,9 +51,12 @@ def _counts(results: tuple[Result, ...]) -> dict[str, str]:
 
 def _kind(result: Result) -> str:
     """Return the element for the status of a criterion; empty if it has all points."""
+    if is_failure(result) and result.criterion.bonus:
+        return "skipped"
     if is_failure(result):
         return "error" if result.outcome.status == "errored" and result.manual_mark is None else "failure"
-    return "skipped" if result.manual_mark is None and result.outcome.status in ("skipped", "pending") else ""
+    is_decided = result.manual_mark is not None or result.is_adjusted
+    return "skipped" if not is_decided and result.outcome.status in ("skipped", "pending") else ""
 
 
 def _submission_properties(report: Report) -> dict[str, str]:
@@ -82,7 +85,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
     if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))
-    _properties(case, {"points": f"{format_points(result.points)}/{format_points(criterion.points)}"})
+    _properties(case, {"points": earned_text((result,))})
     lines = criterion_lines(result, report)
     kind = _kind(result)
     if not kind:

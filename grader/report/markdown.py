@@ -8,7 +8,7 @@ from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import Details, location_text, result_details, status_of
+from grader.report.details import SYMBOLS, Details, location_text, result_details, status_of
 from grader.report.diff import diff_lines
 from grader.report.evidence import evidence
 from grader.report.markdown_text import code, escaped, fenced, folded
@@ -16,7 +16,6 @@ from grader.report.order import Group, alike, groups, has_passed, in_order
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
 from grader.text import enumerated, printable
 
-_MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
@@ -84,7 +83,7 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
         yield f"{item}\n\n{indent(text, '  ')}" if text else item
     for cause, some in alike(order.skipped, lambda result: result.because or ""):
         yield escaped(content.skipped_text(cause, some))
-    for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked)):
+    for title, results in (("Needs manual grading", order.pending), *order.remarks):
         if results:
             yield f"## {title}"
             yield from (_item(result, report, shown, answers=answers) for result in results)
@@ -109,7 +108,7 @@ def _passed(group: Group) -> str:
 
 def _head(report: Report) -> Iterator[str]:
     yield f"# {escaped(content.score_text(report))}: {escaped(printable(report.rubric.title))}"
-    yield from (escaped(line) for line in (content.summary(report), content.package_line(report)) if line)
+    yield from map(escaped, content.summaries(report))
     if report.pending:
         yield f"**{escaped(content.pending_line(report))}**"
     yield escaped(provenance(report))
@@ -119,18 +118,19 @@ def _head(report: Report) -> Iterator[str]:
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion = result.criterion
     details = result_details(result, report)
-    name = code(criterion.id) if details.expected else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
+    is_bare = bool(details.expected) or result.is_adjusted
+    name = code(criterion.id) if is_bare else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
     blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
     return "\n\n".join((f"- {_start(result)} {name}", *blocks))
 
 
 def _start(result: Result) -> str:
-    return f"{_MARKS[status_of(result)]} {content.earned_text((result,))}"
+    return f"{SYMBOLS[status_of(result)]} {content.earned_text((result,))}"
 
 
 def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """Yield the text about a criterion, block by block, without feedback that is shown already."""
-    yield from map(escaped, details.sentences)
+    yield from map(escaped, details.words)
     if details.expected:
         yield escaped(details.expected)
     if details.location is not None:

@@ -18,23 +18,32 @@ class Failure(NamedTuple):
 
     @property
     def lost(self) -> Decimal:
-        """The points that it costs, with those of the criteria that are skipped because of it."""
-        own = self.result.criterion.points - self.result.points
-        return sum((other.criterion.points for other in self.skipped), own)
+        """The points that it costs, with those of the criteria that are skipped because of it; extra credit costs nothing."""
+        own = self.result.criterion.maximum - self.result.points if not self.result.criterion.bonus else Decimal(0)
+        return sum((other.criterion.maximum for other in self.skipped), own)
 
 
 class Order(NamedTuple):
-    """All criteria of a report, each once.
+    """All criteria of a report, each once, but those that are skipped and have a comment twice.
 
     `failures` has the costliest first, those whose error is carried forward last. `skipped` are those whose cause is no failure, because
-    a manual mark overrides it. `marked` have all their points by a manual mark.
+    a manual mark overrides it, or it is adjusted. `marked` have all their points by a manual mark. `commented` are the others with a
+    person's comment.
     """
 
     failures: tuple[Failure, ...]
     skipped: tuple[Result, ...]
     pending: tuple[Result, ...]
     marked: tuple[Result, ...]
+    adjusted: tuple[Result, ...]
+    commented: tuple[Result, ...]
     passed: tuple[Result, ...]
+
+    @property
+    def remarks(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
+        """The criteria of which a person or the rubric says something that is no failure, each group with its heading."""
+        found = (("Marked manually", self.marked), ("Adjusted", self.adjusted), ("Comments", self.commented))
+        return tuple((title, results) for title, results in found if results)
 
 
 class Group(NamedTuple):
@@ -56,6 +65,8 @@ def in_order(report: Report) -> Order:
         tuple(result for result in skipped if result.because not in named),
         tuple(result for result in rest if result.is_open),
         tuple(result for result in rest if result.manual_mark is not None),
+        tuple(result for result in rest if result.is_adjusted),
+        tuple(result for result in rest if result.comment is not None and not (result.is_open or result.is_adjusted)),
         tuple(result for result in rest if has_passed(result)),
     )
 
@@ -72,19 +83,22 @@ def failures(report: Report) -> tuple[Failure, ...]:
 
 
 def is_failure(result: Result) -> bool:
-    """Return whether a criterion failed or lost points; a manual mark overrides the check."""
+    """Return whether a criterion failed or lost points; a manual mark or an adjustment overrides the check."""
+    if result.is_adjusted:
+        return False
     if result.manual_mark is not None:
         return result.points < result.criterion.points
     return result.outcome.status in ("failed", "errored")
 
 
 def has_passed(result: Result) -> bool:
-    """Return whether a check passed, and no manual mark overrides it."""
-    return result.manual_mark is None and result.outcome.status == "passed"
+    """Return whether a check passed, and nobody has said more."""
+    is_silent = result.manual_mark is None and result.comment is None and not result.is_adjusted
+    return is_silent and result.outcome.status == "passed"
 
 
 def _is_skipped(result: Result) -> bool:
-    return result.outcome.status == "skipped" and result.manual_mark is None
+    return result.outcome.status == "skipped" and result.manual_mark is None and not result.is_adjusted
 
 
 def groups(report: Report) -> Iterator[Group]:

@@ -15,8 +15,8 @@ _EXCERPT_WIDTH = 120
 
 
 def summary_lines(report: Report) -> list[str]:
-    """Return whether ROS 2 loads the URDF, the package, and what needs manual grading."""
-    return [*filter(None, (content.summary(report), content.package_line(report), content.pending_line(report)))]
+    """Return whether ROS 2 loads the URDF, the extra credit, the package, and what needs manual grading."""
+    return [*content.summaries(report), *filter(None, [content.pending_line(report)])]
 
 
 def note_lines(report: Report) -> list[str]:
@@ -33,7 +33,7 @@ def submission_lines(report: Report) -> list[str]:
 def criterion_lines(result: Result, report: Report) -> list[str]:
     """Return the lines about one criterion: the finding, its place, the answer, what to do."""
     details = result_details(result, report)
-    lines = list(details.sentences)
+    lines = list(details.words)
     if details.location is not None:
         lines += [location_text(details.location), *excerpt_lines(details.location, report)]
     if details.answer:

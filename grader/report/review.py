@@ -33,10 +33,8 @@ def render_item(item: QueuedResult, position: str, pictures: Sequence[str], cons
         _print_block("Pictures", "\n".join(pictures), console)
     if criterion.answer:
         _print_block("Model answer", criterion.answer, console)
-    if outcome.location is not None:
-        path = outcome.location.path
-        line = "" if path.lower().endswith(_WITHOUT_LINES) else f", line {outcome.location.line}"
-        wrapped(console, Text(printable(f"in {_where(item, path)}{line}"), "dim"), 0)
+    if place := place_text(item):
+        wrapped(console, Text(f"in {place}", "dim"), 0)
 
 
 def who(student: Student) -> str:

@@ -4,9 +4,10 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from os.path import commonprefix
 
+from grader.grading.worth import worth
 from grader.mutation.margins import Margin
 from grader.mutation.result import Loss, MutantResults, RubricTest, Survivor
-from grader.text import counted, counted_points, enumerated, first_lines, format_points, printable, without_commands
+from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
 
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
 _DEEPEST = 4  # indentation of a sentence
@@ -44,8 +45,8 @@ def _percent(found: MutantResults) -> str:
 
 def _counts(test: RubricTest) -> Iterator[str]:
     report, equivalents, samples = test.reference, test.equivalents, test.samples
-    score, most = format_points(report.score), counted_points(report.max_score - report.pending)
-    yield f"Reference    {score} of {most}"
+    decided = worth(result.criterion for result in report.results if not result.is_open)
+    yield f"Reference    {format_points(report.score)} of {decided.text}"
     if equivalents.tried:
         losing = _some(len(equivalents.losses), "loses", "lose")
         yield f"Equivalents  {sum(equivalents.tried.values())} graded, {losing} points"

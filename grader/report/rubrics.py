@@ -7,10 +7,11 @@ from grader.checks.registry import Check, check_names, find_check, unused_checks
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
+from grader.grading.worth import worth
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.robot.catalogue import CATALOGUE
-from grader.text import counted_points, enumerated, format_points, printable
+from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
 
 _WIDTH = 80
@@ -26,14 +27,17 @@ EFFECTS = {
 
 def rubric_text(rubric: Rubric) -> str:
     """Return the parts and criteria of a rubric, with the model answers that it was loaded with."""
-    lines = [f"{rubric.id}: {rubric.title} ({format_points(rubric.points)} points)", f"sha256 {rubric.sha256}"]
+    lines = [f"{rubric.id}: {rubric.title} ({worth(rubric.criteria).text})", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:
         criteria = [criterion for criterion in rubric.criteria if criterion.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]
         width = max((len(criterion.id) for criterion in criteria), default=0)
         for criterion in criteria:
             points = format_points(criterion.points)
-            lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}")
+            bonus = " (bonus)" if criterion.bonus else ""
+            lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}")
+            if criterion.adjustment is not None:
+                lines.append(textwrap.indent(_filled(printable(f"{criterion.adjustment.message}.")), "    "))
             if criterion.answer:
                 lines.append(textwrap.indent(_filled(f"Model answer: {printable(criterion.answer)}"), "    "))
     return "\n".join(lines) + "\n"
@@ -80,10 +84,12 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     lines = [
-        f"{criterion.id} ({counted_points(criterion.points)}, part {criterion.part} of {rubric.id})",
+        f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})",
         "",
         _filled(f"Passes when: {criterion.title}."),
     ]
+    if criterion.adjustment is not None:
+        lines += ["", _filled(printable(f"{criterion.adjustment.message}."))]
     if criterion.feedback:
         lines += ["", _filled(criterion.feedback)]
     if criterion.requires:
@@ -100,7 +106,7 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
 
 
 def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
-    given = ", ".join(f"{key} = {_toml(value)}" for key, value in arguments.items())
+    given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
     return [
         _filled(f"{title}: {check.name}. {check.documentation.fact}"),
         *([_filled(f"With {given}.")] if given else []),
@@ -110,13 +116,14 @@ def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> l
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
-        default = "" if parameter.required else f", default: {_toml(parameter.default)}"
+        default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
         meaning = _filled(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
 
 
-def _toml(value: object) -> str:
+def toml_text(value: object) -> str:
+    """Return a value as a rubric has it, one that is not given as `not checked`."""
     match value:
         case bool():
             return str(value).lower()
@@ -125,9 +132,9 @@ def _toml(value: object) -> str:
         case float():
             return f"{value:g}"
         case list() | tuple():
-            return f"[{', '.join(map(_toml, value))}]"
+            return f"[{', '.join(map(toml_text, value))}]"
         case dict():
-            return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+            return "{ " + ", ".join(f"{key} = {toml_text(item)}" for key, item in value.items()) + " }"
         case None:
             return "not checked"
         case _:

@@ -149,6 +149,7 @@ def _properties(report: Report, count: int) -> dict[str, Any]:
                 "status": result.outcome.status,
                 "points": exact(result.points),
                 "maxPoints": exact(result.criterion.points),
+                **({"bonus": True} if result.criterion.bonus else {}),
                 "said": criterion_lines(result, report),
             }
             for result in report.results

@@ -52,6 +52,7 @@ _PROBLEM = _object(
 _VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 _EDIT = _object({**_PLACE, **_all(_TEXT, "old new renamed")}, ("renamed",))
 _GAINS: dict[str, Any] = {"type": "object", "additionalProperties": _POINTS}
+_ADJUSTMENT = _object({"action": {"enum": ["drop", "full"]}, "reason": _TEXT})
 _RESULT = _object(
     {
         **_all(_TEXT, "id part title message feedback"),
@@ -63,8 +64,11 @@ _RESULT = _object(
         "location": _nullable(_LOCATION),
         "hints": _array(_object({"message": _TEXT, "edits": _array(_EDIT), "gains": _GAINS, "verified": _FLAG})),
         "mark": _object({"points": _POINTS, **_all(_TEXT, "by comment")}),
+        "bonus": {"const": True},
+        "adjustment": _ADJUSTMENT,
+        "comment": _object(_all(_TEXT, "text by")),
     },
-    optional=("mark",),
+    optional=("mark", "bonus", "adjustment", "comment"),
 )
 _EXHIBIT = _object({**_all(_TEXT, "path heading"), "size": _TOTAL, **_all(_nullable(_COUNT), "width height page")})
 _SUBMISSION = _object(
@@ -118,12 +122,15 @@ _CRITERION_STATISTICS = _object(
         **_all(_TOTAL, "passed marked_by_hand carried failed skipped pending errored"),
         "share": _nullable(_POINTS),
         "discrimination": _nullable({"type": "number", "minimum": -1, "maximum": 1}),
-    }
+        "bonus": {"const": True},
+        "adjustment": _ADJUSTMENT,
+    },
+    optional=("bonus", "adjustment"),
 )
 _STATISTICS = _object(
     {
         "counts": _object(dict.fromkeys(_STATUSES, _COUNT), optional=_STATUSES),
-        **_all(_TOTAL, "graded pending undecided"),
+        **_all(_TOTAL, "final_marks excused graded pending undecided"),
         "points": _object(_all(_POINTS, "earned lost pending")),
         "reasons": _array(_object({"reason": _TEXT, "count": _COUNT})),
         **_all(_POINTS, "max_score mean deviation lowest median highest"),
@@ -141,7 +148,8 @@ _STUDENT = _object(
         "status": {"enum": ["graded", "unreadable", "errored", "missing"]},
         **_all(_nullable(_POINTS), "score max_score pending total"),
         "late": _object({"days": _TOTAL, "points": {"type": "number", "maximum": 0}, "because": _TEXT}),
-        "is_final": _FLAG,
+        "final_mark": _nullable(_POINTS),
+        **_all(_FLAG, "is_excused is_final"),
         **_all(_TOTAL, "marks_by_hand attempt"),
         **_all(_array(_TEXT), "paths earlier carried"),
     }
@@ -152,6 +160,15 @@ _AGREEMENT = _object(
         **_all(_TOTAL, "items same"),
         "mean_difference_percent": {"type": "number", "minimum": 0},
         "largest": _array(_DIFFERENCE),
+    }
+)
+_GROUP = _object(
+    {
+        "name": _TEXT,
+        **_all(_TOTAL, "students graded late"),
+        "late_points": _POINTS,
+        **_all(_nullable(_POINTS), "mean median"),
+        "shares": {"type": "object", "additionalProperties": _nullable(_POINTS)},
     }
 )
 CLASS_SCHEMA = _document(
@@ -165,12 +182,16 @@ CLASS_SCHEMA = _document(
         "fixes": _array(_FIX),
         "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "agreement": _AGREEMENT,
+        "comparison": _object(
+            {"by": {"enum": ["section", "marker"]}, "groups": _array(_GROUP), "differing": _array(_TEXT)}
+        ),
         "needs_a_look": _TOTAL,
         "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
+        "late": _object({"count": _TOTAL, **_all(_POINTS, "lost least most")}),
         "students": _array(_STUDENT),
     },
-    optional=("run",),
+    optional=("run", "comparison"),
 )
 
 _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _object({"sha256": _HASH})})
@@ -180,7 +201,17 @@ DIFF_SCHEMA = _document(
     {
         "schema": {"const": "grader/diff/v1"},
         **_all(_RUN, "from to"),
-        "students": _array(_object({**_CHANGE, "because": _array(_TEXT), "criteria": _array(_object(_CHANGE))})),
+        "students": _array(
+            _object(
+                {
+                    **_CHANGE,
+                    "name": _TEXT,
+                    "because": _array(_TEXT),
+                    "criteria": _array(_object(_CHANGE)),
+                    "rubric": _array(_object({**_all(_TEXT, "id key"), **_all(_VALUE, "before after")})),
+                }
+            )
+        ),
     },
 )
 

@@ -1,12 +1,13 @@
 """A report as an SVG: three views of the graded robot, with its failed criteria."""
 
+from collections.abc import Iterable
+
 from lxml import etree
 
-from grader.drawing.picture import Picture, picture_of
-from grader.drawing.scene import scene_of
+from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
-from grader.report.content import score_text, summary, why_no_picture
+from grader.report.content import bonus_line, remark_lines, score_text, summary, why_no_picture
 from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import DARK_RULES, SVG, put
@@ -19,25 +20,23 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    return _file(
-        picture_of(report), f"{report.rubric.title}: {score_text(report)}", summary(report), why_no_picture(report)
-    )
+    words = (summary(report), bonus_line(report), *remark_lines(report))
+    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
 
 
 def inspection_svg(inspection: Inspection) -> str:
     """Return the drawing of an inspected robot as a file, with its joints at the given positions."""
     robot = inspection.robot
-    picture = None
-    if robot is not None and inspection.relative_to is not None:
-        picture = Picture(scene_of(robot, inspection.relative_to), None, (), (), ())
+    picture = plain_picture(robot, inspection.relative_to)
     name = robot.robot.name if robot is not None else inspection.path
     positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
     words = f"{inspection.path}: {effect(inspection.reading)}{f'; {positions}' if positions else ''}"
-    return _file(picture, name or inspection.path, words, "No picture: no robot could be read from the file.")
+    return _file(picture, name or inspection.path, (words,), "No picture: no robot could be read from the file.")
 
 
-def _file(picture: Picture | None, title: str, words: str, reason: str) -> str:
-    lines = wrapped(words, _WIDTH) + ([] if picture is not None else ["", *wrapped(reason, _WIDTH)])
+def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
+    lines = [line for text in filter(None, words) for line in wrapped(text, _WIDTH)]
+    lines += [] if picture is not None else ["", *wrapped(reason, _WIDTH)]
     top = _TITLE + LINE * len(lines) + 8.0
     root = drawing_element(picture, title, top) if picture is not None else empty_element(title, reason, top)
     put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)

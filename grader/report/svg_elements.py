@@ -5,7 +5,7 @@ classes in dark mode.
 """
 
 from collections.abc import Iterable, Mapping
-from math import atan2, degrees, hypot, isfinite, tau
+from math import atan2, degrees, hypot, tau
 from typing import Any
 
 from lxml import etree
@@ -89,15 +89,14 @@ def number(value: float) -> str:
 
 
 def colour(rgba: Rgba) -> dict[str, str]:
-    """Return the attributes that fill a shape with a colour; a channel that is no number is 0."""
-    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
-    channels = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
+    """Return the attributes that fill a shape with a colour."""
+    channels, alpha = "".join(f"{round(255.0 * value):02x}" for value in rgba[:3]), rgba[3]
     return {"fill": f"#{channels}", **({"fill-opacity": f"{alpha:.2g}"} if alpha < 1.0 else {})}
 
 
 def edge_look(rgba: Rgba) -> str:
     """Return the class of edges on a colour: dark edges on light colours, light edges on dark ones."""
-    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
+    red, green, blue, alpha = rgba
     if alpha < 0.5:
         return "edge"
     luminance = (

@@ -4,13 +4,14 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report
+from grader.grading.worth import worth
 from grader.report import content
 from grader.report.console import wrapped
-from grader.report.details import result_details
+from grader.report.details import result_details, status_of
 from grader.report.entries import INDENT, Page, mark, show_answer, show_failure
 from grader.report.order import Order, alike, in_order
 from grader.report.overview import show_evidence, show_groups, show_notes, show_other_problems
-from grader.text import enumerated, format_points, printable
+from grader.text import enumerated, printable
 
 _MAX_NAMED = 3
 
@@ -25,7 +26,7 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
             show_failure(failure, page)
     _show_consequences(order, page)
     _show_pending(order, page)
-    _show_marked(order, page)
+    _show_remarks(order, page)
     show_groups(page)
     show_evidence(page)
     show_other_problems(page)
@@ -67,23 +68,25 @@ def _show_pending(order: Order, page: Page) -> None:
         names = enumerated(
             [printable(result.criterion.id) for result in results], None if page.is_verbose else _MAX_NAMED
         )
-        text = Text.assemble((names, "bold"), f" ({format_points(content.maximum(results))}): {reason}")
+        points = worth(result.criterion for result in results).short
+        text = Text.assemble((names, "bold"), f" ({points}): {reason}")
         wrapped(page.console, text, INDENT, mark("pending", page.console) + Text(" "))
 
 
-def _show_marked(order: Order, page: Page) -> None:
-    """Print what has all points by a manual mark, and the grader's comment."""
-    if order.marked:
+def _show_remarks(order: Order, page: Page) -> None:
+    """Print what has all points by a manual mark, what is adjusted, and comments without points."""
+    for _, results in order.remarks:
         page.console.print()
-    for result in order.marked:
-        if page.is_verbose:
-            show_answer(result, page)
-            continue
-        sentence = result_details(result, page.report).sentences[0]
-        text = Text.assemble(
-            (printable(result.criterion.id), "bold"), f"  {content.earned_text((result,))}: {sentence}"
-        )
-        wrapped(page.console, text, INDENT, mark("passed", page.console) + Text(" "))
+        for result in results:
+            details, start = result_details(result, page.report), mark(status_of(result), page.console) + Text(" ")
+            if page.is_verbose and not result.is_adjusted:
+                show_answer(result, page)
+                continue
+            said = f"{details.sentences[0]} {details.comment}".strip() if result.is_adjusted else ""
+            said = said or details.comment or details.sentences[0]
+            name = (printable(result.criterion.id), "bold")
+            text = Text.assemble(name, f"  {content.earned_text((result,))}: {said}")
+            wrapped(page.console, text, INDENT, start)
 
 
 def _show_end(page: Page) -> None:
@@ -92,9 +95,10 @@ def _show_end(page: Page) -> None:
     console.print()
     if page.is_verbose and report.submission.has_urdf:
         wrapped(console, Text("grader inspect shows the whole robot.", "dim"), 0)
-    style = "bold green" if report.score + report.pending == report.max_score else "bold"
+    style = "bold green" if report.score + report.pending >= report.max_score else "bold"
     score = Text(content.earned_text(report.results), style)
     wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)
     command = content.next_command(report)
-    for line in (content.verdict_and_counts(report), f"Next: {command}" if command else content.what_is_left(report)):
+    end = f"Next: {command}" if command else content.what_is_left(report)
+    for line in filter(None, (content.verdict_and_counts(report), content.bonus_line(report), end)):
         wrapped(console, Text(line), INDENT, Text())

@@ -1,12 +1,12 @@
 """Write the autograder zip for Gradescope."""
 
-from decimal import Decimal
 from pathlib import Path
 
 from grader.bundle.gradescope import autograder_zip
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import GraderError
 from grader.grading.rubric import Rubric, load_rubric
+from grader.grading.worth import worth
 from grader.text import format_points, printable
 from grader.usecases.rubrics import summary
 from grader.usecases.writing import save_bytes
@@ -22,10 +22,11 @@ def write_bundle(platform: str, output: Path, rubric: str) -> str:
 
 
 def _next_step(rubric: Rubric) -> str:
-    manual = [criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS]
-    points = sum((criterion.points for criterion in manual), Decimal(0))
-    step = f"upload it under Configure Autograder; autograder points: {format_points(rubric.points - points)}"
+    asked = (criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS)
+    manual = [criterion for criterion in asked if criterion.adjustment is None]
+    points = worth(manual)
+    step = f"upload it under Configure Autograder; autograder points: {format_points(rubric.points - points.points)}"
     if not manual:
         return step
-    listed = ", ".join(f"{criterion.id} ({format_points(criterion.points)})" for criterion in manual)
-    return f"{step}; manual grading: {format_points(points)} points for {listed}"
+    listed = ", ".join(f"{criterion.id} ({worth((criterion,)).short})" for criterion in manual)
+    return f"{step}; manual grading: {points.text} for {listed}"

@@ -5,7 +5,6 @@ from concurrent.futures import Executor
 from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
-from urllib.parse import quote
 
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -14,6 +13,7 @@ from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import Format
 from grader.text import without_commands
 from grader.usecases.report_names import CLASS_PAGE
+from grader.usecases.saves import address
 from grader.usecases.writing import save
 
 _MAX_TRIED = 3  # students whose submissions may have changed since they were graded
@@ -27,7 +27,7 @@ def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[s
         grades = Grades(opened, due)
         summary = summary_of(grades, with_fixes=True)
         there = {grade.student.key: grade for grade in grades.all() if grade.student.key in names and not grade.is_gone}
-        links = {key: quote(f"{names[key]}.{Format.HTML.ending}") for key in there}
+        links = {key: address(f"{names[key]}.{Format.HTML.ending}") for key in there}
         examples = {
             fix: sorted((key for key in fix.students if key in there), key=lambda key: -there[key].score)[:_MAX_TRIED]
             for fix in summary.fixes[:MAX_DRAWINGS]
@@ -56,5 +56,8 @@ def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
 
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened)
-        drawn = (thumbnail(grades.report(grades.find(key)), criteria) for key in keys)
-        return next(filter(None, drawn), "")
+        for key in keys:
+            with suppress(Exception):  # a robot that cannot be drawn: the next one may be
+                if drawn := thumbnail(grades.report(grades.find(key)), criteria):
+                    return drawn
+    return ""

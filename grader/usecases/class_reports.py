@@ -7,20 +7,22 @@ from datetime import datetime
 from itertools import islice
 from pathlib import Path
 
+from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
-from grader.errors import InputError
-from grader.grading.report import Report
+from grader.errors import InputError, RubricError
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_page import write_class_page
 from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
-from grader.usecases.writing import refuse_symlinks, save
+from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3
@@ -29,15 +31,15 @@ _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
-    """Raise InputError for a folder that reports cannot be written to, or that the next run would read as a submission."""
+    """Raise InputError for a folder that reports or pictures cannot be written to, or that the next run would read as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"cannot write reports to {shown}: it is not a folder")
+        raise InputError(f"cannot write files to {shown}: it is not a folder")
     for submitted in submissions:
         if folder.resolve() == submitted or submitted in folder.resolve().parents:
             raise InputError(
-                f"cannot write reports to {shown}: the next run would take them for a submission; "
+                f"cannot write files to {shown}: the next run would take them for a submission; "
                 "choose a folder outside of the class folder"
             )
     if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
@@ -55,13 +57,32 @@ def write_reports(
     show: Callable[[Progress], None],
 ) -> None:
     """Write a report for every student with a result; with the format HTML, also the class's page. Raises InputError."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
+    make_folder(folder)
     with Gradebook(book) as opened:
         names = report_names(opened)
     earlier = update_index(folder, names)
+
+    lost = render_reports(executor, book, folder, formats, due, names, show)
+    if Format.HTML in formats:
+        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
+    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
+    for key, why in lost.items():
+        warn(printable(f"no report for {key}: {why}"))
+    if earlier:
+        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
+        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
+
+
+def render_reports(
+    executor: Executor,
+    book: Path,
+    folder: Path,
+    formats: Sequence[Format],
+    due: datetime | None,
+    names: dict[str, str],
+    show: Callable[[Progress], None],
+) -> dict[str, str]:
+    """Write the reports of students with a result into a folder, by their file names; return who has none, and why."""
 
     def write(some: dict[str, str]) -> "Future[None]":
         return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
@@ -74,23 +95,22 @@ def write_reports(
         lost |= _lost(write, some, task)
         done += len(some)
         show(Progress(len(names), done))
-    if Format.HTML in formats:
-        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
-    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
-    for key, why in lost.items():
-        warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
+    return lost
 
 
 def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students without one, and why. If the process that writes them crashes, each is retried alone."""
+    """Wait for reports; return the students without one, and why. If they fail or crash together, each is retried alone.
+
+    Raises InputError and RubricError, which concern all reports.
+    """
     try:
         task.result()
-    except WorkerError as error:
+    except (InputError, RubricError):
+        raise
+    except Exception as error:  # noqa: BLE001  a fault of the grader affects only this report
         if len(names) == 1:
-            return dict.fromkeys(names, str(error))
+            fault = f"the grader itself failed: {type(error).__name__}: {error}"
+            return dict.fromkeys(names, str(error) if isinstance(error, WorkerError) else fault)
         alone = [{key: name} for key, name in names.items()]
         return {key: why for one in alone for key, why in _lost(write, one, write(one)).items()}
     return {}
@@ -111,11 +131,18 @@ def _write_some(
 
 
 def report_of(grades: Grades, grade: StudentGrade) -> Report:
-    """Return the report on a student's newest submission; the late penalty is a note of its own."""
-    report = grades.report(grade)
-    if not grade.late.reason:
-        return report
+    """Return the report on a student's newest submission; final mark, excuse, comment and late penalty are notes of their own.
+
+    Of a student who has submitted nothing, it has no points, and the notes.
+    """
+    report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason
     if grade.late.points:
         note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
-    return replace(report, notes=(*report.notes, note))
+    return replace(report, notes=(*report.notes, *remarks_of(grades, grade).notes, *([note] if note else [])))
+
+
+def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:
+    outcome = Outcome("skipped", "not graded, because nothing was submitted")
+    results = tuple(Result(criterion, outcome) for criterion in grades.criteria)
+    return Report(GradedSubmission(grade.student.key), grades.newest_rubric(), grades.parts, results)

@@ -34,16 +34,17 @@ def read_threshold(text: str) -> tuple[Decimal, bool]:
 def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
-    A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion must have
-    passed: one that could not be decided needs manual grading, and is not a pass.
+    A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion that counts must
+    have passed, without extra credit: one that could not be decided needs manual grading, and is not a pass.
     """
     from grader.report.content import undecided
 
-    if report.counts("errored"):
+    if report.fault:
         return ExitCode.FAULT
     if threshold is not None:
         least, is_percent = threshold
         is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
     else:
-        is_passed = not report.counts("failed", "skipped") and not undecided(report)
+        short = [result for result in report.results if result.is_lost] + undecided(report)
+        is_passed = all(result.criterion.bonus for result in short)
     return ExitCode.PASSED if is_passed else ExitCode.FAILED

@@ -72,7 +72,7 @@ class GradeResult(NamedTuple):
         from grader.report.content import undecided
 
         names = ", ".join(result.criterion.id for result in undecided(self.report))
-        if self.exit_code != ExitCode.FAILED or not names or self.report.counts("failed", "skipped"):
+        if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
@@ -106,6 +106,10 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     from grader.submission.opening import open_submission
 
     rubric = requested_rubric(request, warn)
+    if not request.path.lower().endswith(ROBOT_FILES):
+        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
+
+        refuse_class(request.path, rubric, request.choice)
     submission = open_submission(
         request.path,
         wanted=rubric.urdf,

@@ -11,7 +11,7 @@ from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.writing import save_bytes
+from grader.usecases.writing import make_folder, save_bytes
 
 _MAX_NAMED = 6
 
@@ -60,7 +60,7 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix) -> str:
         _refuse_input(file, graded)
     for file, data in written.items():
         if is_folder:
-            file.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
     score = f"{format_points(report.score)} -> {format_points(fix.report.score)} of {format_points(report.max_score)} points"

@@ -59,7 +59,7 @@ class _RefusedError(Exception):
 
     def __init__(self, status: HTTPStatus, why: str) -> None:
         super().__init__(why)
-        self.response = Response(f"{why}\n".encode(), status=status)
+        self.status = status
 
 
 class LocalServer(ThreadingHTTPServer):
@@ -130,8 +130,7 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             request = Request(self._path(), self._body() if has_body else None)
         except _RefusedError as error:
-            self.close_connection = True  # a body may be unread
-            self._send(error.response)
+            self._refuse(error.status, str(error))
         else:
             self._send(self._answer(request))
 
@@ -169,6 +168,10 @@ class _Handler(BaseHTTPRequestHandler):
             message = printable(f"the grader failed on this request: {type(error).__name__}: {error}")
             return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
+    def _refuse(self, status: HTTPStatus, why: str) -> None:
+        self.close_connection = True  # a body may be unread
+        self._send(Response(f"{why}\n".encode(), status=status))
+
     def _send(self, response: Response) -> None:
         self.send_response(response.status)
         for name, value in _HEADERS.items():
@@ -187,9 +190,8 @@ class _Handler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer a request that cannot be read, or has an unsupported method, in plain text."""
         del explain
-        self.close_connection = True
         status = HTTPStatus.METHOD_NOT_ALLOWED if code == HTTPStatus.NOT_IMPLEMENTED else HTTPStatus(code)
-        self._send(_RefusedError(status, printable(message or "this request cannot be read")).response)
+        self._refuse(status, printable(message or "this request cannot be read"))
 
     def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002  the name of the base class
         """Log nothing: addresses contain the secret."""

@@ -78,7 +78,7 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
 
 
 def _undo(session: ReviewSession, terminal: Terminal) -> bool:
-    """Undo a mark of this review, and print the mark that counts now; return whether there was one."""
+    """Undo a mark of this review, and print the mark that counts now, or why it is not undone; return whether there was one."""
     if not session.can_undo:
         terminal.warn("nothing to undo: this review has marked nothing")
         return False
@@ -86,6 +86,8 @@ def _undo(session: ReviewSession, terminal: Terminal) -> bool:
         before = session.undo()
     except NewerMarkError as error:
         terminal.warn(f"not undone: somebody has marked this since: {mark_text(error.mark)}")
+    except InputError as error:
+        terminal.warn(str(error))
     else:
         terminal.warn(
             f"undone; the mark before it counts again: {mark_text(before)}" if before else "the mark is undone"

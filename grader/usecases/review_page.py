@@ -11,6 +11,7 @@ from typing import Any
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
 from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
@@ -48,11 +49,11 @@ class ReviewPage:
 
     def prepare(self) -> None:
         """Begin to read the pictures of the next item, while the person looks at this one."""
-        here = self.session.position
+        following = self.session.position + 1
         with suppress(GraderError):  # the page of that item shows the error
-            self.session.go(here + 1)
-            self._album()
-        self.session.go(here)
+            item = self.session.item_at(following)
+            if item is not None:
+                self._album(following, item)
 
     def _page(self, path: tuple[str, ...]) -> Response:
         match path:
@@ -69,14 +70,14 @@ class ReviewPage:
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
     def _item(self) -> Response:
-        session = self.session
-        if session.item is None:
-            raise InputError("this criterion is no longer graded for this student")
+        session, item = self.session, self.session.current_item()
         place = Place(session.position + 1, len(session.queue), session.is_own, session.can_undo)
-        return _html(item_page(session.item, place, self._album().result(), session.comments(), self._said()))
+        pictures = self._album(session.position, item).result()
+        return _html(item_page(item, place, pictures, session.comments(), self._said()))
 
     def _picture(self, which: str) -> Response:
-        found = dict(enumerate(map(_shown, self._album().result()), 1)).get(int(which) if _is_number(which) else 0)
+        pictures = self._album(self.session.position, self.session.current_item()).result()
+        found = dict(enumerate(map(_shown, pictures), 1)).get(int(which) if _is_number(which) else 0)
         if found is None:
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
         return Response(found.data, found.kind.media_type)
@@ -100,9 +101,7 @@ class ReviewPage:
         session = self.session
         match sent["do"]:
             case "mark":
-                if session.item is None:
-                    raise InputError("this criterion is no longer graded for this student")
-                criterion = session.item.result.criterion
+                criterion = session.current_item().result.criterion
                 points = read_points(sent["points"], criterion.id, criterion.points)
                 session.mark(points, sent["comment"].strip(), sent["shown"])
                 session.next()
@@ -124,11 +123,10 @@ class ReviewPage:
         else:
             self._notice = f"Undone; the mark before it counts again: {mark_text(before)}" if before else "Undone."
 
-    def _album(self) -> "Future[Album]":
-        """Return the pictures of the current item. Another thread reads them, so that marks are not delayed."""
-        session, position = self.session, self.session.position
-        if position not in self._albums and session.item is not None:
-            self._albums[position] = self._reader.submit(item_pictures, session.item, session.rubric)
+    def _album(self, position: int, item: QueuedResult) -> "Future[Album]":
+        """Return the pictures of an item. Another thread reads them, so that marks are not delayed."""
+        if position not in self._albums:
+            self._albums[position] = self._reader.submit(item_pictures, item, self.session.rubric_of(item))
         while len(self._albums) > _KEPT:
             self._albums.popitem(last=False)[1].cancel()
         return self._albums[position]

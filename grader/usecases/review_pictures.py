@@ -10,8 +10,9 @@ from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.report.review import who
 from grader.text import printable, printable_path
+from grader.usecases.class_reports import refuse_report_folder
 from grader.usecases.report_names import file_names, report_names, update_index
-from grader.usecases.writing import save_bytes
+from grader.usecases.writing import make_folder, save_bytes
 
 PicturesOfItems = dict[QueuedCriterion, list[str]]
 
@@ -24,18 +25,18 @@ def write_pictures(
     The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
     Raises InputError.
     """
+    refuse_report_folder(folder, (), sorted({Path(run.source) for run in book.runs()}))
     names = report_names(book)
     folders = file_names([criterion.id for criterion in session.criteria])
-    _make(folder)
+    make_folder(folder)
     update_index(folder, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
     lines: PicturesOfItems = {}
     for position, queued in enumerate(session.queue):
-        session.go(position)
-        item = session.item
+        item = session.item_at(position)
         if item is None:
             continue
         start = folder / folders[queued.criterion] / names[queued.key]
-        found = item_pictures(item, session.rubric)
+        found = item_pictures(item, session.rubric_of(item))
         lines[queued] = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
         for line in lines[queued]:
             show(f"{who(item.grade.student)}, {printable(queued.criterion)}: {line}\n")
@@ -48,17 +49,10 @@ def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedRe
     if isinstance(found, NotShown):
         return printable(str(found))
     path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")
-    _make(path.parent)
+    make_folder(path.parent)
     _refuse_symlink(path)
     save_bytes(path, found.data, [item.grade.files.root])
     return f"{printable_path(path)}  {printable(found.words)}"
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
 
 
 def _refuse_symlink(path: Path) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
-from grader.text import counted, counted_points, printable
+from grader.text import counted, printable
 from grader.usecases import Warn
 
 if TYPE_CHECKING:
@@ -44,7 +44,13 @@ def listed() -> str:
 
 def summary(rubric: "Rubric") -> str:
     """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
-    return f"{rubric.title} ({counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)})"
+    return f"{rubric.title} ({_size(rubric)})"
+
+
+def _size(rubric: "Rubric") -> str:
+    from grader.grading.worth import worth
+
+    return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
 
 
 def check(name: str, warn: Warn) -> str:
@@ -52,11 +58,10 @@ def check(name: str, warn: Warn) -> str:
     from grader.grading.grade import grade
 
     rubric = load(name, warn)
-    found = f"{rubric.id}: {counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)}, no mistakes found"
+    found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
     if rubric.solution is None:
         return found
-    results = grade(rubric, rubric.solution.submission).results
-    lost = [result for result in results if result.outcome.status not in ("passed", "pending")]
+    lost = grade(rubric, rubric.solution.submission).unearned
     lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost]
     lines += _unresolved(rubric)
     if lines:

@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.text import printable
+from grader.text import printable, printable_path
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
 ROBOT_FILES = (".urdf", ".xacro")
@@ -63,6 +63,14 @@ def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), 
             raise missing_folder(path) from None
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot write {path}: {reason}") from None
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it, unless it exists. Raises InputError."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
 
 
 def remove_previous(path: Path) -> int | None:

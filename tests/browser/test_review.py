@@ -199,7 +199,7 @@ def test_somebody_else_marks_meanwhile(open_page: Open, review: Review, book: Pa
 
 
 def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, book: Path) -> None:
-    """Invalid points, leaving what is not saved, and a command that has ended."""
+    """Invalid points, leaving what is not saved, also if it was changed after the warning, and the help."""
     page = open_page(review.url).page
     error = page.locator("#error")
     for typed, why in (("", "points are a number from 0 to 4"), ("9", "essay is worth 0 to 4 points, not 9")):
@@ -207,6 +207,11 @@ def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, 
         page.wait_for_function("why => document.getElementById('error').textContent.includes(why)", arg=why)
         assert page.evaluate("document.activeElement.id") == "points"
     press(page, "n")
+    assert error.inner_text() == "Not saved. Press the same key again to leave without saving (next)."
+    press(page, "f n")
+    assert page.locator("#points").input_value() == "4"
+    press(page, "c 'good' Escape n")
+    assert page.locator("#comment").input_value() == "good"
     assert error.inner_text() == "Not saved. Press the same key again to leave without saving (next)."
     press(page, "n", "2")
     press(page, "?")

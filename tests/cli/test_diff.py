@@ -54,16 +54,18 @@ def test_all_reasons(top: Path) -> None:
     write_submission(top / "class" / "dora")
     batch(top)
     assert diff(top) == (
-        "anna: 6 to 3 (-3)\n  the submission changed\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
-        "dora: none to 6\n  first submission\n"
+        "\nthe submission changed: 1 student\n  Anna Ek (anna): 6 to 3 (-3)\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
+        "\nfirst submission: 1 student\n  Dora Fi (dora): none to 6\n"
     )
     grader("mark", "dora", "essay", "3", "--gradebook", top / "book.db")
     (top / "newer.toml").write_text(lab_text(loads="4", extra="1"))
     batch(top, rubric=top / "newer.toml")
-    assert diff(top).endswith(
-        "dora: 6 to 11 (+5)\n  the rubric changed; manual marks changed\n"
-        "    loads: 3 to 4 (+1)\n    essay: none to 3\n    extra: none to 1\n"
-        "emil: 3 to 5 (+2)\n  the rubric changed\n    loads: 3 to 4 (+1)\n    extra: none to 1\n"
+    assert diff(top) == (
+        "\nthe rubric changed: 3 students\n  loads: points 3 to 4\n  extra: added\n"
+        "  loads: 3 to 4 (+1)\n  extra: none to 1\n"
+        "    Anna Ek (anna): 3 to 5 (+2)\n    Ben Oh (ben): 6 to 8 (+2)\n    Ben Oh (emil): 3 to 5 (+2)\n"
+        "\nthe rubric changed; manual marks changed: 1 student\n  loads: points 3 to 4\n  extra: added\n"
+        "  Dora Fi (dora): 6 to 11 (+5)\n    loads: 3 to 4 (+1)\n    essay: none to 3\n    extra: none to 1\n"
     )
     assert diff(top, "--to", 2) == "nothing changed\n"
     assert refusal(grader("diff", top / "book.db", "--from", 9)) == "there is no run 9; the runs are: 1, 2, 3, 4"
@@ -79,8 +81,24 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     assert (data["from"]["run"], data["to"]["run"]) == (1, 2)
     essay = [{"id": "essay", "before": None, "after": 0}]
     assert data["students"] == [
-        {"id": "emil", "before": 3, "after": 3, "because": ["manual marks changed"], "criteria": essay},
-        {"id": "zoe", "before": None, "after": 6, "because": ["first submission"], "criteria": []},
+        {
+            "id": "emil",
+            "name": "Ben Oh",
+            "before": 3,
+            "after": 3,
+            "because": ["manual marks changed"],
+            "criteria": essay,
+            "rubric": [],
+        },
+        {
+            "id": "zoe",
+            "name": "",
+            "before": None,
+            "after": 6,
+            "because": ["first submission"],
+            "criteria": [],
+            "rubric": [],
+        },
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
     assert [change["because"] for change in back] == [["manual marks changed"], ["no longer there"]]
@@ -100,7 +118,7 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
             record_run(book, rubric, [graded_as(rubric, "anna", "ppp??" + "f" * 30)])
             record_run(book, rubric, [graded_as(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
     lines = grader("diff", tmp_path / "few.db").stdout.splitlines()
-    assert lines[3:] == [
+    assert lines[4:] == [
         "    loads: 3 to 0 (-3)",
         "    box: 2.5 to 0 (-2.5)",
         "    tall: 0.5 to 0 (-0.5)",
@@ -108,7 +126,7 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
         "    c16, c17, c18 and 12 more: 0 to 1 (+1) each",
     ]
     lines = grader("diff", tmp_path / "many.db").stdout.splitlines()
-    assert len(lines) == 3 + 12 + 1
+    assert len(lines) == 4 + 12 + 1
     assert lines[-2:] == ["    c23: 0 to 23 (+23)", "    ... and 7 more"]
     reported = as_json(tmp_path / "many.db")["students"][0]["criteria"]
     assert len(reported) == 33
@@ -121,8 +139,56 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
         record_run(book, rubric, [graded_as(rubric, "anna", "?????")])
         record_run(book, rubric, [graded_as(rubric, "anna", "?????", "b", "it is no zip")])
     assert diff(tmp_path) == (
-        "anna: 0 as before, only the status changed\n  the submission changed; it was graded, and is unreadable\n"
+        "\nthe submission changed; it was graded, and is unreadable: 1 student\n  anna: 0 as before\n"
     )
+
+
+def test_a_long_class_is_grouped(tmp_path: Path) -> None:
+    """The largest group first: what changed in the rubric, what that changed in criteria, then each student once."""
+    keys = [f"s{number:03}" for number in range(120)]
+    older, newer = lab(), lab(box="5")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, older, [graded_as(older, key, "ppp??") for key in keys] + [graded_as(older, "zoe", "pfs??")])
+        found = [graded_as(newer, key, "pfs??" if key == "s007" else "ppp??", key) for key in keys]
+        record_run(book, newer, [*found, graded_as(newer, "zoe", "pfs??")])
+    lines = diff(tmp_path).splitlines()
+    assert lines[:4] == [
+        "",
+        "the submission changed; the rubric changed: 120 students",
+        "  box: points 2.5 to 5",
+        "  box: 2.5 to 5 (+2.5)",
+    ]
+    assert lines[4:123] == [f"    {key}: 6 to 8.5 (+2.5)" for key in keys if key != "s007"]
+    assert lines[123:] == [
+        "  s007: 6 to 3 (-3)",
+        "    box: 2.5 to 0 (-2.5)",
+        "    tall: 0.5 to 0 (-0.5)",
+    ]
+
+
+def test_a_change_of_the_rubric_is_named(top: Path) -> None:
+    """Arguments, adjustments with their reason, extra credit, removed criteria, and what a criterion requires."""
+    text = lab_text().replace("size = [1, 1, 1]", "size = [1, 1, 2]").replace('"picture"', '"photo"')
+    text = text.replace('id = "essay"', 'id = "essay"\nbonus = true')
+    (top / "newer.toml").write_text(text + '\n[adjust.loads]\naction = "drop"\nreason = "[b]odd[/b]\tname"\n')
+    batch(top)
+    grader("mark", "anna", "essay", "2", "--gradebook", top / "book.db")
+    batch(top, rubric=top / "newer.toml")
+    text = " ".join(diff(top).split())
+    for words in (
+        "loads: Not counted: [b]odd[/b] name",
+        "box: size [1, 1, 1] to [1, 1, 2]",
+        "Ben Oh (emil): 3 to 2.5 (-0.5)",
+    ):
+        assert words in text
+    found = {student["id"]: student for student in as_json(top / "book.db")["students"]}
+    assert found["emil"]["name"] == "Ben Oh"
+    assert found["emil"]["rubric"] == [
+        {"id": "loads", "key": "adjust", "before": None, "after": {"action": "drop", "reason": "[b]odd[/b] name"}},
+        {"id": "box", "key": "size", "before": [1, 1, 1], "after": [1, 1, 2]},
+    ]
+    assert found["anna"]["criteria"][-1] == {"id": "essay", "before": None, "after": 2}
+    assert found["anna"]["rubric"][-1] == {"id": "essay", "key": "bonus", "before": False, "after": True}
 
 
 def test_names_are_escaped(top: Path) -> None:

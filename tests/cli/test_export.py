@@ -25,7 +25,7 @@ from grader.classroom.students import ClassSubmission
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
-from grader.usecases.export import preflight_lines
+from grader.usecases.lms_files import preflight_lines
 from tests.classroom.gradebooks import (
     batch,
     graded_as,
@@ -46,6 +46,10 @@ import class_generator as made_up
 
 BROKEN = "it could not be graded: cleo.zip cannot be read as an archive: File is not a zip file"
 HEADER = "id,name,email,login,sis,status,score,max_score,pending,late_days,late_points,total,not_final_because"
+
+MORE = "carried,section,marker,submitted,final_mark,excused,comments,graded_by"
+FIVE = "5 points need manual grading"
+BOTH = '"automatically, and manually by me"'
 
 
 def export(top: Path, target: str, *more: object) -> Any:
@@ -78,12 +82,12 @@ def test_csv(top: Path) -> None:
     done = export(top, "csv")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.splitlines() == [
-        f"{HEADER},loads,box,tall,essay,picture,carried",
-        "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1,",
-        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,11,0,0,0,6,,3,2.5,0.5,0,0,",
-        f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,,",
-        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,,",
-        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points need manual grading,3,1.25,0,,,",
+        f"{HEADER},loads,box,tall,essay,picture,{MORE}",
+        f"anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1,,,,,,,,{BOTH}",
+        f"ben,Ben Oh,ben@example.org,bo2,ben,graded,6,11,0,0,0,6,,3,2.5,0.5,0,0,,,,,,,,{BOTH}",
+        f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,,,,,,,,,",
+        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,,,,,,,,,",
+        f"emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,{FIVE},3,1.25,0,,,,,,,,,,{BOTH}",
     ]
     again = export(top, "csv", "--output", top / "grades.csv")
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
@@ -280,7 +284,10 @@ def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Pat
 def test_without_a_target(graded_class: Path) -> None:
     """The choices are on one line, without the tabs around them."""
     why = refusal(grader("export", "--gradebook", graded_class / "book.db"))
-    assert "Choose from: csv, canvas, moodle, json, html (`grader export --help` shows the usage)" in why
+    assert (
+        "Choose from: csv, canvas, moodle, blackboard, brightspace, json, html (`grader export --help` shows the usage)"
+        in why
+    )
 
 
 @pytest.mark.parametrize("name", ["book.db", "../small/book.db", "link.db", "hard.db", "book.db-wal", "book.db-shm"])
@@ -420,7 +427,7 @@ def test_feedback_in_moodle(tmp_path: Path) -> None:
     assert items[3] == "About picture: 1 of 1. nice"
     assert items[4] == "Late penalty: -1.6. 2 days late, from the roster"
     assert not set(feedback) & set("\x1b\u202e")
-    assert feedback.startswith("<p>Graded automatically: 4.4 of 11 points.</p>")
+    assert feedback.startswith("<p>Graded automatically, and manually: 4.4 of 11 points.</p>")
 
 
 # --- There and back: what an LMS hands out, graded, in the LMS's own file ---------------------------------------------

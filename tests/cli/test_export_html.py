@@ -11,6 +11,7 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
+from grader.errors import InputError
 from grader.report.formats import Format
 from grader.usecases.class_reports import write_reports
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
@@ -112,7 +113,7 @@ def test_submissions_that_are_gone_or_changed(top: Path) -> None:
     [
         ((), "export html writes a folder of pages: name it with --output DIR"),
         (("--into", "book.db", "--output", "pages"), "export html does not take --into"),
-        (("--output", "roster.csv"), "cannot write reports to {top}/roster.csv: it is not a folder"),
+        (("--output", "roster.csv"), "cannot write files to {top}/roster.csv: it is not a folder"),
         (("--output", "book.db"), "cannot write {top}/book.db: this would overwrite the gradebook"),
         (("--output", "pages", "--due", "soon"), "'soon' is not a date or time"),
         (("--output", "roster.csv/x"), "cannot make the folder {top}/roster.csv/x: Not a directory"),
@@ -186,27 +187,53 @@ def test_a_class_without_any_urdf(tmp_path: Path) -> None:
     assert not page.root.xpath("//figure")
 
 
-class DyingWorkers(Executor):
-    """An executor whose worker ends whenever it works on the report of one student."""
+class FailingWorkers(Executor):
+    """An executor that fails whenever it works on the report of one student."""
+
+    def __init__(self, error: Exception) -> None:
+        self.error = error
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
         """Run a function here and now."""
         future: Future[Any] = Future()
         if any(isinstance(given, dict) and "ben" in given for given in arguments):
-            future.set_exception(WorkerError("the process that graded it was killed"))
+            future.set_exception(self.error)
         else:
             future.set_result(function(*arguments, **named))
         return future
 
 
-def test_a_crash_costs_one_page(top: Path) -> None:
+@pytest.mark.parametrize(
+    ("error", "why"),
+    [
+        (WorkerError("the process that graded it was killed"), "the process that graded it was killed"),
+        (OverflowError("inf"), "the grader itself failed: OverflowError: inf"),
+    ],
+)
+def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
     """The others have theirs, the class's page has no link to it, and standard error says why."""
     lines: list[str] = []
     progress: list[Progress] = []
-    write_reports(DyingWorkers(), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append)
+    write_reports(
+        FailingWorkers(error), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append
+    )
     assert [state.done for state in progress] == [0, 4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
-        "no report for ben: the process that graded it was killed",
+        f"no report for ben: {why}",
     ]
     assert sorted(ClassPageReader(top / "pages/index.html").links()) == ["anna.html", "cleo.html", "emil.html"]
+
+
+def test_a_full_disk_ends_the_command(top: Path) -> None:
+    """It concerns all pages: none is blamed on a student."""
+    with pytest.raises(InputError, match="No space left"):
+        write_reports(
+            FailingWorkers(InputError("No space left")),
+            top / "book.db",
+            top / "pages",
+            [Format.HTML],
+            None,
+            print,
+            print,
+        )

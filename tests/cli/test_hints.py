@@ -139,6 +139,10 @@ def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
     written = sorted(path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*"))
     assert written == ["my_robot/setup.py", "my_robot/urdf/my_robot.urdf"]
     assert "0 0.6 0 1" in (tmp_path / "out/my_robot/urdf/my_robot.urdf").read_text()
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken/my_robot").touch()
+    done = run(("grade", copy, "--fix", tmp_path / "taken"))
+    assert (done.returncode, b"cannot make the folder " in done.stderr) == (2, True)
 
 
 @pytest.mark.parametrize("kind", ["same", "symlink", "hard link", "inside"])

@@ -14,7 +14,10 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, queued_result
 from grader.classroom.gradebook.marks import NewerMarkError
-from tests.classroom.gradebooks import ENVIRONMENT, grader, mark
+from grader.report.screen import Screen
+from grader.usecases import Terminal
+from grader.usecases.review import review as review_class
+from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -240,6 +243,23 @@ def test_back_and_undo(top: Path) -> None:
     assert "Marked:" not in unmarked
     assert done.stdout.endswith("1 marked, 3 left\n")
     assert [row[1:] for row in marks(top)] == [("essay", 3.0, "good"), ("essay", None, ""), ("essay", 2.0, "")]
+
+
+def test_undo_of_a_criterion_that_is_no_longer_graded(top: Path) -> None:
+    """After another process has used another rubric, standard error has the reason, and the review goes on."""
+    lines: list[str] = []
+    typed = iter(["3", "u", "2", "q"])
+
+    def ask(_prompt: str) -> str:
+        line = next(typed)
+        if line == "u":
+            grade_without(top / "book.db", "anna", "essay")
+        return line
+
+    terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None)
+    assert review_class(top / "book.db", "essay", "Kim", None, terminal).startswith("1 marked, ")
+    assert lines == ["not undone: this criterion is no longer graded for this student"]
+    assert [row[:3] for row in marks(top)] == [("anna", "essay", 3.0), ("emil", "essay", 2.0)]
 
 
 def test_undo_of_a_replacement(top: Path) -> None:

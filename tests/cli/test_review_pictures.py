@@ -121,6 +121,16 @@ def test_a_symlink_is_not_followed(top: Path) -> None:
     assert (top / "secret.png").read_bytes() == PNG
 
 
+@pytest.mark.parametrize("name", ["class", "class/pictures", "class/ash/pictures"])
+def test_no_picture_is_written_into_the_class(name: str, top: Path) -> None:
+    """The next run would take the folder for a submission."""
+    why = "the next run would take them for a submission; choose a folder outside of the class folder"
+    before = sorted(top.rglob("*"))
+    done = grader("review", "--gradebook", top / "book.db", "--pictures", top / name)
+    assert refusal(done) == f"cannot write files to {top / name}: {why}"
+    assert sorted(top.rglob("*")) == before
+
+
 def test_no_picture_of_another_student_is_overwritten(top: Path) -> None:
     """A folder that has a file of that name for another student is refused before anything is written."""
     assert review(top).returncode == 0

@@ -20,11 +20,12 @@ from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.grading.rubric import Rubric
 from grader.usecases import local_server
 from grader.usecases.local_server import HOST, MAX_BODY
-from tests.classroom.gradebooks import ENVIRONMENT, PNG, grader, refusal
+from tests.classroom.gradebooks import ENVIRONMENT, PNG, grade_without, grader, refusal
 from tests.command_line import HANG_TIMEOUT
 from tests.review_server import Review, running
 from tests.samples import ROOT
 
+GONE = "this criterion is no longer graded for this student"
 ITEMS = 6  # of the class: essays of anna, ben and emil, then their pictures
 
 
@@ -161,6 +162,31 @@ def test_the_end(review: Review, book: Path) -> None:
     assert "<h1>Nothing needs manual grading</h1>" in page
     assert "6 items marked in this review." in page
     assert f"grader export csv --gradebook {book}" in page
+
+
+def test_the_last_item_stays_the_current_one(review: Review) -> None:
+    """Also after its page has looked for a next item."""
+    assert review.get(str(ITEMS)).status == 200
+    assert review.get().headers["location"] == f"/{review.token}/{ITEMS}"
+
+
+def test_a_criterion_that_is_no_longer_graded(review: Review, book: Path) -> None:
+    """Its page, its picture and a mark are refused with the reason, after another process has used another rubric."""
+    assert review.get("4/picture/1").status == 200
+    grade_without(book, "anna", "picture")
+    for path in ("4", "4/picture/1"):
+        found = review.get(path)
+        assert (found.status, GONE in found.text) == (503, True)
+    assert review.mark("4", "1") == {"error": GONE}
+
+
+def test_undo_of_a_criterion_that_is_no_longer_graded(review: Review, book: Path) -> None:
+    """The page shows the reason, and there is nothing more to undo."""
+    assert review.mark("4", "1") == {"go": "5"}
+    grade_without(book, "anna", "picture")
+    assert review.post("5", {"do": "undo"}).json == {"error": f"not undone: {GONE}"}
+    assert review.get().headers["location"] == f"/{review.token}/5"
+    assert review.post("5", {"do": "undo"}).json == {"error": "nothing to undo: this review has marked nothing"}
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from grader.documents.pictures import NotShown, Picture, image_type, read_pictur
 from grader.errors import FileError
 from grader.files.tree import File
 from tests.documents.test_image_size import HEADERS
+from tests.processor_time import processor_time
 
 SHOWN = {name: header for name, (header, _) in HEADERS.items() if not name.startswith("TIFF")}
 SCRIPT = b"<script>alert(1)</script>"
@@ -18,6 +19,10 @@ NOT_SHOWN = {
     "SVG": (b'<svg xmlns="http://www.w3.org/2000/svg">' + SCRIPT, "its content is SVG, which can contain scripts"),
     "SVG with a prolog": (
         b'<?xml version="1.0"?>\n<!-- a --><!DOCTYPE svg PUBLIC "a" "b">\n<svg onload="alert(1)"/>',
+        "its content is SVG, which can contain scripts",
+    ),
+    "SVG after tags in a comment and entities": (
+        b"<?xml version='1.0'?><?xml-stylesheet href='a'?><!-- <a> <b> --><!DOCTYPE svg [<!ENTITY a 'b'>]>\n<svg>",
         "its content is SVG, which can contain scripts",
     ),
     "TIFF": (HEADERS["TIFF turned by its orientation"][0], "its content is TIFF, which browsers do not show"),
@@ -69,6 +74,13 @@ def test_everything_else_is_not_shown(name: str) -> None:
     assert isinstance(found, NotShown)
     assert found.where == "screen.png"
     assert found.reason.startswith(f"{why}: open it yourself")
+
+
+@pytest.mark.parametrize("part", [b"<!>", b"<!-->", b"<!---->", b"<!--><!-->", b"<![]>", b"<![", b"<?>", b"<!--", b" "])
+def test_hostile_markup_is_read_in_linear_time(part: bytes) -> None:
+    """Declarations that end in no picture cost the time of their bytes, however they repeat."""
+    with processor_time(1.0):
+        assert isinstance(verified(part * 400, "screen.png"), NotShown)
 
 
 @pytest.mark.parametrize(

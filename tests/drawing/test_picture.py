@@ -14,6 +14,7 @@ from grader.robot.reader import read_urdf
 from grader.source import Source
 from grader.submission.opening import open_submission
 from grader.submission.urdf import Urdf
+from tests.command_line import run
 
 ROOT = Path(__file__).parents[2]
 
@@ -103,6 +104,25 @@ def test_what_cannot_be_drawn_is_named() -> None:
         "Not shown: 'a': mesh files are not opened",
         "Not shown: 'b': the size or place of a shape is zero, too large or not known",
     )
+
+
+@pytest.mark.parametrize(("kind", "picture"), [("svg", "<svg "), ("html", "Three views")])
+def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, picture: str, tmp_path: Path) -> None:
+    """A mesh at the end of the range of numbers in a link that is turned: the number of the callout is at the link's frame."""
+    far = '<visual><origin xyz="1e308 1.7e308 1.7e308"/><geometry><mesh filename="a.stl"/></geometry></visual>'
+    link = '<link name="left_wheel">'
+    text = (ROOT / "submissions/axis-negated/my_robot.urdf").read_text().replace(link, link + far)
+    turned = '<origin xyz="-0.15 0.2 0" rpy="-0.78 0 0.78"/>'
+    (tmp_path / "my_robot.urdf").write_text(text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned))
+    assert (tmp_path / "my_robot.urdf").read_text().count(turned) == text.count(far) == 1
+    done = run(["grade", tmp_path, "--rubric", "lab6", "--format", kind])
+    assert (done.returncode, done.stderr) == (1, b"")
+    assert picture in done.stdout.decode()
+    loaded = load_rubric("lab6")
+    found = picture_of(grade(loaded, open_submission(str(tmp_path), wanted=loaded.urdf)))
+    assert found is not None
+    point = next(callout.point for callout in found.callouts if callout.link == "left_wheel")
+    assert point == pytest.approx((-0.15, 0.2, 0.0))
 
 
 def test_only_round_links_on_the_ground_are_wheels() -> None:

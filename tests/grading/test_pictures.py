@@ -147,8 +147,16 @@ def test_pictures_in_an_answer() -> None:
     assert in_answer({"lab.md": b"# Step 15\n\nIt [picture] vanishes.\n"}, "step 15") == []
 
 
+@pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85"])
+def test_other_separators_are_no_lines(separator: str) -> None:
+    """An answer with separators of Unicode does not show the pictures of the answer below it."""
+    answer = separator.join(["It", "vanishes", "at", "once", "again"])
+    report = word("# Step 15", STEP_8, answer, "# Step 18", "Two roots.", STEP_18)
+    assert in_answer({"lab.docx": report}, "step 15") == ["picture 1 in lab.docx (8 x 8 pixels)"]
+
+
 def test_pictures_of_a_pdf() -> None:
-    """JPEG data is taken as it is; grey, RGB and palettes become PNG; other kinds are named."""
+    """JPEG data is taken as it is; grey, RGB and palettes become PNG; other kinds, such as inverted samples, are named."""
     pytest.importorskip("pypdf")
     jpeg = b"\xff\xd8\xff\xc0\0\x11\x08\0\x02\0\x01\x03" + bytes(9) + b"\xff\xd9"
     kinds = {
@@ -157,11 +165,17 @@ def test_pictures_of_a_pdf() -> None:
         "page 3 of lab.pdf (2 x 1 pixels)": image(2, zlib.compress(b"abcdef"), "/DeviceRGB"),
         "page 4 of lab.pdf (2 x 1 pixels)": image(2, zlib.compress(b"\0\1"), "[/Indexed/DeviceRGB 1<ff000000ff00>]"),
         "page 5 of lab.pdf (1 x 1 pixels)": image(1, b"a", "/DeviceGray", ""),
+        "page 6 of lab.pdf (1 x 1 pixels)": image(1, b"abc", "/DeviceRGB", "/Decode[0 1 0.0 1.0 0 1]"),
+        "page 7 of lab.pdf (1 x 1 pixels)": image(1, b"\0", "[/Indexed/DeviceRGB 0<ff0000>]", "/Decode[0 255]"),
     }
     unknown = [
         image(1, zlib.compress(b"abcd"), "/DeviceCMYK"),
         image(9, zlib.compress(b"abc"), "/DeviceRGB"),
         image(1, b"x", "/DeviceRGB", "/Filter/JPXDecode"),
+        image(1, jpeg, "/DeviceRGB", "/Filter/DCTDecode/Decode[1 0 1 0 1 0]"),
+        image(1, b"a", "/DeviceGray", "/Decode[1 0]"),
+        image(1, b"a", "/DeviceGray", "/Decode[0 255]"),
+        image(1, b"\0", "[/Indexed/DeviceRGB 1<ff000000ff00>]", "/Decode[1 0]"),
         image(0, b"", "/DeviceRGB", ""),
         image(-1, b"", "/DeviceRGB", ""),
         image(10**9, b"", "/DeviceRGB", ""),

@@ -29,6 +29,7 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
     assert {row["name"] for row in page.table("students")} >= set(map(without_commands, CORPUS))
     links = [link for link in page.root.xpath("//a/@href") if not link.startswith("#")]
     assert {unquote(link) for link in links} == {file.name for file in pages.glob("*.html")} - {"index.html"}
+    assert {link[1:] for link in page.root.xpath("//a/@href") if link.startswith("#")} <= set(page.root.xpath("//@id"))
     assert len(page.root.xpath("//script")) == 2
     assert any(CORPUS[1] in text for text in page.texts("//section[@id='look']//li"))
     for file in pages.glob("*.html"):

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 from lxml import html
 
 from grader.grading.grade import grade
+from grader.grading.report import ManualMark, Report
 from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
 from grader.submission.opening import read_submission
@@ -79,6 +81,31 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     assert pins == {text.text for text in page.xpath("//*[@class='number']//*[text()]")}
     assert pins == {"1", "2", "3", "4"}  # the fifth is about several links: it has no place in the picture
     assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
+
+
+def mark_of_the_cause() -> Report:
+    """Return a report in which a manual mark overrides a failure that others are skipped because of."""
+    report = SAMPLES["pictures-only"].grade()
+    cause = next(result.because for result in report.results if result.because)
+    given = [
+        result._replace(manual_mark=ManualMark(result.criterion.points, "Ada", ""))
+        if result.criterion.id == cause
+        else result
+        for result in report.results
+    ]
+    return replace(report, results=tuple(given))
+
+
+@pytest.mark.parametrize(
+    "report",
+    [marked, hinted, mark_of_the_cause, *(SAMPLES[name].grade for name in ("axis-negated", "pictures-only"))],
+)
+def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None:
+    """A criterion that is skipped leads to the card of its cause."""
+    page = read(render_html(report()))
+    targets = {link.removeprefix("#") for link in page.xpath("//a/@href")}
+    assert targets <= set(page.xpath("//@id"))
+    assert any(target.startswith("criterion-") for target in targets)
 
 
 def test_page_says_why_it_has_no_picture() -> None:

@@ -204,7 +204,7 @@ def test_answers_and_passed_criteria_are_shown_with_verbose() -> None:
 def test_an_error_that_is_carried_forward_is_one_line() -> None:
     """It names the criteria that keep their points, and where the mistake is counted."""
     report = report_of("base-half-sunk")
-    line = "lidar-on-top fails. Points given: this mistake is already counted in base-on-ground."
+    line = "lidar-on-top fails. Points given: this fails only because of base-on-ground."
     assert line in " ".join(shown(report).split())
     assert "\u2717 lidar-on-top" not in shown(report)
     assert "\u2717 lidar-on-top  0 points" in shown(report, verbose=True)

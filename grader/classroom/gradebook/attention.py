@@ -8,7 +8,7 @@ from grader.classroom.gradebook.student_grade import Reason
 
 _MAY_NEED_ATTENTION = (
     "((verdict <> 'graded' OR faults OR rubric <> ?) AND final IS NULL AND NOT is_excused)"
-    " OR older_marks OR over_marks OR is_gone OR is_on_roster = 0 OR final_is_older"
+    " OR older_marks || revalued_marks || over_marks <> '' OR is_gone OR is_on_roster = 0 OR final_is_older"
 )
 
 

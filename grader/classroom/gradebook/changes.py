@@ -1,6 +1,6 @@
 """The differences between two runs, or two gradebooks: which students, by how much, in which criteria, and why."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -9,17 +9,21 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points, graded_on
 from grader.errors import InputError
-from grader.text import shell_quoted
+from grader.grading.rubric import Rubric
+from grader.grading.rubric_changes import RubricChange, concerning, rubric_changes
+from grader.grading.validation import TOTAL
+from grader.text import format_points, shell_quoted
 
 _STATES = """
-SELECT student.id, student.key, result.statuses, result.verdict, result.digest, result.rubric, result.version
-FROM student JOIN submission ON submission.student = student.id AND submission.run =
+SELECT student.id, student.key, student.name, result.statuses, result.verdict, result.digest, result.rubric, result.version
+FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
     (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?)
-JOIN result ON result.id = submission.result ORDER BY student.key
+LEFT JOIN result ON result.id = submission.result ORDER BY student.key
 """
 _MARKS = """
-SELECT student, criterion, points FROM mark WHERE points IS NOT NULL AND id =
-    (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion AND newer.id <= ?)
+SELECT student, criterion, points FROM mark WHERE kind IN ('points', 'excused') AND id =
+    (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
+        AND newer.kind <> 'second' AND newer.id <= ?)
 """
 _NEWEST = 2**62  # above every id of a run or mark
 
@@ -50,27 +54,55 @@ class PointsChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The changes for one student, and their causes. A score is None if there was none."""
+    """The changes for one student, and their causes. A total without late penalty is None if there was none.
+
+    `rubric` are the changes of the rubric that concern the criteria in `steps`.
+    """
 
     key: str
     before: Decimal | None
     after: Decimal | None
     steps: tuple[PointsChange, ...]
     why: tuple[str, ...]
+    name: str = ""
+    rubric: tuple[RubricChange, ...] = ()
 
 
 class _StudentState(NamedTuple):
+    """A student in a snapshot. `verdict` is empty without a submission, `final` is None without a final mark."""
+
+    name: str
     verdict: str
     digest: str
-    rubric: str
+    sha256: str
+    rubric: Rubric | None
     version: str
-    parts: tuple[str, ...]
     points: Mapping[str, Decimal | None]
-    marks: Mapping[str, Decimal]
+    parts: tuple[str, ...]
+    marks: Mapping[str, Decimal | None]
 
     @property
-    def score(self) -> Decimal:
-        return sum((points for points in self.points.values() if points is not None), Decimal(0))
+    def final(self) -> Decimal | None:
+        return self.marks.get(TOTAL)
+
+    @property
+    def is_excused(self) -> bool:
+        return TOTAL in self.marks and self.final is None
+
+    @property
+    def total(self) -> Decimal | None:
+        score = sum((points for points in self.points.values() if points is not None), Decimal(0))
+        return self.final if self.final is not None or not self.verdict else score
+
+    @property
+    def uncounted(self) -> set[str]:
+        """The criteria whose manual marks do not count, and the whole submission."""
+        criteria = self.rubric.criteria if self.rubric is not None else ()
+        return {TOTAL, *(row.id for row in criteria if row.adjustment is not None)}
+
+
+_NOBODY = _StudentState("", "", "", "", None, "", {}, (), {})
+_Comparison = Callable[[str, str], Mapping[str, tuple[RubricChange, ...]]]
 
 
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
@@ -96,41 +128,76 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
 def changes(before: Snapshot, after: Snapshot) -> list[Change]:
     """Return the students for whom something changed, in the order of their keys."""
     old, new = _states(before), _states(after)
+    rubrics = {state.sha256: state.rubric for state in (*old.values(), *new.values()) if state.rubric is not None}
+
+    @cache
+    def comparison(before: str, after: str) -> Mapping[str, tuple[RubricChange, ...]]:
+        return rubric_changes(rubrics[before], rubrics[after])
+
     keys = sorted(old.keys() | new.keys())
-    return [change for key in keys if (change := _change(key, old.get(key), new.get(key))) is not None]
+    found = (_change(key, old.get(key, _NOBODY), new.get(key, _NOBODY), comparison) for key in keys)
+    return [change for change in found if change is not None]
 
 
 def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
-    marks: dict[int, dict[str, Decimal]] = {}
+    marks: dict[int, dict[str, Decimal | None]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
-        marks.setdefault(student, {})[criterion] = Decimal(units) / UNITS_PER_POINT
+        marks.setdefault(student, {})[criterion] = None if units is None else Decimal(units) / UNITS_PER_POINT
     rubric_of = cache(snapshot.book.rubric)
     states: dict[str, _StudentState] = {}
-    for student, key, statuses, verdict, digest, rubric, version in snapshot.book.rows(_STATES, snapshot.run):
+    for student, key, name, statuses, verdict, digest, sha256, version in snapshot.book.rows(_STATES, snapshot.run):
         own = marks.get(student, {})
-        points = criterion_points(rubric_of(rubric), statuses, own)
-        parts = graded_on(rubric_of(rubric), statuses)
-        states[key] = _StudentState(verdict, digest, rubric, version, parts, points, own)
+        if verdict is None:
+            states[key] = _NOBODY._replace(name=name, marks=own)
+            continue
+        rubric = rubric_of(sha256)
+        points = criterion_points(rubric, statuses, {name: given for name, given in own.items() if given is not None})
+        parts = graded_on(rubric, statuses)
+        states[key] = _StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own)
     return states
 
 
-def _change(key: str, old: _StudentState | None, new: _StudentState | None) -> Change | None:
-    if old is None or new is None:
-        why = "first submission" if old is None else "no longer there"
-        return Change(key, old.score if old else None, new.score if new else None, (), (why,))
+def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Comparison) -> Change | None:
+    whole = (key, old.total, new.total)
+    name = new.name or old.name
+    final = tuple(_final_mark(old, new))
+    if not (old.verdict and new.verdict):
+        moves = ((new.verdict, "first submission"), (old.verdict, "no longer there"))
+        why = (*(reason for holds, reason in moves if holds), *final)
+        return Change(*whole, (), why, name) if why else None
     steps = tuple(
         PointsChange(name, old.points.get(name), new.points.get(name))
         for name in dict.fromkeys((*old.points, *new.points))
         if old.points.get(name) != new.points.get(name)
     )
-    if not steps and old.verdict == new.verdict:
+    if not steps and not final and old.verdict == new.verdict:
         return None
+    is_same_rubric = old.sha256 == new.sha256
     reasons = (
         (old.digest != new.digest, "the submission changed"),
-        (old.rubric != new.rubric, "the rubric changed"),
+        (not is_same_rubric, "the rubric changed"),
         (old.version != new.version, "the grader changed"),
-        (old.rubric == new.rubric and old.parts != new.parts, "graded on other parts"),
-        (old.marks != new.marks, "manual marks changed"),
+        (is_same_rubric and old.parts != new.parts, "graded on other parts"),
+        (_has_other_marks(old, new), "manual marks changed"),
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
-    return Change(key, old.score, new.score, steps, tuple(reason for holds, reason in reasons if holds))
+    why = (*(reason for holds, reason in reasons if holds), *final)
+    rubric: tuple[RubricChange, ...] = ()
+    if not is_same_rubric and old.rubric is not None and new.rubric is not None:
+        names = [step.criterion for step in steps]
+        rubric = tuple(concerning(names, comparison(old.sha256, new.sha256), old.rubric, new.rubric))
+    return Change(*whole, steps, why, name, rubric)
+
+
+def _has_other_marks(old: _StudentState, new: _StudentState) -> bool:
+    changed = {name for name, _ in old.marks.items() ^ new.marks.items()}
+    return bool(changed and changed - old.uncounted - new.uncounted)
+
+
+def _final_mark(old: _StudentState, new: _StudentState) -> Iterator[str]:
+    """Yield what changed in the final mark and the excuse, in words."""
+    if old.final != new.final:
+        before, after = ("none" if one.final is None else format_points(one.final) for one in (old, new))
+        yield f"final mark: {before} to {after}"
+    if old.is_excused != new.is_excused:
+        yield "excused" if new.is_excused else "no longer excused"

@@ -11,23 +11,21 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import CARRIED, UNITS_PER_POINT, criterion_points, graded_on
+from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT, criterion_points, graded_on
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
-from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
+from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.hints.record import with_hints
 from grader.grading.record import Template, from_record
 from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
-from grader.names import did_you_mean
 from grader.text import shell_quoted
 
-_MAX_NAMED = 5
-_MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
-_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
+_COUNTS = ("id", "run", "result", "faults", "marks")  # columns that are taken as they are
+_NAMES = ("older_marks", "revalued_marks", "over_marks")  # of criteria, between spaces
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted", "section", "marker")
 _TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
@@ -42,7 +40,7 @@ _OTHERS = (
     "fingerprint",
     "digest",
 )
-_COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
+_COLUMNS = (*_COUNTS, *_NAMES, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
 _QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
 
@@ -89,11 +87,11 @@ class Grades:
 
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
-        if CARRIED not in grade.statuses:
+        if SETTLED not in grade.statuses:
             return []
         marks, criteria = self._manual_marks(grade), self.rubric(grade.rubric).criteria
-        rows = zip(criteria, grade.statuses, strict=True)
-        return [row.id for row, status in rows if status == CARRIED and row.id not in marks]
+        settled = (row for row, status in zip(criteria, grade.statuses, strict=True) if status == SETTLED)
+        return [row.id for row in settled if row.adjustment is None and row.id not in marks]
 
     def all(self) -> Iterator[StudentGrade]:
         """Yield all grades, in the order of the keys."""
@@ -108,22 +106,12 @@ class Grades:
         return self._select(f"WHERE {condition} ORDER BY key", *values)
 
     def find(self, name: str) -> StudentGrade:
-        """Return the grade of the student with this key, else login, address, number or full name; raises InputError."""
+        """Return the grade of the student with this key, else of the only one whom a typed name may mean; raises InputError."""
         name = storable(name)
         for grade in list(self._select("WHERE key = ?", name)):
             return grade
-        students = list(self.book.students())
-        keys = [students[index].key for index in People(map(clues_of, students)).named(name)]
-        if len(keys) == 1:
-            return self.find(keys[0])
-        if keys:
-            more = " and others" if len(keys) > _MAX_NAMED else ""
-            listed = f"{', '.join(map(repr, keys[:_MAX_NAMED]))}{more}"
-            raise InputError(f"{name!r} is ambiguous: it may be {listed}; use one of these ids")
-        some = students[:_MAX_SUGGESTED_FROM]
-        guess = did_you_mean(name, {word for student in some for word in (student.key, student.login, student.name)})
-        advice = guess or f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
-        raise InputError(f"there is no student {name!r} in the gradebook{advice}")
+        advice = f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
+        return self.find(find_typed(list(self.book.students()), name, advice).key)
 
     def report(self, grade: StudentGrade) -> Report:
         """Return the report on a student's newest submission with the manual marks; raises InputError without a submission."""
@@ -155,12 +143,18 @@ class Grades:
         query = "SELECT criterion, comment, grader_name FROM current_mark WHERE student = ? AND kind = 'comment'"
         return {name: ManualComment(comment, by) for name, comment, by in self.book.rows(query, grade.id)}
 
+    def _in_order(self, rubric: str, names: str) -> tuple[str, ...]:
+        """Return the criteria in a text between spaces, in the order of the rubric."""
+        found = names.split()
+        return tuple(row.id for row in self.rubric(rubric).criteria if row.id in found) if found else ()
+
     def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
         for row in self.book.rows(f"{_QUERY} {condition}", *values):
             yield self._grade(dict(zip(_COLUMNS, row, strict=True)))
 
     def _grade(self, values: dict[str, Any]) -> StudentGrade:
         counts = {name: values[name] for name in _COUNTS}
+        marked = {name: self._in_order(values["rubric"], values[name] or "") for name in _NAMES}
         points = {name: Decimal(values[name] or 0) / UNITS_PER_POINT for name in _POINTS}
         texts = {name: values[name] or "" for name in _TEXTS}
         truths = {name: bool(values[name]) for name in _TRUTHS}
@@ -177,7 +171,7 @@ class Grades:
         if final is not None or truths["is_excused"]:
             late = replace(late, points=Decimal(0))
         return StudentGrade(
-            **{**counts, **points, **texts, **truths, "faults": counts["faults"] or 0},
+            **{**counts, **marked, **points, **texts, **truths, "faults": counts["faults"] or 0},
             student=Student(*(values[name] for name in STUDENT_COLUMNS)),
             is_on_roster=None if is_on_roster is None else bool(is_on_roster),
             is_outdated=is_outdated,

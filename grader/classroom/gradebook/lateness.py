@@ -62,20 +62,40 @@ def read_time(text: str) -> datetime:
 
 
 def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime | None) -> tuple[int, str]:
+    grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
     if times.days_late is not None:
-        days = max(0, ceil(times.days_late))
+        # A whole number is what a person has decided; a fraction is a time, which Moodle has measured.
+        late = times.days_late - grace / _DAY if times.days_late % 1 else times.days_late
+        days = max(0, ceil(late))
         return days, f"{counted(days, 'day')} late, from the roster" if days else ""
-    due = read_time(times.deadline) if times.deadline else deadline or (policy.due if policy is not None else None)
+    of_class = deadline or (policy.due if policy is not None else None)
+    due = read_time(times.deadline) if times.deadline else of_class
     if not times.submitted or due is None:
-        return (1, "late by an unknown time, which counts as 1 day") if times.is_late else (0, "")
+        return _of_flag(times, of_class) if times.is_late else (0, "")
     submitted = datetime.fromisoformat(times.submitted)
     # A time without an offset is in the time zone of the other one.
     due = due.replace(tzinfo=due.tzinfo or submitted.tzinfo)
     submitted = submitted.replace(tzinfo=submitted.tzinfo or due.tzinfo)
-    allowed = times.extension * _DAY + timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
+    allowed = times.extension * _DAY + grace
     days = max(0, -((allowed - (submitted - due)) // _DAY))  # rounded up to days begun
     if not days:
         return 0, ""
-    extension = f", extension {times.extension:g} day{'s' * (times.extension != 1)}" if times.extension else ""
+    extension = f", {_extension(times)}" if times.extension else ""
     shown = f"submitted {times.submitted}, deadline {due.isoformat(timespec='minutes')}{extension}"
     return days, f"{counted(days, 'day')} late: {shown}"
+
+
+def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, str]:
+    """Return the days and the reason where an LMS says only that a submission is late: it does not know the roster's extensions."""
+    own = read_time(times.deadline) if times.deadline else None
+    if own is not None and of_class is not None:
+        own = own.replace(tzinfo=own.tzinfo or of_class.tzinfo)
+        if own > of_class.replace(tzinfo=of_class.tzinfo or own.tzinfo):
+            return 0, f"late for the LMS, on time with the student's own deadline {own.isoformat(timespec='minutes')}"
+    if times.extension > 0:
+        return 0, f"late for the LMS, on time with the {_extension(times)}"
+    return 1, "late by an unknown time, which counts as 1 day"
+
+
+def _extension(times: SubmissionTimes) -> str:
+    return f"extension {times.extension:g} day{'s' * (times.extension != 1)}"

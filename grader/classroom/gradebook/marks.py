@@ -194,6 +194,12 @@ def marks_of(book: Gradebook, student: int, criterion: str, most: int) -> list[M
     return [mark_of_row(*row) for row in book.rows(query, student, criterion, most)]
 
 
+def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
+    """Return the marks of a student that count, by criterion; that of the whole submission is named TOTAL."""
+    query = f"SELECT criterion, {MARK_COLUMNS} FROM current_mark WHERE student = ?"
+    return {criterion: mark_of_row(*row) for criterion, *row in book.rows(query, student)}
+
+
 def mark_of_row(
     identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None
 ) -> Mark:

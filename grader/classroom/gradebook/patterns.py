@@ -17,10 +17,10 @@ COLUMNS = "statuses, score, out_of, pending, final"
 class Pattern(NamedTuple):
     """A combination of results, and how many students have it.
 
-    `marks` are manual points in ten-thousandths, `earned` those of each criterion, None where it is not decided; a criterion without
-    points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the sum over the others. `undecided`
-    are the automatic points that need manual grading, of `automatic`. `decided` are the points of the maximum that need no manual
-    grading any more. `final` is a final mark, which replaces the grade.
+    `marks` are manual points in ten-thousandths, `earned` those of each criterion, None where it is not decided or adjusted; a
+    criterion without points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the sum over the
+    others. `undecided` are the automatic points that need manual grading, of `automatic`. `decided` are the points of the maximum
+    that need no manual grading any more, `bonus` the extra credit in the score. `final` is a final mark, which replaces the grade.
     """
 
     statuses: str
@@ -35,6 +35,7 @@ class Pattern(NamedTuple):
     undecided: int
     automatic: int
     decided: int
+    bonus: int
 
     @property
     def counts(self) -> bool:
@@ -42,8 +43,9 @@ class Pattern(NamedTuple):
         return self.final is not None or (self.decided > 0 and 2 * self.undecided <= self.automatic)
 
     def grade(self, most: int) -> int:
-        """Return the final mark, else the share that was earned of the decided points, times the maximum."""
-        return self.final if self.final is not None else round(self.score * most / self.decided)
+        """Return the final mark, else the share that was earned of the decided points, times the maximum, with extra credit."""
+        share = round((self.score - self.bonus) * most / self.decided) if self.decided else 0
+        return self.final if self.final is not None else share + self.bonus
 
 
 def patterns_of(book: Gradebook, rubric: Rubric) -> Iterator[Pattern]:
@@ -58,19 +60,15 @@ def pattern_of(rubric: Rubric, columns: tuple[Any, ...], marks: Mapping[str, int
     """Return the combination of results in some COLUMNS of the gradebook, with these manual marks."""
     statuses, score, out_of, pending, final = columns
     marks = {row.id: marks[row.id] for row in rubric.criteria if row.id in marks and row.adjustment is None}
-    earned = [
+    given = [
         marks.get(criterion.id, (units_of(criterion) or 1) * EARNED[status] if status in EARNED else None)
         for criterion, status in zip(rubric.criteria, statuses, strict=True)
     ]
+    earned = [given[row.position] if row.adjustment is None else None for row in rubric.criteria]
     total = sum(units or 0 for units, criterion in zip(earned, rubric.criteria, strict=True) if criterion.points)
-    graded = [
-        row
-        for row in rubric.criteria
-        if row.check.function not in MANUAL_CHECKS and statuses[row.position] != NOT_GRADED
-    ]
-    undecided = sum(units_of(row) for row in graded if statuses[row.position] == "?" and row.id not in marks)
-    waiting = (row for row in rubric.criteria if statuses[row.position] == "?" and row.id not in marks)
-    decided = out_of - sum(int(row.maximum * UNITS_PER_POINT) for row in waiting)
+    automatic = (row for row in rubric.criteria if row.check.function not in MANUAL_CHECKS)
+    graded = [row for row in automatic if statuses[row.position] != NOT_GRADED]
+    waiting = [row for row in rubric.criteria if statuses[row.position] == "?" and row.id not in marks]
     return Pattern(
         statuses,
         score,
@@ -81,12 +79,17 @@ def pattern_of(rubric: Rubric, columns: tuple[Any, ...], marks: Mapping[str, int
         marks,
         earned,
         total,
-        undecided,
-        sum(map(units_of, graded)),
-        decided,
+        sum(_maximum(row) for row in waiting if row.check.function not in MANUAL_CHECKS),
+        sum(map(_maximum, graded)),
+        out_of - sum(map(_maximum, waiting)),
+        sum(given[row.position] or 0 for row in rubric.criteria if row.bonus and row.points),
     )
 
 
 def units_of(criterion: Criterion) -> int:
     """Return the points of a criterion in ten-thousandths."""
     return int(criterion.points * UNITS_PER_POINT)
+
+
+def _maximum(criterion: Criterion) -> int:
+    return int(criterion.maximum * UNITS_PER_POINT)

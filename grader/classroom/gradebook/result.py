@@ -11,8 +11,8 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 STATUS_LETTERS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
-CARRIED = "c"  # failed because of an earlier mistake alone: the points are given
-EARNED = {"p": 1, CARRIED: 1, "f": 0, "s": 0}  # the share of the points, by the letter of a decided criterion
+SETTLED = "c"  # did not pass, and costs no points: failed because of an earlier mistake alone, or adjusted
+EARNED = {"p": 1, SETTLED: 1, "f": 0, "s": 0}  # the share of the points, by the letter of a decided criterion
 
 
 class GradingResult(NamedTuple):

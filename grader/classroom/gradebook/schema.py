@@ -61,8 +61,8 @@ SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WH
 -- The manual marks of criteria.
 CREATE VIEW manual_mark AS SELECT * FROM current_mark WHERE kind = 'points' AND criterion <> 'total';
 
--- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. A mark is
--- older where it was given for another submission, or when the criterion had another maximum.
+-- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names the
+-- criteria whose mark was given for another submission, `revalued` those that had another maximum then, `over` those with too many points.
 CREATE VIEW override AS
 SELECT student,
     count(*) AS marks,
@@ -70,13 +70,14 @@ SELECT student,
     sum(iif(status = '-' AND NOT is_bonus, maximum, 0)) AS out_of,
     sum(iif(status = '?', maximum, 0)) AS pending,
     sum(status = '!') AS faults,
-    sum(is_older) AS older, sum(points > maximum) AS over
+    group_concat(iif(is_older, id, NULL), ' ') AS older,
+    group_concat(iif(is_revalued AND NOT is_older, id, NULL), ' ') AS revalued,
+    group_concat(iif(points > maximum, id, NULL), ' ') AS over
 FROM (
-    SELECT manual_mark.student, manual_mark.points, criterion.points AS maximum, criterion.is_bonus,
+    SELECT manual_mark.student, manual_mark.points, criterion.id, criterion.points AS maximum, criterion.is_bonus,
         substr(result.statuses, criterion.position + 1, 1) AS status,
-        marked.id <> result.id AND (
-            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
-        ) AS is_older
+        marked.id <> result.id AND (marked.digest = '' OR marked.digest <> result.digest) AS is_older,
+        marked.id <> result.id AND before.points IS NOT criterion.points AS is_revalued
     FROM manual_mark
     CROSS JOIN result AS marked ON marked.id = manual_mark.result
     LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = manual_mark.criterion
@@ -96,8 +97,8 @@ SELECT student.*, submission.run, submission.result, result.rubric, result.versi
     result.out_of + coalesce(override.out_of, 0) AS out_of,
     result.pending - coalesce(override.pending, 0) AS pending,
     length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
-    coalesce(override.marks, 0) AS marks, coalesce(override.older, 0) AS older_marks,
-    coalesce(override.over, 0) AS over_marks,
+    coalesce(override.marks, 0) AS marks, coalesce(override.older, '') AS older_marks,
+    coalesce(override.revalued, '') AS revalued_marks, coalesce(override.over, '') AS over_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
     whole.kind IN ('points', 'excused') AND whole.result IS NOT submission.result
         AND (SELECT digest FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,

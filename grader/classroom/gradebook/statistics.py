@@ -11,14 +11,14 @@ from grader.classroom.gradebook.failures import grouped
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.patterns import Pattern, patterns_of, units_of
 from grader.classroom.gradebook.reasons import failure_counts, undecided_reasons
-from grader.classroom.gradebook.result import CARRIED, UNITS_PER_POINT
+from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20
 _MARKED = "m"  # in place of a status letter, for a criterion with a manual mark
-_VERDICTS = "SELECT verdict, count(*) FROM grade GROUP BY verdict"
+_VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,10 @@ class PointTotals(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ClassStatistics:
-    """A class at a glance: the scores of graded submissions without late penalties; `verdicts` counts all students.
+    """A class at a glance: the scores of graded submissions without late penalties; `verdicts` counts all students but the `excused`.
+
+    `final` students have a final mark, which replaces the score; only `final_graded` of them have a graded submission, so that they
+    are in the statistics.
 
     `mean` and the figures below it are over decided points: the grade of a student is the share that was earned of the points that
     are decided, times the maximum of a submission, `out_of`. Students most of whose automatic points are undecided, `undecided`,
@@ -80,6 +83,9 @@ class ClassStatistics:
 
     verdicts: Mapping[str, int]
     out_of: Decimal
+    excused: int
+    final: int
+    final_graded: int
     graded: int
     pending: int
     undecided: int
@@ -108,11 +114,15 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
     graded_letters = {(index, status) for pattern in patterns for index, status in enumerate(pattern.statuses)}
-    letters = f"pfs?!{CARRIED}"
+    letters = f"pfs?!{SETTLED}"
     criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in letters)]
     failures = grouped(failure_counts(book, rubric))[:_MAX_FAILURES]
+    verdicts = list(book.rows(_VERDICTS))
     return ClassStatistics(
-        verdicts={str(verdict): int(count) for verdict, count in book.rows(_VERDICTS)},
+        verdicts={str(verdict): int(count) for verdict, is_excused, count, _ in verdicts if not is_excused},
+        excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
+        final=sum(final for *_, final in verdicts),
+        final_graded=sum(pattern.students for pattern in patterns if pattern.final is not None),
         out_of=_points(most),
         graded=graded,
         pending=sum(pattern.students for pattern in patterns if pattern.pending),
@@ -135,7 +145,8 @@ def _totals(patterns: Iterable[Pattern]) -> PointTotals:
     for pattern in patterns:
         earned += pattern.score * pattern.students
         pending += pattern.pending * pattern.students
-        lost += max(0, pattern.decided - pattern.score) * pattern.students  # a mark may exceed the maximum
+        without_bonus = pattern.score - pattern.bonus
+        lost += max(0, pattern.decided - without_bonus) * pattern.students  # a mark may exceed the maximum
     return PointTotals(_points(earned), _points(lost), _points(pending))
 
 
@@ -162,7 +173,7 @@ def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionSt
     variances = (count * xx - x * x) * (count * rr - r * r)
     correlation = (count * xr - x * r) / sqrt(variances) if variances else None
     share = x / (count * (units_of(criterion) or 1)) if count else None
-    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{CARRIED}fs?!")
+    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{SETTLED}fs?!")
     counts = count, passed, marked, carried, failed, skipped, pending, errored
     return CriterionStatistics(criterion, *counts, share, correlation)
 

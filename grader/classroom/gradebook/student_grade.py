@@ -29,10 +29,11 @@ class Reason(StrEnum):
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with an earlier version of the rubric"
-    OVER = "a manual mark exceeds the criterion's maximum"
+    OVER = "a manual mark exceeds the maximum of its criterion"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_FINAL = "the final mark or excuse is from before the newest submission"
-    OLDER_MARKS = "marked before the submission or the points changed"
+    OLDER_MARKS = "marked before the submission changed"
+    REVALUED_MARKS = "marked before the points of the criterion changed"
     MARKED = "could not be graded, and was marked manually"
 
 
@@ -83,8 +84,9 @@ class SubmissionSources:
 class StudentGrade:
     """One student's current grade. Without a submission `verdict` is `missing`, and there are no points.
 
-    `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed, `older_marks` marks
-    that were given for an earlier submission or result, `over_marks` marks above the criterion's current maximum. `is_gone` means
+    `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed. `older_marks`
+    are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then, `over_marks`
+    those whose mark exceeds the current maximum. `is_gone` means
     that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
     the parts have that a submission is graded on. `final` is a final mark for the whole submission, which an excuse has none of;
     `final_is_older` means that either was given for an earlier submission. `section` and `marker` come from the roster.
@@ -95,8 +97,9 @@ class StudentGrade:
     result: int | None
     faults: int
     marks: int
-    older_marks: int
-    over_marks: int
+    older_marks: tuple[str, ...]
+    revalued_marks: tuple[str, ...]
+    over_marks: tuple[str, ...]
     score: Decimal
     out_of: Decimal
     pending: Decimal
@@ -143,7 +146,7 @@ class StudentGrade:
                 "it was graded with an earlier version of the rubric: run `grader batch` again",
             ),
             (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
-            (self.over_marks, "a manual mark exceeds the criterion's maximum"),
+            (self.over_marks, f"a manual mark exceeds the maximum of its criterion: {', '.join(self.over_marks)}"),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )
         return next((reason for holds, reason in reasons if holds), "")
@@ -155,7 +158,6 @@ class StudentGrade:
         is_errored = self.verdict == "errored" or self.faults
         is_open = not has_final and (self.faults or self.pending)
         is_ungraded = not has_final and self.verdict in ("errored", "unreadable")
-        older = counted(self.older_marks, "manual mark")
         reasons = (
             (
                 is_open and is_errored,
@@ -167,10 +169,11 @@ class StudentGrade:
             (not has_final and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
             (not has_final and self.is_outdated, Reason.OUTDATED, ""),
-            (self.over_marks, Reason.OVER, ""),
+            (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
             (self.final_is_older, Reason.OLDER_FINAL, ""),
-            (self.older_marks, Reason.OLDER_MARKS, older),
+            (self.older_marks, Reason.OLDER_MARKS, ", ".join(self.older_marks)),
+            (self.revalued_marks, Reason.REVALUED_MARKS, ", ".join(self.revalued_marks)),
         )
         return ((reason, detail) for holds, reason, detail in reasons if holds)
 

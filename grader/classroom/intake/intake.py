@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from grader.classroom.intake.groups import CanvasGroups, doubt_line, share
 from grader.classroom.intake.layouts.layout import Submissions, path_key
 from grader.classroom.intake.names import is_course_folder
 from grader.classroom.intake.roster import Roster
@@ -14,6 +15,11 @@ from grader.text import enumerated, first_lines, printable_path
 _UNMATCHED = -1
 _MAX_NOTES = 200
 _MAX_NAMED = 10
+# canvas-lms, app/models/abstract_assignment.rb, anonymize_students: names come back when all grades are posted or published.
+_ANONYMOUS = (
+    "this is an anonymous download: its submissions (anon_...) match no student. Canvas gives the names when the grades are posted:"
+    " download again then"
+)
 
 
 class _Placed(NamedTuple):
@@ -90,11 +96,17 @@ def assign(
     such a one none does, and the student is contested. An unmatched submission that is named like a group counts for each member
     without another submission, unless its folder `holds_students`: then the group is a section.
     """
+    notes = (_ANONYMOUS,) if submissions.is_anonymous else ()
     if roster is None:
-        return Intake(layout, ignored, submissions, contested=submissions.contested)
+        return Intake(layout, ignored, submissions, contested=submissions.contested, notes=notes)
     entries = roster.entries
     matches = _match(submissions, roster)
-    shared = _share(submissions, roster, matches, holds_students)
+    own = {owner: index for index, owner in matches.owners.items()}
+    claimants = matches.claimants
+    for index in matches.unmatched:
+        if members := roster.members(submissions.student(index)):
+            claimants.setdefault(tuple(members), []).append(index)
+    shared = share(submissions, roster, claimants, own, matches.contested, matches.notes, holds_students)
     courses = [
         index for index in matches.unmatched if index not in shared and is_course_folder(submissions.path(index))
     ]
@@ -115,16 +127,20 @@ def assign(
         _Placed(entries[owner].student.key, i, owner, is_shared=True) for i, of in shared.items() for owner in of
     ]
     present = {owner for _, _, owner, *_ in placed} | matches.contested
+    absent = [index for index in range(len(entries)) if index not in present]
+    if submissions.is_anonymous:  # any of its submissions may be theirs
+        matches.contested.update(absent)
+        absent = []
     return Intake(
         layout,
         (*_course_line(map(submissions.path, courses)), *ignored),
         submissions,
         roster,
         sorted(placed),
-        tuple(sorted(keys.values())),
-        tuple(entry.student for index, entry in enumerate(entries) if index not in present),
+        () if submissions.is_anonymous else tuple(sorted(keys.values())),
+        tuple(entries[index].student for index in absent),
         tuple(entries[index].student for index in sorted(matches.contested)),
-        (*roster.notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
+        (*roster.notes, *notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
     )
 
 
@@ -137,22 +153,34 @@ def _course_line(folders: Iterable[str]) -> Iterator[str]:
 
 
 class _Matches(NamedTuple):
-    """The owners of submissions by index, the unmatched submissions, the contested students, the uncertain submissions."""
+    """The owners of submissions by index, the unmatched submissions, the contested students, the uncertain submissions.
+
+    `claimants` are the files of Canvas that are named like a group, by the positions of its members.
+    """
 
     owners: dict[int, int]
     unmatched: list[int]
     contested: set[int]
     uncertain: set[int]
     notes: list[str]
+    claimants: dict[tuple[int, ...], list[int]]
 
 
 def _match(submissions: Submissions, roster: Roster) -> _Matches:
-    matches = _Matches({}, [], set(), set(), [])
+    matches = _Matches({}, [], set(), set(), [], {})
+    groups = CanvasGroups(roster)
     claims: dict[int, list[tuple[Clue, int]]] = {}  # by owner, the submissions that may be theirs
-    for index in range(len(submissions)):
+    for index in range(0 if submissions.is_anonymous else len(submissions)):
         student = submissions.student(index)
         match = roster.match(student)
-        if match.position is not None:
+        claim = groups.claim(student, match.position)
+        if claim is not None and claim.doubt:
+            matches.notes.append(doubt_line(student.key, claim, roster))
+            matches.contested.update(claim.members)
+        if claim is not None and claim.owner is None:
+            if not claim.doubt:
+                matches.claimants.setdefault(claim.members, []).append(index)
+        elif match.position is not None:
             claims.setdefault(match.position, []).append((match.clue, index))
         elif match.doubt:
             matches.notes.append(f"{student.key} {match.doubt}: left unassigned")
@@ -180,40 +208,3 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
         matches.contested.update(roster.candidates(student))
     matches.contested.difference_update(matches.owners.values())
     return matches
-
-
-def _share(
-    submissions: Submissions, roster: Roster, matches: _Matches, holds_students: Callable[[str], bool]
-) -> dict[int, list[int]]:
-    """Return the members that each team's submission counts for: those without another submission."""
-    own = {owner: index for index, owner in matches.owners.items()}
-    by_group: dict[tuple[int, ...], list[int]] = {}
-    for index in matches.unmatched:
-        if members := roster.members(submissions.student(index)):
-            by_group.setdefault(tuple(members), []).append(index)
-    shared: dict[int, list[int]] = {}
-    for members, claimants in by_group.items():
-        alone = [index for index in claimants if not any(map(holds_students, submissions.submission(index).paths))]
-        keys = {index: submissions.student(index).key for index in claimants}
-        matches.notes.extend(
-            f"{keys[index]} is named like a group, but holds submissions of several students"
-            for index in claimants
-            if index not in alone
-        )
-        without = [member for member in members if member not in own and member not in matches.contested]
-        if len(alone) > 1:
-            names = ", ".join(keys[index] for index in alone)
-            matches.notes.append(f"{names} are each named like one group: left unassigned")
-            matches.contested.update(without)
-        elif alone:
-            matches.notes.extend(
-                f"{roster.entries[member].student.key} has submitted {submissions.student(own[member]).key}, which counts for them,"
-                f" not {keys[alone[0]]} of their group"
-                for member in members
-                if member in own
-            )
-            if without:
-                shared[alone[0]] = without
-    if shared:
-        matches.notes.append(f"group submissions that count for each member: {len(shared)}")
-    return shared

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom.intake.intake import Intake, assign
 from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
@@ -26,6 +27,7 @@ LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
     "nbgrader": nbgrader.find_submissions,
 }
 _MAX_NAMES = 1_000  # in one folder
+_MAX_WRAPPERS = 3  # folders around a download
 
 
 def _detected(folder: ClassFolder) -> str:
@@ -39,23 +41,71 @@ def _detected(folder: ClassFolder) -> str:
     return "teams" if teams.find_labs(folder) else "folders"
 
 
-def _only_folder(folder: ClassFolder) -> ClassFolder:
-    """Return the one folder that holds everything in a zip, unless it is itself a submission: then the zip's top."""
+def _unwrapped(folder: ClassFolder) -> ClassFolder:
+    """Return the folder that holds the submissions: that of an unpacked download may be within others that hold nothing else.
+
+    In a zip it can be any folder that holds everything, unless it is itself a submission.
+    """
+    wrappers, inner = list[ClassFolder](), _only_folder(folder)
+    while inner is not None and len(wrappers) < _MAX_WRAPPERS and not is_download(inner):
+        wrappers.append(inner)
+        inner = _only_folder(inner)
+    if inner is not None and is_download(inner):
+        for outer in (folder, *wrappers):
+            beside = ((name, "is beside the folder of the download") for name in outer.children.files)
+            folder.ignored.add_all(outer.start, (*beside, *outer.children.refused))
+        return inner
+    only = _only_folder(folder) if isinstance(folder.listing, ZipListing) and not folder.children.files else None
+    return folder if only is None or _is_one_submission(only.children) else only
+
+
+def _only_folder(folder: ClassFolder) -> ClassFolder | None:
+    """Return the one folder in a folder without other submissions; None if there is none, or if it is a student's."""
     folders, files, _ = folder.children
-    if len(folders) != 1 or files or folders[0] == "submitted" or _detected(folder) != "folders":
-        return folder
+    if len(folders) != 1 or folders[0] == "submitted" or any(map(ending_of, files)) or _detected(folder) != "folders":
+        return None
     if folder.roster is not None and folder.roster.knows(folders[0]):
-        return folder
-    inner = folder.listing.children(folders[0])
-    if _is_one_submission(inner):
-        return folder
-    return replace(folder, children=inner, start=f"{folders[0]}/", name=folders[0])
+        return None
+    inner = f"{folder.start}{folders[0]}"
+    return replace(folder, children=folder.listing.children(inner), start=f"{inner}/", name=folders[0])
+
+
+def is_download(folder: ClassFolder) -> bool:
+    """Return whether a folder is certainly a whole class as an LMS or nbgrader gives it, and no folder of a student."""
+    children = folder.children
+    return moodle.is_layout(children) or canvas.is_class(children, folder.name) or nbgrader.is_course(folder)
 
 
 def _is_one_submission(children: Children) -> bool:
     robots = [name for name in children.files if name.lower().endswith((".urdf", ".xacro"))]
     several = len(children.folders) + sum(1 for name in children.files if ending_of(name))
     return teams.is_package(children) or several == 0 or (len(robots) == 1 and several == 1)
+
+
+class Download(NamedTuple):
+    """A whole class as an LMS or nbgrader gives it."""
+
+    layout: str
+    students: int
+
+
+def find_download(path: Path, rubric_id: str) -> Download | None:
+    """Return the download of a class at a path, a folder or a zip; None for anything that may be the submission of one student.
+
+    In Canvas, the names of two students' archives or robots prove it: a student may have pictures with such names.
+    """
+    try:
+        listing = _listing(path)
+        top = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), path.resolve().name, rubric_id)
+        folder = next((folder for folder in (top, _unwrapped(top)) if is_download(folder)), None)
+        if folder is None:
+            return None
+        layout = _detected(folder)
+        students = nbgrader.count_students(folder) if layout == "nbgrader" else len(LAYOUTS[layout](folder))
+    except (InputError, OSError, ValueError):
+        return None
+    is_class = students > 1 and (layout != "canvas" or canvas.count_certain(folder.children) > 1)
+    return Download(layout, students) if is_class else None
 
 
 def read_class(
@@ -81,8 +131,7 @@ def read_class(
     folder = ClassFolder(
         listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment, lab_folders=lab_folders
     )
-    if isinstance(listing, ZipListing):
-        folder = _only_folder(folder)
+    folder = _unwrapped(folder)
     if not any(folder.children):
         raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
     chosen = _detected(folder) if layout == "auto" else layout

@@ -50,7 +50,8 @@ class RosterMatch(NamedTuple):
 class Roster:
     """The students of a class, in the order of the file; `notes` says which cells were not understood.
 
-    `assignments` has Canvas' ids of the assignments that the file has columns for.
+    `assignments` has Canvas' ids of the assignments that the file has columns for, `groups` the positions of the students in
+    each group, by its normalised name.
     """
 
     def __init__(
@@ -61,10 +62,10 @@ class Roster:
         self.assignments = frozenset(assignments)
         self._by_key = {entry.student.key: entry for entry in self.entries}
         self._people = People(clues_of(entry.student, entry.aliases) for entry in self.entries)
-        self._groups: dict[str, list[int]] = {}
+        self.groups: dict[str, list[int]] = {}
         for index, entry in enumerate(self.entries):
             if group := plain_group(entry.team):
-                self._groups.setdefault(group, []).append(index)
+                self.groups.setdefault(group, []).append(index)
 
     def with_lms_numbers(self, students: Iterable[Student]) -> "Roster":
         """Return the roster with the LMS ids of these students, by key, where it has none itself."""
@@ -103,7 +104,7 @@ class Roster:
         """
         if team.team:
             return ()
-        return self._groups.get(plain_group(team.key)) or self._groups.get(plain_group(team.name)) or ()
+        return self.groups.get(plain_group(team.key)) or self.groups.get(plain_group(team.name)) or ()
 
     def candidates(self, student: Student) -> tuple[int, ...]:
         """Return the indices of all students that the id or name of a submission may mean."""
@@ -115,7 +116,7 @@ class Roster:
         A submission in a team's folder can only be of a student in that group: anybody in the team may have named it.
         """
         claims = claims_of(student)
-        group = self._groups.get(plain_group(student.team), ()) if student.team else None
+        group = self.groups.get(plain_group(student.team), ()) if student.team else None
         found = self._people.find(claims, OF_TEAM_FOLDERS if student.team else OF_FOLDERS, group)
         if found.only is not None:
             return RosterMatch(found.only, found.clue)
@@ -163,5 +164,5 @@ def roster_from_json(entries: Iterable[str]) -> Roster | None:
 def entry_from_json(text: str) -> RosterEntry:
     """Return a row of a roster that a gradebook has stored."""
     row = json.loads(text)  # of an earlier version without a group and a marker
-    student = {**row["student"], "maybe_canvas": ()}
+    student = {name: value for name, value in row["student"].items() if name not in ("readings", "maybe_canvas")}
     return RosterEntry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})

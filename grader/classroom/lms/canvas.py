@@ -1,9 +1,10 @@
 """Fill a gradebook that was exported from Canvas with the totals, for Grades > Import.
 
 How Canvas imports it is in lib/gradebook_importer.rb: it finds the student by ID, SIS User ID, SIS Login ID, then name; a cell that
-differs from the gradebook is a change, an empty one too; the row of points possible sets the assignment's points. So rows without a
-new grade are removed, and the rest of the file stays as it was exported. The columns are detected as Canvas does: it does not
-translate these headers; a new export may have LastName and FirstName instead of Student (lib/gradebook_exporter.rb).
+differs from the gradebook is a change, an empty one too, and EX is an excuse; the row of points possible sets the assignment's
+points. A column that is not in the file is not changed. So rows without a new grade are removed, and the rest of the file stays as it
+was exported. The columns are detected as Canvas does: it does not translate these headers; a new export may have LastName and
+FirstName instead of Student (lib/gradebook_exporter.rb).
 """
 
 import re
@@ -11,12 +12,23 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from grader.classroom.lms.filling import Filled, LmsStudent, Preflight, check_maximum, fill_rows, with_points
+from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
+from grader.classroom.lms.filling import (
+    Filled,
+    FillOptions,
+    LmsStudent,
+    Preflight,
+    check_maximum,
+    fill_rows,
+    first_of_each,
+    with_points,
+    with_value,
+)
 from grader.classroom.lms.grades import LmsGrade, read_points
 from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import Student
 from grader.errors import InputError
-from grader.text import enumerated, format_points
+from grader.text import format_points
 
 _IDENTITY = frozenset(
     {
@@ -27,18 +39,15 @@ _COMPUTED = re.compile(r"(Current|Final) (Score|Points|Grade)|Override (Score|Gr
 _READ_ONLY = re.compile(r"\(.+\)")  # "(read only)", in the user's language
 _TITLE_AND_ID = re.compile(r"(.*)\s\(([0-9]+)\)", re.DOTALL)
 _NOT_A_STUDENT = re.compile(r"\s*(muted|manual posting.*)?\s*", re.IGNORECASE)
-_MAX_LISTED = 20
 _QUOTED = re.compile(r'="(.*)"', re.DOTALL)  # gradebook_exporter.rb writes names that begin with = like this
 _TEST_STUDENT = frozenset({"student, test", "test student"})
+_EXCUSE = "EX"
 _NO_GRADE = {"ex": "is excused in Canvas", "n/a": "is not assigned this assignment in Canvas"}
 
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
-    """The columns by index, None where the export lacks them, and the row of the points possible, if there is one.
-
-    `others` is the number of other assignments.
-    """
+    """The columns by index, None where the export lacks them, and the row of the points possible, if there is one."""
 
     titles: tuple[str, ...]
     name: int
@@ -46,46 +55,39 @@ class _Columns:
     id: int
     sis: int | None
     login: int | None
-    grade: int
-    others: int
+    writable: tuple[GradeColumn, ...]
+    grade: GradeColumn
     points_possible: TableRow | None
 
-    @property
-    def title(self) -> str:
-        """The header of the column that is filled."""
-        return self.titles[self.grade]
 
-
-def fill_gradebook(
-    data: bytes,
-    grades: Sequence[LmsGrade],
-    *,
-    out_of: Decimal,
-    rubric_names: tuple[str, ...] = (),
-    column: str = "",
-    any_maximum: bool = False,
-    shown: str = "the gradebook",
-) -> Filled:
+def fill_gradebook(data: bytes, grades: Sequence[LmsGrade], options: FillOptions) -> Filled:
     """Return an exported gradebook with the totals in one assignment's column, and what importing it changes.
 
-    The column is found by `rubric_names`, or is the one with the title or number `column`. Raises InputError if the file is not a
-    gradebook, if the column is ambiguous, and, unless `any_maximum`, if its points possible are not `out_of`.
+    With `options.only` it has no other assignment. Raises InputError if the file is not a gradebook, if the column is ambiguous,
+    and, unless any maximum is allowed, if its points possible are not those of the rubric.
     """
-    table = read_table(data, shown)
-    columns = _find_columns(table, column, rubric_names, shown)
-    possible = columns.points_possible.value(columns.grade) if columns.points_possible is not None else ""
-    if not any_maximum and columns.points_possible is not None:
-        check_maximum(f"Canvas' Points Possible of {columns.title!r}", [possible], out_of)
-    preflight = Preflight(columns.title)
+    table = read_table(data, options.shown)
+    columns = _find_columns(table, options)
+    grade, points = columns.grade, columns.points_possible
+    possible = points.value(grade.index) if points is not None else ""
+    if not options.any_maximum and points is not None:
+        check_maximum(f"Canvas' Points Possible of {grade.header!r}", [possible], options.out_of)
+    preflight = Preflight(grade.header)
 
     def fill_row(row: TableRow, _: LmsGrade, total: Decimal, who: str) -> TableRow | str:
-        no_grade = _NO_GRADE.get(row.value(columns.grade).casefold())
-        return no_grade or with_points(table, row, columns.grade, total, who, preflight, possible)
+        no_grade = _NO_GRADE.get(row.value(grade.index).casefold())
+        return no_grade or with_points(table, row, grade.index, total, who, preflight, possible)
+
+    def fill_excuse(row: TableRow, who: str) -> TableRow | str:
+        if row.value(grade.index).casefold() == "n/a":
+            return _NO_GRADE["n/a"]
+        return with_value(table, row, grade.index, _EXCUSE, who, preflight)
 
     students = [_student(row, columns) for row in table.rows if _is_student(row)]
-    filled = fill_rows(table, students, grades, preflight, fill_row)
+    kept = [*first_of_each(table.titles, _IDENTITY), grade.index] if options.only else None
+    filled = fill_rows(table, students, grades, preflight, fill_row, fill_excuse=fill_excuse, kept=kept)
     preflight.unknown = [note for note in preflight.unknown if note.who.casefold() not in _TEST_STUDENT]
-    preflight.warnings += _warnings(table, columns, out_of, rubric_names if not column else ())
+    preflight.warnings += _warnings(table, columns, options)
     return filled
 
 
@@ -106,24 +108,21 @@ def _student(row: TableRow, columns: _Columns) -> LmsStudent:
     return LmsStudent(row.number, name, student)
 
 
-def _warnings(table: Table, columns: _Columns, out_of: Decimal, rubric_names: tuple[str, ...]) -> Iterator[str]:
-    title = repr(columns.title)
-    if columns.points_possible is None:
+def _warnings(table: Table, columns: _Columns, options: FillOptions) -> Iterator[str]:
+    grade, points = columns.grade, columns.points_possible
+    if points is None:
         yield "the file has no row Points Possible: the maximum in Canvas is unknown"
-    elif read_points(possible := columns.points_possible.value(columns.grade)) != out_of:
-        yield f"{title} has {possible or 'no'} points possible in Canvas, and {format_points(out_of)} here"
-    if rubric_names and not _names_rubric(columns.title, rubric_names):
-        yield f"{title} is the only assignment in the file, but its title does not contain {rubric_names[-1]!r}"
-    if columns.titles.count("Section") > 1:
+    elif read_points(possible := points.value(grade.index)) != options.out_of:
+        yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, and {format_points(options.out_of)} here"
+    if columns.titles.count("Section") > 1 and not options.only:
         yield "the file has more than one column Section: Canvas reads the first one's place"
-    if columns.others:
-        yield f"the file has {columns.others} more assignments: importing it resets them to their values at the time of the export"
+    yield from assignment_warnings(columns.writable, grade, options)
     if table.delimiter == "\t" or table.encoding != "utf-8":
         yield "Canvas reads commas and semicolons in UTF-8, but this file has another format"
 
 
-def _find_columns(table: Table, column: str, rubric_names: tuple[str, ...], shown: str) -> _Columns:
-    """Return the columns of an exported gradebook; `column` is a title or the number in its parentheses.
+def _find_columns(table: Table, options: FillOptions) -> _Columns:
+    """Return the columns of an exported gradebook.
 
     Raises InputError if it is not a gradebook, or if the column for the grade is ambiguous.
     """
@@ -133,71 +132,22 @@ def _find_columns(table: Table, column: str, rubric_names: tuple[str, ...], show
     if name is None or "ID" not in first or "Section" not in first:
         found = ", ".join(map(repr, titles[:10])) or "nothing"
         raise InputError(
-            f"{shown} is not a gradebook exported from Canvas: its first row has no Student, ID and Section, but {found}"
+            f"{options.shown} is not a gradebook exported from Canvas: its first row has no Student, ID and Section, but {found}"
         )
     points = next((row for row in table.rows[1:] if "Points Possible" in row.value(0)), None)
-    writable = [
-        index
+    writable = tuple(
+        _grade_column(index, title)
         for index, title in enumerate(titles)
         if title not in _IDENTITY
         and not _COMPUTED.search(title)
         and not (points and _READ_ONLY.fullmatch(points.value(index)))
-    ]
-    grade = _named(titles, writable, column, shown) if column else _detected(titles, writable, rubric_names, shown)
-    others = sum(index != grade and _TITLE_AND_ID.fullmatch(titles[index]) is not None for index in writable)
+    )
+    grade = find_assignment(writable, options, "Canvas", "Lab 6 (98765)")
     first_name = first.get("FirstName") if "Student" not in first else None
     sis, login = first.get("SIS User ID"), first.get("SIS Login ID")
-    return _Columns(titles, name, first_name, first["ID"], sis, login, grade, others, points)
+    return _Columns(titles, name, first_name, first["ID"], sis, login, writable, grade, points)
 
 
-def _named(titles: Sequence[str], writable: Sequence[int], column: str, shown: str) -> int:
-    """Return the column with this title, number, or title without the number."""
-    column = column.strip()
-    exact = [index for index in writable if titles[index] == column]
-    found = exact or [index for index in writable if column in _split(titles[index])]
-    if len(found) != 1:
-        which = "more than one column" if found else "no writable column"
-        raise InputError(f"{shown} has {which} {column!r}; the columns are: {_list(titles, found or writable)}")
-    return found[0]
-
-
-def _detected(titles: Sequence[str], writable: Sequence[int], rubric_names: tuple[str, ...], shown: str) -> int:
-    """Return the one assignment whose title is a name of the rubric, else contains or is part of one, else the only assignment."""
-    assignments = [index for index in writable if _TITLE_AND_ID.fullmatch(titles[index])]
-    joined = {"".join(_words(name)) for name in rubric_names} - {""}
-    same = [index for index in assignments if "".join(_words(_split(titles[index])[0])) in joined]
-    similar = [index for index in assignments if _names_rubric(titles[index], rubric_names)]
-    candidates = same or similar or assignments
-    if len(candidates) == 1:
-        return candidates[0]
-    if not candidates:
-        raise InputError(
-            f"{shown} has no column of an assignment, such as 'Lab 6 (98765)', but: {_list(titles, writable)};"
-            " create the assignment in Canvas, and export again"
-        )
-    raise InputError(f"{shown} has several possible columns, choose one with --column: {_list(titles, candidates)}")
-
-
-def _names_rubric(title: str, rubric_names: tuple[str, ...]) -> bool:
-    """Return whether an assignment's title contains a name of the rubric, or is part of one."""
-    words = _words(_split(title)[0])
-    return any(_is_similar(words, _words(name)) for name in rubric_names)
-
-
-def _split(title: str) -> tuple[str, str]:
-    found = _TITLE_AND_ID.fullmatch(title)
-    return (found[1].strip(), found[2]) if found else (title, title)
-
-
-def _words(text: str) -> list[str]:
-    return re.findall(r"[^\W\d_]+|\d+", text.casefold())
-
-
-def _is_similar(left: list[str], right: list[str]) -> bool:
-    """Return whether one has all words of the other, side by side: Lab 6 and lab6, Lab 6: wheeled base, not Lab 61."""
-    short, long = sorted((left, right), key=len)
-    return bool(short) and any(long[at : at + len(short)] == short for at in range(len(long) - len(short) + 1))
-
-
-def _list(titles: Sequence[str], indices: Sequence[int]) -> str:
-    return enumerated([repr(titles[index]) for index in indices], _MAX_LISTED) or "none"
+def _grade_column(index: int, header: str) -> GradeColumn:
+    found = _TITLE_AND_ID.fullmatch(header)
+    return GradeColumn(index, header, found[1].strip(), found[2]) if found else GradeColumn(index, header)

@@ -20,17 +20,17 @@ from grader.text import format_points
 
 LIMIT = 4_000  # characters
 _MAX_MESSAGE = 600
-_OPENING = "Graded automatically"
+_OPENING = "Graded "  # automatically, manually, or both; earlier versions said "Graded automatically" of every grade
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
 
 
 @dataclass(frozen=True, slots=True)
 class FeedbackItem:
-    """One line of a comment: a criterion, or several that share a cause."""
+    """One line of a comment: a criterion, or several that share a cause; without points a remark on the whole submission."""
 
     title: str
-    points: Decimal
+    points: Decimal | None
     out_of: Decimal
     message: str = ""
 
@@ -42,7 +42,7 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     for number, result in enumerate(results):
-        has_comment = result.manual_mark is not None and result.manual_mark.comment
+        has_comment = _comment(result)
         if result.points < result.criterion.points or has_comment or result.why_given:
             groups.setdefault(_cause(result) or ("", str(number)), []).append(result)
     for (kind, cause), group in groups.items():
@@ -51,6 +51,8 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
             (result,) = group
             message = _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
             message = f"{message}. {result.why_given}" if result.why_given else message
+            if result.manual_mark is None and (comment := _comment(result)):
+                message = f"{message}. {comment}" if result.outcome.status != "passed" else comment
             yield FeedbackItem(result.criterion.title, result.points, out_of, message)
         elif kind == "skipped":
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
@@ -58,9 +60,16 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
             yield FeedbackItem(f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalised(cause))
 
 
-def _cause(result: Result) -> tuple[str, str] | None:
-    """Return why a criterion is skipped or pending, if other criteria may have the same cause."""
+def _comment(result: Result) -> str:
+    """Return the comment of a person, with points or without; empty if there is none."""
     if result.manual_mark is not None:
+        return result.manual_mark.comment
+    return result.comment.text if result.comment is not None else ""
+
+
+def _cause(result: Result) -> tuple[str, str] | None:
+    """Return why a criterion is skipped or pending, if other criteria may have the same cause, and nobody commented on it."""
+    if result.manual_mark is not None or result.comment is not None:
         return None
     if result.because is not None:
         return "skipped", result.because
@@ -72,9 +81,11 @@ def _capitalised(message: str) -> str:
     return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
 
 
-def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem]) -> str:
-    """Return a comment of one line and at most LIMIT characters: the exported score, then the items in order."""
-    opening = f"<p>{_OPENING}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
+def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem], graded: str = "automatically") -> str:
+    """Return a comment of one line and at most LIMIT characters: who graded, the exported score, then the items in order."""
+    opening = (
+        f"<p>{_OPENING}{_escaped(graded)}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
+    )
     lines = [_item(item) for item in items]
     room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
     shown = sum(length <= room for length in accumulate(map(len, lines)))
@@ -93,10 +104,12 @@ def is_own_feedback(text: str) -> bool:
 
 
 def _item(item: FeedbackItem) -> str:
+    message = _escaped(item.message)
+    if item.points is None:
+        return f"<li>{_escaped(item.title)}: {message}</li>"
     points = format_points(item.points)
     if item.points >= 0:  # a late penalty is negative, and has no maximum
         points += f" of {format_points(item.out_of)}"
-    message = _escaped(item.message)
     return f"<li>{_escaped(item.title)}: {points}.{' ' if message else ''}{message}</li>"
 
 

@@ -4,7 +4,7 @@ Only pairs that are unambiguous in both directions match. Rows of students witho
 changes.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import NamedTuple
@@ -17,7 +17,25 @@ from grader.errors import InputError
 from grader.text import format_points
 
 _MAX_NAMED = 5
+_NOT_GRADED_YET = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 FillRow = Callable[[TableRow, LmsGrade, Decimal, str], TableRow | str]
+FillExcuse = Callable[[TableRow, str], TableRow | str]
+
+
+@dataclass(frozen=True, slots=True)
+class FillOptions:
+    """How an LMS file is filled: the rubric's maximum and names, the columns that the user names, the name of the file in messages.
+
+    `any_maximum` allows another maximum in the file; `only` leaves the columns of other assignments out.
+    """
+
+    out_of: Decimal
+    rubric_names: tuple[str, ...] = ()
+    column: str = ""
+    feedback_column: str = ""
+    any_maximum: bool = False
+    only: bool = False
+    shown: str = "the file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +70,7 @@ class Preflight:
     """The effects of importing the filled file.
 
     `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
-    nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match no student, `missing`
+    nothing of theirs can change. `excused` are the students whose excuse the file contains. `ungraded` are rows of students without a grade, `unknown` rows that match no student, `missing`
     students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
     unassigned. `kept_feedback` are rows with a comment that a person wrote.
     """
@@ -66,6 +84,7 @@ class Preflight:
     missing: list[RowNote] = field(default_factory=list)
     ambiguous: list[RowNote] = field(default_factory=list)
     kept_feedback: list[RowNote] = field(default_factory=list)
+    excused: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     @property
@@ -82,12 +101,19 @@ class Filled(NamedTuple):
 
 
 def fill_rows(
-    table: Table, students: Iterable[LmsStudent], grades: Sequence[LmsGrade], preflight: Preflight, fill_row: FillRow
+    table: Table,
+    students: Iterable[LmsStudent],
+    grades: Sequence[LmsGrade],
+    preflight: Preflight,
+    fill_row: FillRow,
+    *,
+    fill_excuse: FillExcuse | None = None,
+    kept: Sequence[int] | None = None,
 ) -> Filled:
-    """Return the table with the grades in it.
+    """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
 
     `fill_row` gets a row, the grade, its total and the student's name; it returns the new row, the same row if nothing changes, or the
-    reason why the grade cannot be written.
+    reason why the grade cannot be written. So does `fill_excuse`, for an LMS that knows excuses, of a row and the name.
     """
     by_row = {student.row: student for student in students}
     matched = match_rows(list(by_row.values()), grades, preflight)
@@ -98,17 +124,27 @@ def fill_rows(
         elif row.number in matched:
             who, grade = by_row[row.number].who, matched[row.number]
             new: TableRow | str = grade.why_not or "has no grade"
-            if grade.total is not None:
+            if (grade.total is not None or grade.is_excused) and len(row.cells) != len(table.titles):
                 new = f"the row has {len(row.cells)} cells and the header {len(table.titles)}"
-                if len(row.cells) == len(table.titles):
-                    new = fill_row(row, grade, grade.total, who)
+            elif grade.is_excused and fill_excuse is not None:
+                new = fill_excuse(row, who)
+            elif grade.total is not None:
+                new = fill_row(row, grade, grade.total, who)
             if isinstance(new, str):
                 preflight.ungraded.append(RowNote(row.number, who, new))
                 continue
+            if grade.is_excused:
+                preflight.excused.append(who)
             preflight.unchanged += new is row
             preflight.filled += new is not row
             rows.append(new)
-    return Filled(replace(table, rows=tuple(rows)).encoded(), preflight)
+    filled = replace(table, rows=tuple(rows))
+    return Filled((filled if kept is None else filled.with_columns(kept)).encoded(), preflight)
+
+
+def first_of_each(titles: Sequence[str], wanted: Container[str]) -> list[int]:
+    """Return where each of the wanted titles is first."""
+    return [index for index, title in enumerate(titles) if title in wanted and title not in titles[:index]]
 
 
 def with_points(
@@ -118,7 +154,15 @@ def with_points(
     old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
     if read_points(old) == read_points(new):
         return row
-    if old not in {"", "-"}:
+    return with_value(table, row, column, new, who, preflight)
+
+
+def with_value(table: Table, row: TableRow, column: int, new: str, who: str, preflight: Preflight) -> TableRow:
+    """Return a row with a value in a column, the same row if it has it; a value that is overwritten is a conflict."""
+    old = row.value(column)
+    if old.casefold() == new.casefold():
+        return row
+    if old.casefold() not in _NOT_GRADED_YET:
         preflight.conflicts.append(Conflict(row.number, who, old, new))
     return table.changed(row, column, new)
 
@@ -159,8 +203,12 @@ def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], prefl
             why = "no student of the gradebook has this id, address or name"
             preflight.unknown.append(RowNote(student.row, student.who, why))
     preflight.missing += (
-        RowNote(0, grades[index].who, "has a grade, but no row in the file")
+        RowNote(
+            0,
+            grades[index].who,
+            f"{'is excused' if grades[index].is_excused else 'has a grade'}, but no row in the file",
+        )
         for index in sorted(left)
-        if grades[index].total is not None
+        if grades[index].total is not None or grades[index].is_excused
     )
     return found

@@ -15,7 +15,7 @@ class LmsGrade:
     """A student's grade. Without a total `why_not` says why: no submission, needs manual grading.
 
     `feedback` is HTML from `feedback_html`; Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is False for a
-    submission that is not on the roster of its class.
+    submission that is not on the roster of its class. `is_excused` is an excuse for an LMS that knows excuses; it has no total.
     """
 
     student: Student
@@ -23,6 +23,7 @@ class LmsGrade:
     feedback: str = ""
     why_not: str = ""
     is_on_roster: bool = True
+    is_excused: bool = False
 
     @property
     def who(self) -> str:

@@ -12,7 +12,16 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 from grader.classroom.lms.feedback import is_own_feedback
-from grader.classroom.lms.filling import Filled, LmsStudent, Preflight, RowNote, check_maximum, fill_rows, with_points
+from grader.classroom.lms.filling import (
+    Filled,
+    FillOptions,
+    LmsStudent,
+    Preflight,
+    RowNote,
+    check_maximum,
+    fill_rows,
+    with_points,
+)
 from grader.classroom.lms.grades import LmsGrade, points_text, read_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
 from grader.classroom.lms.spreadsheet import neutral
@@ -25,27 +34,16 @@ _NUMBER = re.compile(r"\d+$")
 _NO = frozenset({"no", "nein", "non", "não", "nee"})  # in the languages of `moodle_columns`
 
 
-def fill_worksheet(
-    data: bytes,
-    grades: Sequence[LmsGrade],
-    *,
-    out_of: Decimal,
-    column: str = "",
-    feedback_column: str = "",
-    any_maximum: bool = False,
-    shown: str = "the worksheet",
-) -> Filled:
+def fill_worksheet(data: bytes, grades: Sequence[LmsGrade], options: FillOptions) -> Filled:
     """Return a downloaded grading worksheet with the totals and comments, and what importing it changes.
 
-    `column` and `feedback_column` are the headers of the two columns, if they cannot be detected. A comment that a person wrote or
-    changed stays, and is reported. Raises InputError if the file is not a worksheet with points, and, unless `any_maximum`, if its
-    maximum grade is not `out_of`.
+    A comment that a person wrote or changed stays, and is reported. Raises InputError if the file is not a worksheet with points,
+    and, unless any maximum is allowed, if its maximum grade is not that of the rubric.
     """
-    table = read_table(data, shown)
-    columns = find_columns(table, column, feedback_column, shown)
+    table, columns = read_worksheet(data, options)
     maxima = sorted({row.value(columns.maximum) for row in student_rows(table) if len(row.cells) == len(table.titles)})
-    if not any_maximum:
-        check_maximum(f"Moodle's {table.titles[columns.maximum]!r}", maxima, out_of)
+    if not options.any_maximum:
+        check_maximum(f"Moodle's {table.titles[columns.maximum]!r}", maxima, options.out_of)
     preflight = Preflight(table.titles[columns.grade])
 
     def fill_row(row: TableRow, grade: LmsGrade, total: Decimal, who: str) -> TableRow | str:
@@ -57,11 +55,22 @@ def fill_worksheet(
         row = with_points(table, row, columns.grade, total, who, preflight, row.value(columns.maximum))
         return _with_comment(table, row, columns, who, grade, preflight)
 
-    filled = fill_rows(table, [_student(row, columns) for row in student_rows(table)], grades, preflight, fill_row)
-    preflight.warnings += _warnings(table, columns, out_of, maxima, preflight)
+    filled = fill_rows(table, students_of(table, columns), grades, preflight, fill_row)
+    preflight.warnings += _warnings(table, columns, options.out_of, maxima, preflight)
     if columns.feedback is None and any(grade.feedback for grade in grades):
         preflight.warnings.append("the file has no known column for feedback comments: no comment is written")
     return filled
+
+
+def read_worksheet(data: bytes, options: FillOptions) -> tuple[Table, MoodleColumns]:
+    """Return a grading worksheet and its columns; raises InputError if it is none."""
+    table = read_table(data, options.shown)
+    return table, find_columns(table, options.column, options.feedback_column, options.shown)
+
+
+def students_of(table: Table, columns: MoodleColumns) -> list[LmsStudent]:
+    """Return the students in a worksheet; `moodle` is the number of the participant."""
+    return [_student(row, columns) for row in student_rows(table)]
 
 
 def _with_comment(

@@ -7,6 +7,7 @@ accepts, is an error.
 
 import codecs
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from grader.errors import InputError
@@ -62,6 +63,12 @@ class Table:
         """Return the file's bytes. A character that the encoding lacks becomes an HTML character reference."""
         text = "".join(self.delimiter.join(cell.raw for cell in row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
+
+    def with_columns(self, columns: Sequence[int]) -> "Table":
+        """Return the table with some of its columns, in their order; the cells and line breaks are unchanged."""
+        kept = sorted(columns)
+        rows = (replace(row, cells=tuple(row.cells[i] for i in kept if i < len(row.cells))) for row in self.rows)
+        return replace(self, rows=tuple(rows))
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """Return a row with another value in one cell, quoted if the old one was, or if necessary."""

@@ -22,10 +22,12 @@ from grader.classroom.gradebook.marks import (
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
+from grader.errors import InputError
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
+_NOT_GRADED = "this criterion is no longer graded for this student"
 _CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
 
 
@@ -81,9 +83,19 @@ class ReviewSession:
 
     def go(self, position: int) -> None:
         """Go to a position in the queue, also to a marked item; beyond the last one to the end."""
+        self.item = self.item_at(position)
+        self.position = position if 0 <= position < len(self.queue) else len(self.queue)
+
+    def item_at(self, position: int) -> QueuedResult | None:
+        """Return an item in its current state; None beyond the queue, or if it is no longer graded."""
         inside = 0 <= position < len(self.queue)
-        self.item = queued_result(self._grades, self.queue[position]) if inside else None
-        self.position = position if inside else len(self.queue)
+        return queued_result(self._grades, self.queue[position]) if inside else None
+
+    def current_item(self) -> QueuedResult:
+        """Return the current item; raise InputError if it is no longer graded."""
+        if self.item is None:
+            raise InputError(_NOT_GRADED)
+        return self.item
 
     def next(self) -> None:
         """Go to the next item that is not marked by others, or to the end."""
@@ -111,8 +123,7 @@ class ReviewSession:
         `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
         one, and InputError.
         """
-        item = self.item
-        assert item is not None
+        item = self.current_item()
         shown = item.newest if shown is None else shown
         book, criterion = self._grades.book, item.result.criterion
         newest = newest_mark(book, item.grade.id, criterion.id)
@@ -127,14 +138,19 @@ class ReviewSession:
         """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
 
         A new entry brings the mark before it back, or takes the mark back. Raises NewerMarkError if somebody has marked the item
-        since, and InputError; IndexError if there is nothing to undo.
+        since, and InputError, also if it is no longer graded; IndexError if there is nothing to undo.
         """
-        here = [index for index, given in enumerate(self._given) if given.position == self.position]
-        index = here[-1] if here else len(self._given) - 1
+        here = self.position
+        own = [index for index, given in enumerate(self._given) if given.position == here]
+        index = own[-1] if own else len(self._given) - 1
         given = self._given[index]
         self.go(given.position)
         item = self.item
-        assert item is not None
+        if item is None:
+            self._forget(given.position)
+            self.position = here - 1
+            self.next()
+            raise InputError(f"not undone: {_NOT_GRADED}")
         try:
             added = restore_mark(
                 self._grades.book, item.grade, item.result.criterion.id, given.before or WITHDRAWN, self._by,
@@ -155,11 +171,9 @@ class ReviewSession:
         self._given = [given for given in self._given if given.position != position]
         del self._own[position]
 
-    @property
-    def rubric(self) -> Rubric:
-        """The rubric that the current item was graded with."""
-        assert self.item is not None
-        return self._grades.rubric(self.item.grade.rubric)
+    def rubric_of(self, item: QueuedResult) -> Rubric:
+        """Return the rubric that an item was graded with."""
+        return self._grades.rubric(item.grade.rubric)
 
     def comments(self) -> list[str]:
         """Return earlier comments for the criterion of the current item, the most frequent first.

@@ -13,8 +13,8 @@ from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.failures import Failure, failure_of
 from grader.classroom.gradebook.result import (
-    CARRIED,
     NOT_GRADED,
+    SETTLED,
     STATUS_LETTERS,
     UNITS_PER_POINT,
     GradingResult,
@@ -89,8 +89,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         reason = f"the grader itself failed: {type(error).__name__}: {error}"
         return failed(rubric, context.parts, task, "errored", reason, digest, seen)
-    faults = (result.outcome.message for result in report.results if result.outcome.status == "errored")
-    fault, reason = next(faults, ""), _why_unreadable(submission)
+    fault, reason = report.fault, _why_unreadable(submission)
     verdict: Verdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result_of(report, task, verdict, fault or reason, digest, seen, template)
     urdf, robot = robot_hashes(submission)
@@ -160,16 +159,12 @@ def result_of(
     failures: list[Failure] = []
     causes: Counter[str] = Counter()
     for result in report.results:
-        criterion, outcome, carried = result.criterion, result.outcome, result.carried
-        is_given = carried or (criterion.is_given and outcome.status != "passed")
-        statuses[criterion.position] = CARRIED if is_given else STATUS_LETTERS[outcome.status]
-        if outcome.status == "failed" and not carried:
+        criterion, outcome = result.criterion, result.outcome
+        is_settled = outcome.status != "passed" and result.why_given
+        statuses[criterion.position] = SETTLED if is_settled else STATUS_LETTERS[outcome.status]
+        if outcome.status == "failed" and not is_settled:
             failures.append(failure_of(criterion, outcome))
-        elif (
-            outcome.status == "pending"
-            and criterion.adjustment is None
-            and criterion.check.function not in MANUAL_CHECKS
-        ):
+        elif result.is_open and criterion.check.function not in MANUAL_CHECKS:
             causes[outcome.mistake or f"{criterion.check.name} could not be decided"] += int(
                 criterion.points * UNITS_PER_POINT
             )

@@ -121,8 +121,10 @@ def _is_of_robot(path: str, submission: Submission) -> bool:
 
 
 def is_worse(before: Result, after: Result) -> bool:
-    """Return whether a criterion passed and does not any more, has fewer points, or is undecided now."""
+    """Return whether a criterion passed and does not any more, has fewer points, or is undecided now; never an adjusted one."""
     status = after.outcome.status
+    if after.is_adjusted:
+        return False
     if before.outcome.status != status and (before.outcome.status == "passed" or status in ("pending", "errored")):
         return True
     return after.points < before.points
@@ -143,7 +145,9 @@ def gained(before: Results, after: Results) -> dict[str, Decimal]:
     return {
         name: result.points - before[name].points
         for name, result in after.items()
-        if result.outcome.status == "passed" and before[name].outcome.status in ("failed", "skipped")
+        if result.outcome.status == "passed"
+        and before[name].outcome.status in ("failed", "skipped")
+        and not result.is_adjusted
     }
 
 

@@ -9,11 +9,10 @@ from grader.report.diff import diff_lines
 from grader.report.locations import excerpt, width_of
 from grader.report.order import Failure
 from grader.source import Location, Source
-from grader.text import printable, signed_points
+from grader.text import printable
 
 _AROUND = 2  # lines of the source before and after the marked one
 _MAX_WIDTH = 160  # characters of a line
-SYMBOLS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 
 
 class SourceLines(NamedTuple):
@@ -54,11 +53,10 @@ def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
     """Return a failed criterion, with what is skipped because of it. Feedback is included once, and only without hints."""
     result, skipped = failure
     card = card_of(result, report)
-    cost = signed_points(-failure.lost) if failure.lost else "0"
     feedback = "" if card.details.hints or card.details.feedback in shown else card.details.feedback
     shown.add(feedback)
     return card._replace(
-        cost=f"{cost} point{'' if failure.lost == 1 else 's'}",
+        cost=content.cost_text(failure),
         skipped=content.skipped_text(result.criterion.id, skipped) if skipped else "",
         feedback=feedback,
     )

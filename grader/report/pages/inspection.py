@@ -3,8 +3,7 @@
 from itertools import islice
 
 from grader import __version__
-from grader.drawing.picture import Picture
-from grader.drawing.scene import scene_of
+from grader.drawing.picture import plain_picture
 from grader.report.inspection import Inspection, effect, tree
 from grader.report.pages.criteria import SourceLines, source_lines
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
@@ -18,9 +17,7 @@ _MAX_SHOWN = 500  # links of the tree, and problems
 def inspection_html(inspection: Inspection) -> str:
     """Return the inspection as an HTML page, with the joints at the given positions."""
     reading, robot = inspection.reading, inspection.robot
-    picture = None
-    if robot is not None and inspection.relative_to is not None:
-        picture = Picture(scene_of(robot, inspection.relative_to), None, (), (), ())
+    picture = plain_picture(robot, inspection.relative_to)
     view = robot_view(picture) if picture is not None else None
     values = {
         "version": __version__,

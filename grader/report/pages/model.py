@@ -119,9 +119,8 @@ def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]
             kind, extents = "cylinder", (radius, radius, length)
         case Sphere(radius=radius):
             kind, extents = "sphere", (radius, radius, radius)
-    colour = [min(max(channel, 0.0), 1.0) if isfinite(channel) else 0.0 for channel in body.rgba]
     marked = is_wheel and kind != "box"
-    return [links[body.link], kind, _numbers(extents), _pose(body.T_link_shape), _numbers(colour), int(marked)]
+    return [links[body.link], kind, _numbers(extents), _pose(body.T_link_shape), _numbers(body.rgba), int(marked)]
 
 
 def _wheel(

@@ -75,7 +75,9 @@ def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:
 
 def error_page(message: str, following: str) -> str:
     """Return the page of an item that cannot be shown; `following` is the address of the next one."""
-    return _page("review-error.html", {"title": "This cannot be shown", "message": message, "following": following}, {})
+    return _page(
+        "review-error.html", {"title": "This item cannot be shown", "message": message, "following": following}, {}
+    )
 
 
 def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:

@@ -35,8 +35,8 @@ def render_page(
         data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
         style: The names of the styles besides base.css, separated by spaces.
         script: The names of the scripts, separated by spaces.
-        rules: More CSS rules, from the grader only.
         sources: Directives for the policy of a page that is served: "img-src 'self'".
+        rules: More CSS rules, from the grader only.
     """
     styles, scripts = (
         [_file(name) for name in ("base.css", *style.split())] + [rules] * bool(rules),

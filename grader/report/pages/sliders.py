@@ -16,7 +16,8 @@ _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 class Slider(NamedTuple):
     """The control of a joint: its number in the file, its range and position in degrees or mm; `scale` makes them radians or metres.
 
-    A mimic joint `follows` another one; `note` names that joint, or says what is odd about the limits; the position of a continuous joint `wraps` after a full turn.
+    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a continuous joint
+    `wraps` after a full turn.
     """
 
     joint: int
@@ -49,7 +50,7 @@ def sliders_of(scene: Scene) -> Iterator[Slider]:
 
 
 def _note(joint: Joint, value: float, follows: bool) -> str:
-    """Return what moves a joint, or what is odd about its limits: "" if nothing."""
+    """Return which joint moves a mimic joint, or a description of invalid limits; empty for other joints."""
     if follows and joint.mimic is not None:
         return f"follows {joint.mimic.joint}"
     if joint.type == "continuous" or joint.limit is None or joint.limit.lower <= value <= joint.limit.upper:

@@ -1,6 +1,6 @@
 """A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
@@ -8,10 +8,10 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import group_status, status_of
+from grader.report.details import SYMBOLS, group_status, status_of
 from grader.report.evidence import evidence
 from grader.report.order import alike, failures, groups, in_order
-from grader.report.pages.criteria import SYMBOLS, card_of, failure_card
+from grader.report.pages.criteria import card_of, failure_card
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
 from grader.report.plain_text import problem_line, provenance
@@ -19,13 +19,17 @@ from grader.text import format_points, printable
 
 
 class Row(NamedTuple):
-    """A criterion in the list of all criteria. `title` is empty unless it passed."""
+    """A criterion in the list of all criteria. `title` is empty unless it passed.
+
+    `card` is the criterion with the card for it: itself, or the one that it is skipped because of; empty if neither has one.
+    """
 
     id: str
     title: str
     status: str
     points: str
     because: str
+    card: str
 
 
 class Rows(NamedTuple):
@@ -65,7 +69,7 @@ def _summary(report: Report) -> dict[str, object]:
         "score": format_points(report.score),
         "maximum": format_points(report.max_score),
         "shares": _shares(report),
-        "summary": [*filter(None, (content.summary(report), content.package_line(report)))],
+        "summary": content.summaries(report),
         "pending": content.pending_line(report),
         "notes": content.notes(report),
         "next": command,
@@ -77,16 +81,17 @@ def _summary(report: Report) -> dict[str, object]:
 def _criteria(report: Report) -> dict[str, object]:
     order, shown = in_order(report), set[str]()
     skipped = alike(order.skipped, lambda result: result.because or "")
+    cards = {result.criterion.id for result in (*(one.result for one in order.failures), *order.pending, *order.marked)}
     return {
         "symbols": SYMBOLS,
         "failures": [failure_card(failure, report, shown) for failure in order.failures],
         "skipped": [content.skipped_text(cause, some) for cause, some in skipped],
         "sections": [
             (title, [card_of(result, report) for result in results])
-            for title, results in (("Needs manual grading", order.pending), ("Marked manually", order.marked))
+            for title, results in (("Needs manual grading", order.pending), *order.remarks)
             if results
         ],
-        "parts": [*_parts(report)],
+        "parts": [*_parts(report, cards)],
     }
 
 
@@ -103,23 +108,29 @@ def _shares(report: Report) -> tuple[float, float]:
     """Return the percentages of the maximum that are earned, and that are earned or need manual grading."""
     whole = report.max_score or Decimal(1)
     earned, possible = (float(100 * points / whole) for points in (report.score, report.score + report.pending))
-    return round(earned, 2), round(possible, 2)
+    return min(100, round(earned, 2)), min(100, round(possible, 2))
 
 
-def _parts(report: Report) -> Iterator[tuple[str, str, list[Rows]]]:
+def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, list[Rows]]]:
     """Yield the title, the points and the groups of each part."""
     titles = {part.id: part.title for part in report.rubric.parts}
     for part, found in groupby(groups(report), key=lambda group: group.part):
         some = [*found]
         rows = [
-            Rows(group.title, content.earned_text(group.results), tuple(map(_row, group.results)), group_status(group))
+            Rows(
+                group.title,
+                content.earned_text(group.results),
+                tuple(_row(result, cards) for result in group.results),
+                group_status(group),
+            )
             for group in some
         ]
         yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
 
 
-def _row(result: Result) -> Row:
+def _row(result: Result, cards: Collection[str]) -> Row:
     status = status_of(result)
     title = result.criterion.title if status == "passed" else ""
     because = (result.because or "") if result.manual_mark is None else ""
-    return Row(result.criterion.id, title, status, content.earned_text((result,)), because)
+    card = next((name for name in (result.criterion.id, because) if name in cards), "")
+    return Row(result.criterion.id, title, status, content.earned_text((result,)), because, card)

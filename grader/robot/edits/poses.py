@@ -1,7 +1,7 @@
 """The origins and axes that put a link where the reference has it, whatever frames the robot uses."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import hypot
+from math import hypot, isfinite
 
 from grader.errors import MissingElement, NotDecided
 from grader.robot.edits.families import HalfLength, Values
@@ -122,7 +122,12 @@ class Poses:
 
 
 def _round(values: Values) -> Iterator[Values]:
-    """Yield values in few digits: those that a person writes are round, and others only happen to fit."""
+    """Yield values in few digits: those that a person writes are round, and others only happen to fit.
+
+    Yield nothing for numbers that are not finite, or too large to be rounded.
+    """
+    if not all(isfinite(value / _STEP) for value in values):
+        return
     short = tuple(round(round(value / _STEP) * _STEP, 4) + 0.0 for value in values)
     if all(abs(value - other) < _ROUND for value, other in zip(values, short, strict=True)):
         yield short

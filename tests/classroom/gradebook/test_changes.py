@@ -12,9 +12,14 @@ from grader.classroom.gradebook import run_writer as module
 from grader.classroom.gradebook.changes import Change, PointsChange, Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of
+from grader.classroom.gradebook.marks import Entry, Kind, add_mark, criterion_of
+from grader.classroom.gradebook.run_writer import save_student
+from grader.classroom.students import Student
 from grader.errors import InputError
-from tests.classroom.gradebooks import graded_as, lab, mark, record_run
+from grader.grading.criterion import Adjustment
+from grader.grading.rubric import read_rubric
+from grader.grading.validation import TOTAL
+from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 
 LAB = lab()
 OTHER = lab(box="5")
@@ -193,3 +198,64 @@ def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) ->
             total = sum(((step.after or 0) - (step.before or 0) for step in change.steps), Decimal(0))
             assert change.after - change.before == total
             assert change.after == Grades(book).find("anna").score
+
+
+def put_entry(book: Gradebook, key: str, kind: Kind, points: str | None = None, criterion: str = TOTAL) -> None:
+    """Add an entry for the whole submission, or for a criterion."""
+    entry = Entry(kind, None if points is None else Decimal(points), "so it is")
+    add_mark(book, Grades(book).find(key), criterion, entry, "me")
+
+
+def test_final_marks_and_excuses_are_named(book: Gradebook) -> None:
+    """A final mark replaces the total, also without a submission; an excuse keeps it; a comment changes nothing."""
+    with book.transaction():
+        save_student(book, Student("dora", "Dora Fi"), None)
+    run(book, anna="ppp??", ben="ppp??", cleo="ppp??")
+    run(book, anna="ppp??", ben="ppp??", cleo="ppp??")
+    put_entry(book, "anna", "points", "2")
+    put_entry(book, "ben", "excused")
+    put_entry(book, "cleo", "comment")
+    put_entry(book, "cleo", "comment", criterion="essay")
+    put_entry(book, "cleo", "second", "1", criterion="essay")
+    put_entry(book, "dora", "points", "0")
+    six = Decimal(6)
+    assert found(book) == [
+        Change("anna", six, Decimal(2), (), ("final mark: none to 2",)),
+        Change("ben", six, six, (), ("excused",)),
+        Change("dora", None, Decimal(0), (), ("final mark: none to 0",), "Dora Fi"),
+    ]
+    run(book, anna="ppp??")
+    run(book, anna="ppp??")
+    put_entry(book, "anna", "withdrawn")
+    put_entry(book, "ben", "withdrawn")
+    assert [change.why for change in found(book)] == [
+        ("final mark: 2 to none",),
+        ("no longer excused",),
+    ]
+
+
+def test_a_mark_with_a_later_comment_still_counts(book: Gradebook) -> None:
+    """A comment alone keeps the points, so it is no change."""
+    run(book, anna="ppp??")
+    put(book, "anna", "essay", "2")
+    run(book, anna="ppp??")
+    put_entry(book, "anna", "comment", criterion="essay")
+    run(book, anna="ppp??")
+    assert found(book) == []
+
+
+def test_marks_of_adjusted_criteria_are_no_reason(book: Gradebook) -> None:
+    """A mark that does not count is not named, whether it was there before the adjustment or came after it."""
+    adjust = '\n[adjust.essay]\naction = "full"\nreason = "ambiguous"\n'
+    adjusted = read_rubric((lab_text() + adjust).encode(), Path("small.toml"))
+    run(book, anna="ppp??", ben="ppp??")
+    put(book, "anna", "essay", "1")
+    run(book, anna="ppp??", ben="ppp??")
+    put(book, "ben", "essay", "2")
+    run(book, adjusted, anna="ppp??", ben="ppp??")
+    changed = {change.key: (change.before, change.after, change.why) for change in found(book)}
+    assert changed == {
+        "anna": (Decimal(7), Decimal(10), ("the rubric changed",)),
+        "ben": (Decimal(6), Decimal(10), ("the rubric changed",)),
+    }
+    assert [change.rubric[0].after for change in found(book)] == [Adjustment("full", "ambiguous")] * 2

@@ -46,9 +46,10 @@ def test_students_are_found_by_every_identifier(book: Gradebook) -> None:
 @pytest.mark.parametrize("name", ["Ben Oh", "101"])
 def test_ambiguous_names_match_nobody(book: Gradebook, name: str) -> None:
     """A name that several students have matches none of them, even across kinds of identifiers."""
-    keys = "'ben', 'emil'" if name == "Ben Oh" else "'anna', 'emil'"
-    with pytest.raises(InputError, match=f"'{name}' is ambiguous: it may be {keys}; use one of these ids"):
+    found = "'ben' (Ben Oh), 'emil' (Ben Oh)" if name == "Ben Oh" else "'anna' (Anna Ek), 'emil' (Ben Oh)"
+    with pytest.raises(InputError) as caught:
         Grades(book).find(name)
+    assert str(caught.value) == f"{name!r} is ambiguous: it may be {found}; use one of these ids"
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,7 @@ def test_ambiguous_names_match_nobody(book: Gradebook, name: str) -> None:
     [
         ("ana", "; did you mean 'anna'?"),
         ("Ana Ek", "; did you mean 'Anna Ek'?"),
-        ("ANNA", "; did you mean 'anna'?"),
+        ("ANNNA", "; did you mean 'anna'?"),
         ("", ""),
     ],
 )
@@ -106,24 +107,42 @@ def test_who_needs_attention(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("rubric", "digest", "is_older"),
+    ("rubric", "digest", "why"),
     [
-        (LAB, "a", False),
-        (LAB, "b", True),  # another submission
-        (lab(loads="1"), "a", False),  # the same submission, and the question is worth the same
-        (lab(essay="3"), "a", True),
+        (LAB, "a", ""),
+        (LAB, "b", "marked before the submission changed: essay"),
+        (lab(loads="1"), "a", ""),  # the same submission, and the question is worth the same
+        (lab(essay="3"), "a", "marked before the points of the criterion changed: essay"),
+        (lab(essay="3"), "b", "marked before the submission changed: essay"),
+        (
+            lab(essay="0.5"),
+            "a",
+            (
+                "a manual mark exceeds the maximum of its criterion: essay; "
+                "marked before the points of the criterion changed: essay"
+            ),
+        ),
     ],
 )
-def test_an_older_mark(rubric: Rubric, digest: str, is_older: bool, tmp_path: Path) -> None:
-    """A mark is kept, and listed if it was given for another submission or other points."""
+def test_an_older_mark(rubric: Rubric, digest: str, why: str, tmp_path: Path) -> None:
+    """A mark is kept; if it was given for another submission or other points, its criterion is named."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         record_run(book, LAB, [graded_as(LAB, "anna", "ppp??")])
         put(book, "anna")
         assert notices(book) == {}
         record_run(book, rubric, [graded_as(rubric, "anna", "ppp?f", digest)])
-        why = "marked before the submission or the points changed: 1 manual mark"
-        assert notices(book) == ({"anna": why} if is_older else {})
+        assert notices(book) == ({"anna": why} if why else {})
         assert Grades(book).find("anna").marks == 1
+
+
+def test_several_older_marks_are_in_the_order_of_the_rubric(tmp_path: Path) -> None:
+    """Whatever the order in which they were given."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, LAB, [graded_as(LAB, "anna", "ppp??")])
+        for name in ("picture", "essay", "loads"):
+            put(book, "anna", name)
+        record_run(book, LAB, [graded_as(LAB, "anna", "ppp??", "b")])
+        assert notices(book) == {"anna": "marked before the submission changed: loads, essay, picture"}
 
 
 def test_a_mark_on_an_unreadable_submission_is_listed(tmp_path: Path) -> None:

@@ -178,3 +178,47 @@ def test_days_by_time(seconds: int, grace: int) -> None:
     submitted = (read_time("2026-09-10T12:00:00+02:00") + timedelta(seconds=seconds)).isoformat()
     over = seconds - 60 * grace
     assert days(submitted, lab(f"{DUE}{POLICY}grace_minutes = {grace}\n")) == (0 if over <= 0 else -(-over // 86_400))
+
+
+@pytest.mark.parametrize(
+    ("more", "reason"),
+    [
+        ({"extension": 2.0}, "late for the LMS, on time with the extension 2 days"),
+        ({"extension": 0.5}, "late for the LMS, on time with the extension 0.5 days"),
+        (
+            {"deadline": "2026-09-10T12:01+02:00"},
+            "late for the LMS, on time with the student's own deadline 2026-09-10T12:01+02:00",
+        ),
+        (
+            {"deadline": "2026-09-10"},
+            "late for the LMS, on time with the student's own deadline 2026-09-10T23:59+02:00",
+        ),
+        ({"deadline": "2026-09-10T12:00+02:00"}, "late by an unknown time, which counts as 1 day"),
+        ({"deadline": "2026-09-09"}, "late by an unknown time, which counts as 1 day"),
+        ({}, "late by an unknown time, which counts as 1 day"),
+    ],
+)
+def test_a_flag_with_an_extension_is_on_time(more: dict[str, Any], reason: str) -> None:
+    """An LMS knows no extension and no later deadline of the roster; the reason says so. Without the flag it says nothing."""
+    found = lateness(LAB, SubmissionTimes(is_late=True, **more), Decimal(11))
+    assert found.reason == reason
+    assert (found.days, found.points) == ((0, 0) if "on time" in reason else (1, Decimal("-1.1")))
+    assert lateness(LAB, SubmissionTimes(**more), Decimal(11)) == Lateness()
+    known = SubmissionTimes(is_late=True, submitted="2026-09-20T12:00+02:00", **more)
+    assert lateness(LAB, known, Decimal(11)).days >= 8  # a known time still counts
+
+
+def test_an_own_deadline_needs_that_of_the_class() -> None:
+    """Without the deadline of the class nobody knows whether the student's own one is later."""
+    times = SubmissionTimes(is_late=True, deadline="2026-09-12")
+    assert lateness(lab(POLICY), times, Decimal(11)).days == 1
+    assert lateness(lab(POLICY), times, Decimal(11), read_time("2026-09-11")).days == 0
+
+
+def test_the_grace_period_applies_to_fractions_of_days() -> None:
+    """Moodle says 10 mins or 1 day 10 mins late: within the grace period. A whole number is what a person has decided."""
+    late = {
+        days: lateness(LONG_GRACE, SubmissionTimes(days_late=days), Decimal(11)).days
+        for days in (0.007, 1.007, 1.03, 1.0, 2.0)
+    }
+    assert late == {0.007: 0, 1.007: 1, 1.03: 2, 1.0: 1, 2.0: 2}

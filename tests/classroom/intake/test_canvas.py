@@ -42,7 +42,7 @@ def test_a_download_is_detected(tmp_path: Path) -> None:
         assert (intake.layout, assigned(intake)) == ("canvas", expected)
         jane = next(intake.submissions())
         assert (jane.is_late, jane.names) == (True, ("Task1_Step8.png", "lab6.zip"))
-        assert jane.student == Student("doejane_123", canvas="123")
+        assert jane.student == Student("doejane_123", canvas="123", readings=(("doejane", "123"),))
 
 
 def test_anonymous_students(tmp_path: Path) -> None:
@@ -141,3 +141,18 @@ def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[s
     assert {
         submission.student.canvas: (submission.is_late, sorted(submission.names)) for submission in intake.submissions()
     } == expected
+
+
+ANONYMOUS = ("anon_aB3xY_9001_lab6.zip", "LATE_anon_Qr5tu_9002_lab6.zip")
+
+
+def test_an_anonymous_download_matches_no_student(tmp_path: Path) -> None:
+    """One message says why, and when the names come back; nobody on the roster has submitted nothing."""
+    roster = Roster([RosterEntry(Student("1", "Anon Ab3xy")), RosterEntry(Student("2", "Ann Ash"))])
+    for known in (roster, None):
+        intake = read_class(lay_out(tmp_path, *ANONYMOUS), known)
+        assert (intake.layout, list(assigned(intake))) == ("canvas", ["anon_Qr5tu", "anon_aB3xY"])
+        assert [submission.is_late for submission in intake.submissions()] == [True, False]
+        assert (intake.unmatched, intake.absent) == ((), ())
+        assert [line.partition(":")[0] for line in intake.notes] == ["this is an anonymous download"]
+    assert len(read_class(tmp_path, roster).contested) == 2

@@ -1,6 +1,7 @@
 """Group submissions: they count for each member, by the group's name in the roster."""
 
 import random
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -127,3 +128,113 @@ def test_the_assignment_option_is_for_nbgrader(tmp_path: Path, layout: str) -> N
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip")
     with pytest.raises(InputError, match="--assignment is only for the layout nbgrader"):
         read_class(tmp_path, layout=layout, assignment="ps1")
+
+
+ASH, BIRCH, CEDAR, DOGWOOD = (
+    Student(name.partition(",")[0], name, canvas=number)
+    for name, number in (("Ash, Ann", "101"), ("Birch, Bea", "102"), ("Cedar, Cal", "103"), ("Dogwood, Dan", "104"))
+)
+
+
+def in_groups(*groups: str, numbers: bool = True) -> Roster:
+    """Return a roster of four students with these groups."""
+    students = (
+        (ASH, BIRCH, CEDAR, DOGWOOD) if numbers else (replace(one, canvas="") for one in (ASH, BIRCH, CEDAR, DOGWOOD))
+    )
+    return Roster(RosterEntry(student, group=group) for student, group in zip(students, groups, strict=True))
+
+
+@pytest.mark.parametrize("numbers", [True, False])
+@pytest.mark.parametrize(
+    ("group", "file"),
+    [
+        ("Team Ä-1", "teamä1_102_555_lab6.zip"),
+        ("Team Ä-1", "teamä1_LATE_102_555_lab6.zip"),
+        ("Team_7", "team_7_102_555_lab6.zip"),  # as if user 7 were called team
+        ("Team_7_b", "team7b_102_text.html"),
+    ],
+)
+def test_a_group_in_canvas(tmp_path: Path, group: str, file: str, numbers: bool) -> None:
+    """The file has the group's name and a member's id: it counts for every member, with its lateness."""
+    others = ("reds_103_556_lab6.zip", "reds_103_557_answers.pdf")
+    intake = read_class(lay_out(tmp_path, file, *others), in_groups(group, group, "Reds", "Reds", numbers=numbers))
+    assert assigned(intake) == {"Ash": (file,), "Birch": (file,), "Cedar": others[::-1], "Dogwood": others[::-1]}
+    assert [submission.is_late for submission in intake.submissions()] == ["_LATE_" in file] * 2 + [False] * 2
+    assert (intake.unmatched, intake.absent, intake.notes) == ((), (), (SHARED.format(2),))
+    assert [submission.student.canvas for submission in intake.submissions()] == (
+        ["101", "102", "103", "104"] if numbers else [""] * 4
+    )
+
+
+def test_without_a_group_on_the_roster_the_id_decides(tmp_path: Path) -> None:
+    """The member whose id is in the name gets the submission, and so does a student of another name."""
+    files = ("teama_102_555_lab6.zip", "cedarcal_103_556_lab6.zip", "other_104_557_lab6.zip")
+    intake = read_class(lay_out(tmp_path, *files), in_groups("", "", "C", "D"))
+    assert assigned(intake) == {"Birch": files[:1], "Cedar": files[1:2], "Dogwood": files[2:]}
+    assert (intake.absent, intake.notes) == ((ASH,), ())
+
+
+def test_a_member_who_also_submitted(tmp_path: Path) -> None:
+    """Their own submission counts for them, the group's for the others."""
+    files = ("ashann_101_554_lab6.zip", "teama_102_555_lab6.zip")
+    intake = read_class(lay_out(tmp_path, *files), in_groups("Team A", "Team A", "Team A", ""))
+    assert assigned(intake) == {"Ash": files[:1], "Birch": files[1:], "Cedar": files[1:]}
+    assert intake.notes[0] == "Ash has submitted ashann_101, which counts for them, not teama_102 of their group"
+
+
+@pytest.mark.parametrize(
+    ("files", "groups", "given", "note"),
+    [
+        (
+            ["reds_103_1_a.zip"],
+            ("Reds", "Reds", "Blues", ""),
+            ["Cedar"],
+            (
+                "reds_103 is named like the group 'Reds', but 103 is Cedar, whose group is 'Blues': counts for Cedar only;"
+                " Ash and Birch keep an earlier submission"
+            ),
+        ),
+        (
+            ["reds_103_1_a.zip"],
+            ("Reds", "Reds", "", ""),
+            ["Cedar"],
+            (
+                "reds_103 is named like the group 'Reds', but 103 is Cedar, who has no group on the roster: counts for Cedar"
+                " only; Ash and Birch keep an earlier submission"
+            ),
+        ),
+        (
+            ["reds_999_1_a.zip"],
+            ("Reds", "Reds", "", ""),
+            [],
+            (
+                "reds_999 is named like the group 'Reds', but 999 is none of its members: left unassigned; Ash and Birch keep"
+                " an earlier submission"
+            ),
+        ),
+        (
+            ["ashann_101_1_a.zip"],
+            ("Ash Ann", "Ash Ann", "", ""),
+            ["Ash"],
+            (
+                "ashann_101 may be named after a student or the group 'Ash Ann': counts for Ash only; Birch keeps an earlier"
+                " submission"
+            ),
+        ),
+        (
+            ["ashann_101_1_a.zip", "reds_101_2_a.zip"],
+            ("Reds", "Reds", "", ""),
+            ["Ash"],
+            "reds_101 has files with different names: counts for Ash only; Birch keeps an earlier submission",
+        ),
+    ],
+)
+def test_contradictions_are_reported(
+    tmp_path: Path, files: list[str], groups: tuple[str, ...], given: list[str], note: str
+) -> None:
+    """What the number and the name say differently counts for the student with the number only, or for nobody."""
+    intake = read_class(lay_out(tmp_path, *files), in_groups(*groups), layout="canvas")
+    assert [key for key in assigned(intake) if key not in intake.unmatched] == given
+    assert intake.notes == (note,)
+    assert {student.key for student in intake.contested} | set(given) >= {"Ash", "Birch"}
+    assert "Birch" not in {student.key for student in intake.absent}

@@ -241,3 +241,50 @@ def large_class(folder: Path, count: int) -> Path:
         else:
             Path(name).touch()
     return folder
+
+
+CANVAS = ("ashann_101_1_lab6.zip", "birchbea_LATE_102_2_lab6.zip")
+MOODLE = ("Ann Ash_11_assignsubmission_file/lab6.zip", "Bea Birch_12_assignsubmission_file/lab6.zip")
+NBGRADER = ("submitted/ash/lab6/a.urdf", "submitted/birch/lab6/a.urdf", "release/lab6/a.ipynb")
+
+
+@pytest.mark.parametrize("wrapper", ["submissions", "rob101-lab-6_submissions", "course/submissions"])
+@pytest.mark.parametrize(
+    ("layout", "files"), [("canvas", CANVAS), ("canvas", CANVAS[:1]), ("moodle", MOODLE), ("nbgrader", NBGRADER)]
+)
+@pytest.mark.parametrize("option", ["auto", ""])
+def test_a_download_in_a_wrapper_folder(
+    tmp_path: Path, wrapper: str, layout: str, files: tuple[str, ...], option: str
+) -> None:
+    """The download within other folders that hold nothing else is found, also in a zip, and if its layout is named."""
+    names = [f"{wrapper}/{file}" for file in files] + ["roster.csv"]
+    for path in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
+        intake = read_class(path, layout=option or layout)
+        plain = read_class(lay_out(tmp_path / layout, *files))
+        assert intake.layout == plain.layout == layout
+        assert assigned(intake) == {
+            key: tuple(f"{wrapper}/{place}" for place in paths) for key, paths in assigned(plain).items()
+        }
+        assert intake.ignored[-1] == "roster.csv is beside the folder of the download"
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        ("ash/src/my_robot/package.xml",),
+        ("ash/ashann_101_1_lab6.zip",),  # a student's own folder
+        ("ash/submitted/old/work/a.urdf",),
+        ("ash/lab6.zip", "ash/lab5.zip"),
+        ("ash/ashann_101_1_lab6.zip", "ash/birchbea_102_2_lab6.zip", "birch.zip"),
+    ],
+)
+def test_a_students_folder_is_no_wrapper(tmp_path: Path, files: tuple[str, ...]) -> None:
+    """A course folder with the folder of one student, or with several entries, is the class."""
+    assert "ash" in assigned(read_class(lay_out(tmp_path, *files)))
+
+
+def test_a_folder_of_a_student_on_the_roster_is_no_wrapper(tmp_path: Path) -> None:
+    """Not even if it is named like a download and looks like one."""
+    roster = Roster([RosterEntry(Student("submissions"))])
+    intake = read_class(lay_out(tmp_path, *(f"submissions/{name}" for name in CANVAS)), roster)
+    assert assigned(intake) == {"submissions": ("submissions",)}

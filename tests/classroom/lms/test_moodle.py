@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
 from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, feedback_items, is_own_feedback
-from grader.classroom.lms.filling import Conflict, Filled, RowNote
+from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.spreadsheet import neutral
@@ -60,14 +60,8 @@ def fill(
     out_of: str = "100",
     any_maximum: bool = False,
 ) -> Filled:
-    return fill_worksheet(
-        data,
-        grades,
-        out_of=Decimal(out_of),
-        column=column,
-        feedback_column=feedback_column,
-        any_maximum=any_maximum,
-    )
+    options = FillOptions(Decimal(out_of), (), column, feedback_column, any_maximum)
+    return fill_worksheet(data, grades, options)
 
 
 def cells(filled: Filled) -> list[list[str]]:

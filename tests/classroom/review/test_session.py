@@ -13,7 +13,7 @@ from grader.classroom.gradebook.manual_queue import reusable_comments
 from grader.classroom.gradebook.marks import NewerMarkError, criterion_of
 from grader.classroom.review.session import ReviewSession
 from grader.errors import InputError
-from tests.classroom.gradebooks import graded_as, lab, mark, record_run
+from tests.classroom.gradebooks import grade_without, graded_as, lab, mark, record_run
 
 LAB = lab()
 KEYS = ("ash", "birch", "cedar")
@@ -153,6 +153,22 @@ def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
     with pytest.raises(NewerMarkError):
         session.undo()
     assert (len(entries(book)), session.marked, session.can_undo) == (count, 0, False)
+
+
+def test_an_undo_of_a_criterion_that_is_no_longer_graded(book: Gradebook, tmp_path: Path) -> None:
+    """It is refused with the reason, and forgotten; the review stays at its item."""
+    session = ReviewSession(Grades(book), "essay", "Kim")
+    session.mark(Decimal(1), "")
+    session.next()
+    grade_without(tmp_path / "book.db", "ash", "essay")
+    with pytest.raises(InputError, match="not undone: this criterion is no longer graded for"):
+        session.undo()
+    assert (here(session), session.marked, session.can_undo, len(entries(book))) == ("birch essay open", 0, False, 1)
+    session.mark(Decimal(2), "")
+    grade_without(tmp_path / "book.db", "birch", "essay")
+    with pytest.raises(InputError, match="no longer graded"):
+        session.undo()
+    assert here(session) == "cedar essay open"
 
 
 def test_reusable_comments(book: Gradebook) -> None:

@@ -3,11 +3,15 @@
 canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5 letters}_{attachment
 id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is submitted
 again under the same name is saved with `-1`, `-2` after its stem (attachment.rb, make_unique_filename).
+
+Of an assignment that a group is graded on as a whole there is one submission for each group: its name is the group's, its user id
+that of one member (app/models/abstract_assignment.rb, representatives).
 """
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
@@ -33,7 +37,7 @@ class _CanvasFile(NamedTuple):
     path: str
     name: str
     user: str
-    maybe_users: tuple[str, ...]
+    readings: tuple[tuple[str, str], ...]
     is_anonymous: bool
     is_late: bool
     attachment: int
@@ -42,7 +46,7 @@ class _CanvasFile(NamedTuple):
     @property
     def is_ambiguous(self) -> bool:
         """Return whether the name can be read in several ways."""
-        return len(self.maybe_users) > 1
+        return len(self.readings) > 1
 
 
 def is_layout(children: Children) -> bool:
@@ -54,6 +58,17 @@ def is_layout(children: Children) -> bool:
     fitting = {name for name in names if (file := _parsed(name)) and not any(map(str.isupper, file.name))}
     possible = children.folders + [name for name in children.files if ending_of(name)]
     return bool(fitting) and len(fitting) >= 3 * sum(name not in fitting for name in possible)
+
+
+def is_class(children: Children, name: str) -> bool:
+    """Return whether this is a download of several users, or of one in a folder that is named like a download."""
+    return is_layout(children) and ("submissions" in name.casefold() or count_certain(children) > 1)
+
+
+def count_certain(children: Children) -> int:
+    """Return of how many users there are archives, URDFs or folders: other files may be one student's pictures."""
+    names = children.folders + [name for name in children.files if ending_of(name)]
+    return len({(file.is_anonymous, file.user) for name in names if (file := _parsed(name))})
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
@@ -70,7 +85,8 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
     contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
     found = (_submission(files, start) for files in certain.values() if files)
-    return Submissions(found, contested=tuple(contested))
+    is_anonymous = any(anonymous for anonymous, _ in by_user)
+    return Submissions(found, contested=tuple(contested), is_anonymous=is_anonymous)
 
 
 def _certain(files: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:
@@ -100,7 +116,7 @@ def _parsed(name: str) -> _CanvasFile | None:
         name,
         "anon" if anonymous else found["name"],
         anonymous or found["user"],
-        tuple(_MAYBE_USER.findall(name)),
+        () if anonymous else _readings(name) or ((found["name"], found["user"]),),
         anonymous is not None,
         bool(found["late_anon"] or found["late"]),
         int(found["attachment"] or 0),
@@ -108,11 +124,20 @@ def _parsed(name: str) -> _CanvasFile | None:
     )
 
 
-def _submission(files: Iterable[_CanvasFile], start: str) -> ClassSubmission:
+def _readings(name: str) -> tuple[tuple[str, str], ...]:
+    """Return each name and user id that a file name can be read as: team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
+    return tuple((name[: found.start()].removesuffix("_LATE"), found[1]) for found in _MAYBE_USER.finditer(name))
+
+
+def _submission(files: Sequence[_CanvasFile], start: str) -> ClassSubmission:
     by_file = _attempts_by_file(files)
     last = [attempts[-1] for attempts in by_file]
+    first = min(last, key=lambda file: (file.is_ambiguous, file.name))
+    readings = dict.fromkeys(
+        reading for file in files if file.is_ambiguous == first.is_ambiguous for reading in file.readings
+    )
     return ClassSubmission(
-        _student(min(last, key=lambda file: (file.is_ambiguous, file.name))),
+        replace(_student(first), readings=tuple(readings)),
         tuple(start + file.path for file in last),
         is_late=any(file.is_late for file in last),
         attempt=max(map(len, by_file)),
@@ -122,11 +147,9 @@ def _submission(files: Iterable[_CanvasFile], start: str) -> ClassSubmission:
 
 
 def _student(file: _CanvasFile) -> Student:
-    """Return whose a file is; if its name is ambiguous, with all numbers that may be the user id."""
-    key = f"{file.name}_{file.user}"
-    if file.is_anonymous or file.is_ambiguous:
-        return Student(key, maybe_canvas=file.maybe_users if file.is_ambiguous else ())
-    return Student(key, canvas=file.user)
+    """Return whose a file is; if its name is ambiguous, without a user id."""
+    canvas = "" if file.is_anonymous or file.is_ambiguous else file.user
+    return Student(f"{file.name}_{file.user}", canvas=canvas, readings=file.readings)
 
 
 def _attempts_by_file(files: Iterable[_CanvasFile]) -> list[list[_CanvasFile]]:

@@ -19,6 +19,7 @@ class Submissions:
     """Submissions, sorted by their students' keys. A key that is not printable or not unique is replaced by a path key.
 
     `assignments` is what an LMS calls the assignment; of `contested` students a file was ignored that may be another student's.
+    Where the LMS hides all names, `is_anonymous`, a submission may be anybody's.
     """
 
     def __init__(
@@ -26,6 +27,8 @@ class Submissions:
         submissions: Iterable[ClassSubmission],
         assignments: frozenset[str] = frozenset(),
         contested: tuple[Student, ...] = (),
+        *,
+        is_anonymous: bool = False,
     ) -> None:
         found = list(submissions)
         counts = Counter(submission.student.key for submission in found)
@@ -37,6 +40,7 @@ class Submissions:
         self._submissions = sorted(found, key=lambda submission: submission.student.key)
         self.assignments = assignments
         self.contested = contested
+        self.is_anonymous = is_anonymous
 
     def __len__(self) -> int:
         return len(self._submissions)

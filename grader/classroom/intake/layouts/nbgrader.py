@@ -25,14 +25,28 @@ def find_course(folder: ClassFolder) -> str | None:
     if _SUBMITTED in folder.children.folders:
         below = f"{start}{_SUBMITTED}/"
         return below if _assignments(listing, below) else None
-    if folder.name != _SUBMITTED:
-        return None
-    found = _assignments(listing, start)
+    return start if folder.name == _SUBMITTED and _has_evidence(folder, start) else None
+
+
+def is_course(folder: ClassFolder) -> bool:
+    """Return whether this is certainly a course, and not a folder of a student that contains one named `submitted`."""
+    course = find_course(folder)
+    return course is not None and _has_evidence(folder, course)
+
+
+def count_students(folder: ClassFolder) -> int:
+    """Return how many students have a folder in a course."""
+    course = find_course(folder)
+    return 0 if course is None else len(folder.listing.children(course.rstrip("/")).folders)
+
+
+def _has_evidence(folder: ClassFolder, start: str) -> bool:
+    """Return whether there is a submission with a timestamp, or for the lab."""
+    found = _assignments(folder.listing, start)
     has_lab = any(_normalised(name) == _normalised(folder.rubric_id) for name in found)
-    has_timestamp = any(
-        _TIMESTAMP in listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
+    return has_lab or any(
+        _TIMESTAMP in folder.listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
     )
-    return start if has_lab or has_timestamp else None
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:

@@ -12,8 +12,9 @@
 
   async function send(action) {
     if (busy) return;
-    if (action !== "mark" && isChanged() && leaving !== action) {
-      leaving = action;
+    const lost = form && JSON.stringify([action, points.value, comment.value]);  // each text has its own warning
+    if (action !== "mark" && isChanged() && leaving !== lost) {
+      leaving = lost;
       say(`Not saved. Press the same key again to leave without saving (${action}).`);
       return;
     }

@@ -1,0 +1,98 @@
+"""Compare the sections of a class, or the students of each marker: grades, lateness, and the criteria that differ most."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+from decimal import Decimal
+from statistics import fmean, median
+from typing import Literal, NamedTuple
+
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.patterns import COLUMNS, Pattern, pattern_of, units_of
+from grader.classroom.gradebook.reasons import GRADED, manual_units
+from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.grading.criterion import Criterion
+
+Grouping = Literal["section", "marker"]
+_MAX_CRITERIA = 5
+_MIN_DIFFERENCE = 0.005  # of a share: what is shown as one percent
+
+
+class Section(NamedTuple):
+    """The students of one section. `name` is empty for those without one.
+
+    `mean` and `median` are of the `graded` students' grades on decided points, without late penalties; None without any. `late_points`
+    is what `late` students lost by that. `shares` are the mean shares of the criteria's points, None where nothing is decided.
+    """
+
+    name: str
+    students: int
+    graded: int
+    mean: float | None
+    median: float | None
+    late: int
+    late_points: Decimal
+    shares: tuple[float | None, ...]
+
+
+class Comparison(NamedTuple):
+    """The sections side by side, in the order of their names, and the positions of the criteria that differ most."""
+
+    by: Grouping
+    out_of: Decimal
+    criteria: tuple[Criterion, ...]
+    sections: tuple[Section, ...]
+    differing: tuple[int, ...]
+
+
+def compare(grades: Grades, by: Grouping) -> Comparison:
+    """Return the sections of a class, or the students of each marker, side by side. Raises InputError if nothing was graded."""
+    rubric, book = grades.newest_rubric(), grades.book
+    rows = book.rows(f"SELECT id, {COLUMNS} {GRADED}", rubric.sha256)
+    patterns = {row[0]: pattern_of(rubric, tuple(row[1:]), manual_units(book, row[0])) for row in list(rows)}
+    groups: dict[str, list[StudentGrade]] = defaultdict(list)
+    for grade in grades.all():
+        groups[getattr(grade, by)].append(grade)
+    most = max((pattern.out_of for pattern in patterns.values()), default=int(rubric.points * UNITS_PER_POINT))
+    sections = tuple(_section(name, groups[name], patterns, most, rubric.criteria) for name in sorted(groups))
+    return Comparison(
+        by,
+        Decimal(most) / UNITS_PER_POINT,
+        rubric.criteria,
+        sections,
+        _differing([section for section in sections if section.name]),
+    )
+
+
+def _section(
+    name: str, grades: Sequence[StudentGrade], patterns: dict[int, Pattern], most: int, criteria: Sequence[Criterion]
+) -> Section:
+    found = [patterns[grade.id] for grade in grades if grade.id in patterns]
+    totals = [pattern.grade(most) / UNITS_PER_POINT for pattern in found if pattern.counts]
+    late = [grade for grade in grades if grade.late.days]
+    return Section(
+        name,
+        len(grades),
+        len(totals),
+        fmean(totals) if totals else None,
+        median(totals) if totals else None,
+        len(late),
+        sum((-grade.late.points for grade in late), Decimal(0)),
+        tuple(_share(criterion, found) for criterion in criteria),
+    )
+
+
+def _share(criterion: Criterion, patterns: Sequence[Pattern]) -> float | None:
+    """Return the mean share of a criterion's points that was earned, where it is decided."""
+    earned = [units for pattern in patterns if (units := pattern.earned[criterion.position]) is not None]
+    return fmean(earned) / (units_of(criterion) or 1) if earned else None
+
+
+def _differing(sections: Sequence[Section]) -> tuple[int, ...]:
+    """Return the positions of the criteria whose shares differ most between sections, the largest difference first."""
+    differences = []
+    for position, shares in enumerate(zip(*(section.shares for section in sections), strict=True)):
+        known = [share for share in shares if share is not None]
+        if known and max(known) - min(known) >= _MIN_DIFFERENCE:
+            differences.append((min(known) - max(known), position))
+    return tuple(position for _, position in sorted(differences)[:_MAX_CRITERIA])

@@ -1,0 +1,125 @@
+"""Group submissions: which students on the roster the submission of a team counts for."""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from grader.classroom.intake.layouts.layout import Submissions
+from grader.classroom.intake.roster import Roster
+from grader.classroom.matching import canvas_name, canvas_names
+from grader.classroom.students import Student
+from grader.text import enumerated
+
+_MAX_NAMED = 10
+
+
+class GroupClaim(NamedTuple):
+    """The members of the group that a file of Canvas is named like.
+
+    With a `doubt` the submission counts for `owner`, the student with its number, and for no other member.
+    """
+
+    members: tuple[int, ...]
+    doubt: str = ""
+    owner: int | None = None
+
+
+class CanvasGroups:
+    """The groups of a roster as Canvas names their files: the group's name, and the user id of one member."""
+
+    def __init__(self, roster: Roster) -> None:
+        self._entries = roster.entries
+        self._by_number = {entry.student.canvas: index for index, entry in enumerate(roster.entries)}
+        self._groups: dict[str, list[tuple[int, ...]]] = {}
+        for members in roster.groups.values():
+            self._groups.setdefault(canvas_name(roster.entries[members[0]].team), []).append(tuple(members))
+
+    def claim(self, student: Student, position: int | None) -> GroupClaim | None:
+        """Return which group a submission is named like, if any; `position` is whose it is by all other clues."""
+        claims = [claim for reading in student.readings if (claim := self._read(*reading, position))]
+        numbers = {number for _, number in student.readings}
+        if claims and len(numbers) < len(student.readings):  # files of two names, which no download of Canvas has
+            return claims[0]._replace(doubt="has files with different names", owner=self._by_number.get(min(numbers)))
+        if len(claims) > 1 and len(set(claims)) > 1:
+            members = {member for claim in claims for member in claim.members}
+            return GroupClaim(tuple(sorted(members)), "can be read as the name of several groups")
+        return claims[0] if claims else None
+
+    def _read(self, name: str, number: str, position: int | None) -> GroupClaim | None:
+        """Return the claim of a name and a user id; None if no group has that name."""
+        plain = canvas_name(name)
+        groups = self._groups.get(plain)
+        if not groups:
+            return None
+        owner = self._by_number.get(number)
+        own = [members for members in groups if owner in members]
+        shown = self._entries[groups[0][0]].team
+        every = tuple(sorted({member for members in groups for member in members}))
+        if owner is not None and own:
+            if plain in canvas_names(self._entries[owner].student.name):
+                return GroupClaim(own[0], f"may be named after a student or the group {shown!r}", owner)
+            return GroupClaim(own[0])
+        if owner is not None:
+            entry = self._entries[owner]
+            group = f"whose group is {entry.team!r}" if entry.team else "who has no group on the roster"
+            return GroupClaim(
+                every, f"is named like the group {shown!r}, but {number} is {entry.student.key}, {group}", owner
+            )
+        if position is not None:
+            key = self._entries[position].student.key
+            return GroupClaim((*every, position), f"may be named after {key} or the group {shown!r}")
+        if len(groups) > 1:
+            return GroupClaim(every, "is named like several groups")
+        if all(self._entries[member].student.canvas for member in every):
+            return GroupClaim(every, f"is named like the group {shown!r}, but {number} is none of its members")
+        return GroupClaim(every)
+
+
+def share(
+    submissions: Submissions,
+    roster: Roster,
+    claimants: Mapping[tuple[int, ...], list[int]],
+    own: Mapping[int, int],
+    contested: set[int],
+    notes: list[str],
+    holds_students: Callable[[str], bool],
+) -> dict[int, list[int]]:
+    """Return the members that each group's submission counts for: those without another submission.
+
+    `claimants` are the submissions that are named like each group, by its members; `own` is each student's own submission. Students
+    who are found to have several possible submissions are added to `contested`, and what a person should know to `notes`.
+    """
+    shared: dict[int, list[int]] = {}
+    for members, named in claimants.items():
+        alone = [index for index in named if not any(map(holds_students, submissions.submission(index).paths))]
+        keys = {index: submissions.student(index).key for index in named}
+        notes.extend(
+            f"{keys[index]} is named like a group, but holds submissions of several students"
+            for index in named
+            if index not in alone
+        )
+        without = [member for member in members if member not in own and member not in contested]
+        if len(alone) > 1:
+            notes.append(f"{', '.join(keys[index] for index in alone)} are each named like one group: left unassigned")
+            contested.update(without)
+        elif alone:
+            notes.extend(
+                f"{roster.entries[member].student.key} has submitted {submissions.student(own[member]).key}, which counts for them,"
+                f" not {keys[alone[0]]} of their group"
+                for member in members
+                if member in own
+            )
+            if without:
+                shared[alone[0]] = without
+    if shared:
+        notes.append(f"group submissions that count for each member: {len(shared)}")
+    return shared
+
+
+def doubt_line(key: str, claim: GroupClaim, roster: Roster) -> str:
+    """Return what a claim with a doubt means for whom."""
+    others = [roster.entries[member].student.key for member in claim.members if member != claim.owner]
+    only = (
+        f"counts for {roster.entries[claim.owner].student.key} only" if claim.owner is not None else "left unassigned"
+    )
+    keep = f"; {enumerated(others, _MAX_NAMED)} {'keeps' if len(others) == 1 else 'keep'} an earlier submission"
+    return f"{key} {claim.doubt}: {only}{keep if others else ''}"

@@ -1,0 +1,96 @@
+"""Find the column of an assignment in an LMS file: by the title that the user names, or by the names of the rubric."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from grader.classroom.lms.filling import FillOptions
+from grader.errors import InputError
+from grader.text import enumerated
+
+_MAX_LISTED = 20
+
+
+@dataclass(frozen=True, slots=True)
+class GradeColumn:
+    """A column that can be written: its index and header, and for an assignment its title and the number in the LMS."""
+
+    index: int
+    header: str
+    title: str = ""
+    number: str = ""
+    maximum: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """By what it can be named besides its header."""
+        return tuple(filter(None, (self.title, self.number)))
+
+
+def find_assignment(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
+    """Return the column for the grade; raises InputError if none or several can be meant.
+
+    `lms` is the name of the LMS, `example` the header of an assignment there.
+    """
+    return _named(columns, options) if options.column else _detected(columns, options, lms, example)
+
+
+def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, options: FillOptions) -> Iterator[str]:
+    """Yield what to check about the columns: a title that does not name the rubric, and other assignments in the file."""
+    if not options.column and options.rubric_names and not _names_rubric(chosen.title, options.rubric_names):
+        name = options.rubric_names[-1]
+        yield f"{chosen.header!r} is the only assignment in the file, but its title does not contain {name!r}"
+    others = sum(column != chosen and bool(column.title) for column in columns)
+    if others and not options.only:
+        yield (
+            f"the file has {others} more assignments: importing it resets them to their values at the time of the export,"
+            " unless you pass --only"
+        )
+
+
+def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
+    """Return the column with this header, title or number."""
+    wanted = options.column.strip()
+    exact = [column for column in columns if column.header == wanted]
+    found = exact or [column for column in columns if wanted in column.names]
+    if len(found) != 1:
+        which = "more than one column" if found else "no writable column"
+        raise InputError(f"{options.shown} has {which} {wanted!r}; the columns are: {_list(found or columns)}")
+    return found[0]
+
+
+def _detected(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
+    """Return the one assignment whose title is a name of the rubric, else contains or is part of one, else the only assignment."""
+    assignments = [column for column in columns if column.title]
+    joined = {"".join(_words(name)) for name in options.rubric_names} - {""}
+    same = [column for column in assignments if "".join(_words(column.title)) in joined]
+    similar = [column for column in assignments if _names_rubric(column.title, options.rubric_names)]
+    candidates = same or similar or assignments
+    if len(candidates) == 1:
+        return candidates[0]
+    if not candidates:
+        raise InputError(
+            f"{options.shown} has no column of an assignment, such as {example!r}, but: {_list(columns)};"
+            f" create the assignment in {lms}, and export again"
+        )
+    raise InputError(f"{options.shown} has several possible columns, choose one with --column: {_list(candidates)}")
+
+
+def _names_rubric(title: str, rubric_names: tuple[str, ...]) -> bool:
+    """Return whether an assignment's title contains a name of the rubric, or is part of one."""
+    words = _words(title)
+    return any(_is_similar(words, _words(name)) for name in rubric_names)
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r"[^\W\d_]+|\d+", text.casefold())
+
+
+def _is_similar(left: list[str], right: list[str]) -> bool:
+    """Return whether one has all words of the other, side by side: Lab 6 and lab6, Lab 6: wheeled base, not Lab 61."""
+    short, long = sorted((left, right), key=len)
+    return bool(short) and any(long[at : at + len(short)] == short for at in range(len(long) - len(short) + 1))
+
+
+def _list(columns: Sequence[GradeColumn]) -> str:
+    return enumerated([repr(column.header) for column in columns], _MAX_LISTED) or "none"

@@ -1,0 +1,72 @@
+"""The names under which an LMS gives uploaded feedback files to students.
+
+Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): a folder `name_participant_type_plugin`
+says whose files are in it; the name must have no underscore, and files that begin with a dot or `~` are ignored. A file of the
+same name replaces an earlier one.
+
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the words of a name are between
+underscores; LATE does not count; the first two numbers are the user and an attachment of the newest submission, or after `anon` the
+next two words. The file is shown under the attachment's name, so that a report must be a file of the same kind: a zip with
+the report in it for a zip. In a group that is graded together, each member gets the comment (generate_comments_from_files).
+"""
+
+import re
+import unicodedata
+from collections.abc import Collection, Sequence
+from pathlib import PurePosixPath
+
+from grader.classroom.students import Student
+
+_MAX_NAME = 60
+_PLAIN = re.compile(
+    r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL
+)  # can be read in one way
+_TEXT = frozenset({".txt", ".urdf", ".xacro", ".xml", ".py", ".yaml", ".yml", ".rst"})
+ZIP = ".zip"
+
+
+def moodle_folder(student: Student, participant: str) -> str:
+    """Return the folder of a student's feedback files; letters, digits and spaces of the name are kept."""
+    name = unicodedata.normalize("NFC", student.name or student.key)
+    words = "".join(letter if letter.isalnum() or letter in "-'" else " " for letter in name).split()
+    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{participant}_assignfeedback_file"
+
+
+def canvas_target(name: str) -> tuple[str, str] | None:
+    """Return whose submission and which attachment Canvas finds by the name of an uploaded file; None if it ignores the file."""
+    words = [word for word in name.split("_") if word != "LATE"]
+    if words[-1].startswith("link") or name.startswith("._"):
+        return None
+    found = words[1:3] if words[0] == "anon" else [word for word in words if re.fullmatch("[0-9]+", word)][:2]
+    return (found[0], found[1]) if len(found) == 2 and found[1].isdecimal() else None
+
+
+def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
+    """Return the name under which Canvas gives a report to the students of one submission, or an empty name and why there is none.
+
+    `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the report.
+    """
+    users = {student.canvas for student in members} - {""}
+    certain = [name for name in names if _is_certain(name, users)]
+    fitting = sorted((rank, name) for name in certain if (rank := _rank(name, ending)) is not None)
+    if fitting:
+        return fitting[0][1], ""
+    if certain:
+        advice = "; Markdown could be" if PurePosixPath(certain[0]).suffix.lower() in _TEXT else ""
+        return "", f"Canvas would show the report as {certain[0]!r}, which could not be opened{advice}"
+    why = "Canvas would find another student, or none, by the name" if names else "submitted no file in Canvas"
+    return "", f"{why} {names[0]!r}" if names else why
+
+
+def _is_certain(name: str, users: Collection[str]) -> bool:
+    """Return whether Canvas gives the file to the right student: its name has one reading, or the user is one of the students."""
+    target = canvas_target(name)
+    return target is not None and (target[0] in users or (not users and _PLAIN.fullmatch(name) is not None))
+
+
+def _rank(name: str, ending: str) -> int | None:
+    """Return how well a report with an ending can be opened under a name, 0 for best; None if it cannot."""
+    own = PurePosixPath(name).suffix.lower()
+    if own in (ending, ZIP):
+        return int(own == ZIP)
+    return 2 if ending == ".md" and own in _TEXT else None

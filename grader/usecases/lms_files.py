@@ -1,0 +1,122 @@
+"""Fill a file that an LMS exported with the grades, and say what importing it changes."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from decimal import Decimal
+from functools import partial
+from pathlib import Path
+
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.remarks import Remarks, remarks_of
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.lms.canvas import fill_gradebook
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html, feedback_items
+from grader.classroom.lms.filling import Filled, FillOptions, Preflight, RowNote
+from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.moodle import fill_worksheet
+from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, fill_offline
+from grader.classroom.lms.tables import SIZE_LIMIT
+from grader.files.reading import read_capped
+from grader.text import printable
+
+FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] = {
+    "canvas": fill_gradebook,
+    "moodle": fill_worksheet,
+    "blackboard": partial(fill_offline, form=BLACKBOARD),
+    "brightspace": partial(fill_offline, form=BRIGHTSPACE),
+}
+_WITH_FEEDBACK = ("moodle",)
+_WITH_EXCUSES = ("canvas",)
+_MAX_NAMED, _MAX_LINES = 3, 50
+
+
+def fill_lms_file(lms: str, file: Path, grades: Grades, options: FillOptions, *, pending_as_zero: bool) -> Filled:
+    """Return the file of an LMS with the grades in it, and what importing it changes. Raises InputError."""
+    data = read_capped(file, SIZE_LIMIT, advice="")
+    found = lms_grades(
+        grades, feedback=lms in _WITH_FEEDBACK, excuses=lms in _WITH_EXCUSES, pending_as_zero=pending_as_zero
+    )
+    return FILLERS[lms](data, list(found), options)
+
+
+def lms_grades(grades: Grades, *, feedback: bool, excuses: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
+    """Yield each student's grade for an LMS. One that is not final has no total, unless pending points count as zero.
+
+    `excuses` says whether the LMS knows excuses.
+    """
+    for grade in grades.all():
+        reason, is_on_roster = grade.why_not_final, grade.is_on_roster is not False
+        is_only_pending = (
+            grade.verdict in ("graded", "errored") and not replace(grade, pending=Decimal(0)).why_not_final
+        )
+        if reason and not (is_only_pending and pending_as_zero):
+            is_excused = excuses and grade.is_excused
+            yield LmsGrade(grade.student, None, "", reason, is_on_roster, is_excused)
+            continue
+        text = _feedback(grades, grade) if feedback else ""
+        yield LmsGrade(grade.student, grade.total, text, is_on_roster=is_on_roster)
+
+
+def _feedback(grades: Grades, grade: StudentGrade) -> str:
+    remarks, items = remarks_of(grades, grade), list[FeedbackItem]()
+    out_of = sum((row.maximum for row in grades.criteria), Decimal(0))
+    if grade.result is not None:
+        report = grades.report(grade)
+        out_of = report.max_score
+        items += feedback_items(report.results)
+    if grade.late.points:
+        items.append(FeedbackItem("Late penalty", grade.late.points, Decimal(0), grade.late.reason))
+    return feedback_html(grade.total, out_of, [*_whole(remarks), *items], remarks.graders.words)
+
+
+def _whole(remarks: Remarks) -> Iterator[FeedbackItem]:
+    """Yield what a person says of the whole submission: that the mark is final, and the comment."""
+    if remarks.whole is not None and remarks.whole.points is not None:
+        yield FeedbackItem(
+            "Final mark", None, Decimal(0), f"given instead of the sum of the criteria. {remarks.whole.comment}"
+        )
+    elif remarks.whole is not None:
+        yield FeedbackItem("Comment", None, Decimal(0), remarks.whole.comment)
+
+
+def preflight_lines(found: Preflight) -> Iterator[str]:
+    """Yield what filling in an LMS file changes, line by line, at most 50 lines of each kind."""
+    yield f"column {found.column!r}: {found.filled} filled in, {found.unchanged} already the same"
+    yield from map(
+        printable, [f"excused (EX): {len(found.excused)} ({_listed(found.excused)})"] if found.excused else []
+    )
+    yield from _capped(
+        "grades that change",
+        [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
+    )
+    yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
+    for kind, rows in (
+        ("in the file, but not in the gradebook", found.unknown),
+        ("in the gradebook, but not in the file", found.missing),
+        ("ambiguous", found.ambiguous),
+        ("kept the comment that a person wrote", found.kept_feedback),
+    ):
+        yield from _capped(
+            kind, [f"{kind}: {f'row {row.row}, ' if row.row else ''}{row.who}: {row.why}" for row in rows]
+        )
+    yield from map(printable, found.warnings)
+
+
+def _by_reason(kind: str, rows: Sequence[RowNote]) -> list[str]:
+    """Return a line for each reason, in the order of the rows: how many have it, and the first of them."""
+    names: dict[str, list[str]] = {}
+    for row in rows:
+        names.setdefault(row.why, []).append(row.who)
+    return [f"{kind}, {reason}: {len(students)} ({_listed(students)})" for reason, students in names.items()]
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = list(names[:_MAX_NAMED])
+    more = [f"... and {len(names) - len(shown)} more"] if len(names) > len(shown) else []
+    return ("; " if any("," in name for name in shown) else ", ").join([*shown, *more])
+
+
+def _capped(kind: str, lines: Sequence[str]) -> Iterator[str]:
+    yield from map(printable, lines[:_MAX_LINES])
+    if len(lines) > _MAX_LINES:
+        yield f"{kind}: and {len(lines) - _MAX_LINES} more"
