@@ -1,6 +1,7 @@
 """Two graders mark at once, in one gradebook or in copies that they merge: no entry is lost, and every grade is that of a plain model."""
 
 import shutil
+from copy import deepcopy
 from datetime import UTC, datetime, timedelta, tzinfo
 from decimal import Decimal
 from pathlib import Path
@@ -15,6 +16,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 from grader.classroom.gradebook import marks
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.review.session import ReviewSession
@@ -31,7 +33,7 @@ from tests.classroom.gradebooks import graded_as, lab_text, record_run
 SUBMITTED, MISSING = ("ash",), "cedar"
 KEYS = (*SUBMITTED, MISSING)
 NAMES = ("Kim", "Lee")
-SIGNS = ("ppp??", "fsp??", "pf---", "ppp?p")  # of loads, box, tall, essay, picture
+SIGNS = ("ppp??", "fsp??", "pf--?", "p-p?p")  # of loads, box, tall, essay, picture
 _ADJUST = '\n[adjust.{id}]\naction = "{action}"\nreason = "unclear"\n'
 _START = datetime(2026, 11, 20, 12, tzinfo=UTC)
 
@@ -96,9 +98,10 @@ class TwoGraders(RuleBasedStateMachine):
         with Gradebook(self.paths[0], create=True) as book:
             save_student(book, Student(MISSING), None)
         self._run(0)
+        self.command(0, (SUBMITTED[0], 3), "points", "1")
         if copies:
             shutil.copy(*self.paths)
-            self.models.append(Book(BASE, dict(self.models[0].signs)))
+            self.models.append(deepcopy(self.models[0]))
             self.changed.add(1)
 
     def _run(self, number: int) -> None:
@@ -178,7 +181,7 @@ class TwoGraders(RuleBasedStateMachine):
         model = self.models[number]
         given: list[tuple[Item, Entry | None]] = []
         with Gradebook(self.paths[number]) as book:
-            session = ReviewSession(Grades(book), by=by)
+            session = ReviewSession(Grades(book), ReviewScope(by=by))
             for action in actions:
                 item = None
                 if session.item is not None:
