@@ -39,7 +39,6 @@ CERTAIN = Clue.WORD  # a match by this kind or a more reliable one is certain
 OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # for the name of a submission
 OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
 OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # for two lists of students
-TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # for what a person types, who can be asked to be more exact
 
 
 class Match(NamedTuple):
@@ -81,12 +80,6 @@ class People:
                 against = {index for index in found if _contradict(claims, self.clues[index])}
                 return Match(tuple(sorted(found - against)), clue, tuple(sorted(against)))
         return Match(())
-
-    def named(self, name: str) -> tuple[int, ...]:
-        """Return the positions of all people whom a typed id, key, login, address or full name may mean."""
-        claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
-        matches = (self.find({kind: claims.get(kind, ())}, (kind,)) for kind in TYPED)
-        return tuple(sorted({index for match in matches for index in match.people}))
 
 
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:

@@ -58,6 +58,16 @@ def export(
       grader export moodle --gradebook lab6.db --feedback feedback.zip
 
       grader export html --gradebook lab6.db --output pages
+
+    Recipes:
+
+      Publish in Canvas: --into and --only, then import the file. Upload the zip of --comments with "Upload Submissions".
+
+      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple feedback files".
+
+      A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
+
+      Grades that still need manual grading are left out: grade them with `grader review`, or pass --pending-as-zero.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.export import ExportRequest

@@ -18,7 +18,7 @@ def render_class_json(
     summary: ClassSummary, grades: Grades, run: dict[str, int] | None, comparison: Comparison | None = None
 ) -> str:
     """Return the statistics and all current grades; `run` counts what a batch has just done, `comparison` is of sections."""
-    rubric = summary.rubric
+    rubric, late = summary.rubric, summary.late
     return to_json(
         {
             "schema": "grader/class/v1",
@@ -42,6 +42,10 @@ def render_class_json(
                 for group in summary.attention.groups
             ],
             "evidence_without_urdf": summary.evidence_only,
+            "late": {
+                "count": late.students,
+                **{name: exact(getattr(late, name)) for name in ("lost", "least", "most")},
+            },
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )

@@ -30,6 +30,7 @@ from grader.report.class_words import (
     gain,
     identical_line,
     is_low,
+    late_line,
     mark_lines,
     percent,
     span,
@@ -60,9 +61,9 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
     _print_agreement([*agreement_lines(summary.agreement)], console)
     _print_identical(summary.identical, console)
     _print_attention(summary.attention, console, verbose=verbose)
-    if evidence := without_urdf(summary):
+    for line in filter(None, (without_urdf(summary), late_line(summary))):
         console.print()
-        wrapped(console, Text(evidence), 0)
+        wrapped(console, Text(line), 0)
 
 
 def _print_marks(statistics: ClassStatistics, console: Console) -> None:

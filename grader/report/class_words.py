@@ -159,6 +159,18 @@ def without_urdf(summary: ClassSummary) -> str:
     )
 
 
+def late_line(summary: ClassSummary) -> str:
+    """Return how many submissions are late and what they lost; empty if none is."""
+    late = summary.late
+    if not late.students:
+        return ""
+    if summary.rubric.late is None and not late.lost:
+        return f"{counted(late.students, 'submission')} late: no points lost, because the rubric has no [late]"
+    least, most = format_points(late.least), format_points(late.most)
+    each = "" if late.students == 1 else f", {most} each" if least == most else f", {least} to {most} each"
+    return f"{counted(late.students, 'submission')} late: {counted_points(late.lost)} lost{each}"
+
+
 def _grade(points: Decimal, statistics: ClassStatistics) -> str:
     """Return a grade exactly, or to two decimals if it is a share of decided points."""
     is_share = statistics.points.pending > 0

@@ -188,6 +188,7 @@ CLASS_SCHEMA = _document(
         "needs_a_look": _TOTAL,
         "attention": _array(_object({"reason": _TEXT, "students": _array(_object({"id": _TEXT, "detail": _TEXT}))})),
         "evidence_without_urdf": _TOTAL,
+        "late": _object({"count": _TOTAL, **_all(_POINTS, "lost least most")}),
         "students": _array(_STUDENT),
     },
     optional=("run", "comparison"),

@@ -88,13 +88,13 @@ def render_reports(
         return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
 
     chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
-    progress = Progress(len(names))
-    show(progress)
+    show(Progress(len(names)))
     lost: dict[str, str] = {}
+    done = 0
     for some, task in [(some, write(some)) for some in chunks]:
         lost |= _lost(write, some, task)
-        progress = replace(progress, graded=progress.graded + len(some))
-        show(progress)
+        done += len(some)
+        show(Progress(len(names), done))
     return lost
 
 

@@ -17,11 +17,20 @@ from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_cla
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
+    from grader.grading.rubric import Rubric
 
 
 def read_deadline(text: str | None) -> datetime | None:
     """Return the time that `--due` gives. Raises InputError."""
     return read_time(text) if text else None
+
+
+def warn_of_due(due: str | None, rubric: "Rubric", warn: Warn) -> None:
+    """Say that `--due` changes no grade if the rubric has no late penalty."""
+    if due and rubric.late is None:
+        warn(
+            f"--due has no effect on grades: the rubric {rubric.id} has no [late]. The days late are shown nevertheless"
+        )
 
 
 def class_statistics(
@@ -41,6 +50,7 @@ def class_statistics(
     """
     with Gradebook(gradebook) as book:
         grades = Grades(book, read_deadline(due))
+        warn_of_due(due, grades.newest_rubric(), warn)
         comparison = compare(grades, by) if by is not None else None
         if comparison is not None and kind is not OutputFormat.JSON:
             from grader.report.sections import render_sections

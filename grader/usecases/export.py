@@ -15,7 +15,7 @@ from grader.report.formats import Format, OutputFormat
 from grader.text import enumerated, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_hints import ProgressDisplay
-from grader.usecases.class_summary import class_summary, read_deadline
+from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.export_pages import export_pages
 from grader.usecases.feedback_zip import feedback_zip
@@ -67,6 +67,8 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
         for path in request.outputs:
             refuse_symlinks(path, classes)
         grades = Grades(book, deadline)
+        if request.due:
+            warn_of_due(request.due, grades.newest_rubric(), warn)
         data = _data(request, grades, warn)
         if data is None:
             warn("nothing was written, because of --strict: some rows or grades are unmatched")
@@ -115,7 +117,7 @@ def _feedback(
         (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
     )
     kind = Format(request.feedback_format)
-    return feedback_zip(request.target, grades.book, grades, kind, due, worksheet, progress, warn)
+    return feedback_zip(request.target, grades, kind, due, worksheet, progress, warn)
 
 
 def _refuse_options(request: ExportRequest) -> None:

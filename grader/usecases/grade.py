@@ -106,6 +106,10 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     from grader.submission.opening import open_submission
 
     rubric = requested_rubric(request, warn)
+    if not request.path.lower().endswith(ROBOT_FILES):
+        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
+
+        refuse_class(request.path, rubric, request.choice)
     submission = open_submission(
         request.path,
         wanted=rubric.urdf,

@@ -28,7 +28,7 @@ from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
-from grader.usecases.class_summary import class_summary, read_deadline
+from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.grades_csv import grades_csv
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_symlinks, save
 
@@ -79,6 +79,7 @@ def grade_class(
     for name in request.parts:
         rubric.part(name)
     deadline = read_deadline(request.due)
+    warn_of_due(request.due, rubric, warn)
     handed_out = tuple(_handed_out(request.ignore_files, rubric))
     roster = _roster(request.roster, request.gradebook)
     _refuse_targets(request)

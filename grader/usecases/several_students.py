@@ -1,4 +1,4 @@
-"""The refusal to grade a repository of several students as one, with the command for each and for all."""
+"""The refusal to grade several students as one, a class or a repository of a team, with the command for each and for all."""
 
 import os
 from pathlib import Path
@@ -12,6 +12,45 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
 
 _MAX_LISTED = 20
+_MAX_WRAPPERS = 3  # folders around a download
+_LMS = {"canvas": "Canvas", "moodle": "Moodle", "nbgrader": "nbgrader"}
+
+
+def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
+    """Raise InputError, with the command for the class, if a path is a whole class as an LMS or nbgrader gives it."""
+    if not _may_be_class(path):
+        return
+    from grader.classroom.intake.reading import find_download  # late: few submissions look like a class
+
+    found = find_download(Path(path), rubric.id)
+    if found is not None:
+        what = f"{printable_path(path)} is a download of {_LMS[found.layout]} with"
+        raise InputError(f"{_head(what, found.students)}\n{_for_all(shell_quoted(path), rubric, options)}")
+
+
+def _may_be_class(path: str) -> bool:
+    """Return whether a path is a zip, or a folder with names as an LMS gives them: a glance that costs nothing."""
+    try:
+        names = os.listdir(path) if os.path.isdir(path) else []  # noqa: PTH112, PTH208
+        for _ in range(_MAX_WRAPPERS):
+            inner = [name for name in names if os.path.isdir(f"{path}/{name}")] if len(names) < _MAX_LISTED else []  # noqa: PTH112
+            if len(inner) != 1 or "submitted" in names:
+                break
+            path = f"{path}/{inner[0]}"
+            names = [*os.listdir(path)]  # noqa: PTH208
+    except (OSError, ValueError):
+        return False
+    if not names:
+        return path.lower().endswith(".zip")
+    return "submitted" in names or sum(name.count("_") > 1 for name in names) > 1
+
+
+def _head(what: str, students: int) -> str:
+    return f"{what} the submissions of {counted(students, 'student')}: nothing was graded"
+
+
+def _for_all(path: str, rubric: "Rubric", options: str) -> str:
+    return f"to grade all: grader batch {path} --gradebook {shell_quoted(f'{rubric.id}.db')}{options}"
 
 
 def refusal(path: str, students: tuple[str, ...], rubric: "Rubric", options: str) -> InputError:
@@ -20,9 +59,7 @@ def refusal(path: str, students: tuple[str, ...], rubric: "Rubric", options: str
     `options` are those of the command that choose the rubric and its parts, as a shell reads them.
     """
     is_folder = Path(path).is_dir()
-    lines = [
-        f"{printable_path(path)} contains the submissions of {counted(len(students), 'student')}: nothing was graded"
-    ]
+    lines = [_head(f"{printable_path(path)} contains", len(students))]
     if not is_folder:
         lines.append("extract the archive; in its folder:")
     start = Path(path) if is_folder else Path()
@@ -31,6 +68,5 @@ def refusal(path: str, students: tuple[str, ...], rubric: "Rubric", options: str
     common = Path(os.path.commonpath([str(Path(student).parent) for student in students]))
     if LabFolders(rubric.folders).is_lab(common.name):  # the layout searches for the lab's folder
         common = common.parent
-    gradebook = shell_quoted(f"{rubric.id}.db")
-    command = f"grader batch {shell_quoted(start / common)} --layout teams --gradebook {gradebook}{options}"
-    return InputError("\n".join((*lines, f"to grade all: {command}")))
+    for_all = _for_all(f"{shell_quoted(start / common)} --layout teams", rubric, options)
+    return InputError("\n".join((*lines, for_all)))

@@ -28,7 +28,7 @@ def parse(line: str) -> None:
     """Parse a command line without running it; fail if it is wrong usage."""
     words = shlex.split(line, comments=True)
     assert words[0] == "grader"
-    for sign in (">", "|"):
+    for sign in ("<", ">", "|"):
         words = words[: words.index(sign)] if sign in words else words
     grader: Any = get_command(make_app(COMMANDS))
     for _, command in walk(grader):
@@ -54,7 +54,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
         parse(line)
 
 
-@pytest.mark.parametrize("command", ["batch", "stats", "diff"])
+@pytest.mark.parametrize("command", ["batch", "stats", "diff", "export"])
 def test_recipes(command: str) -> None:
     """Commands for a class have a recipe for each situation, one sentence each."""
     text = run((command, "--help")).stdout.decode()

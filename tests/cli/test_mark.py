@@ -64,7 +64,12 @@ def test_who_is_marked(name: str, top: Path) -> None:
 @pytest.mark.parametrize(
     ("who", "what", "points", "why"),
     [
-        ("Ben Oh", "essay", "1", "'Ben Oh' is ambiguous: it may be 'ben', 'emil'; use one of these ids"),
+        (
+            "Ben Oh",
+            "essay",
+            "1",
+            "'Ben Oh' is ambiguous: it may be 'ben' (Ben Oh), 'emil' (Ben Oh); use one of these ids",
+        ),
         ("ana", "essay", "1", "there is no student 'ana' in the gradebook; did you mean 'anna'?"),
         ("\x1b[31m", "essay", "1", rf"there is no student '\x1b[31m' in the gradebook{EVERYONE}"),
         (b"\xff", "essay", "1", rf"there is no student '\\udcff' in the gradebook{EVERYONE}"),

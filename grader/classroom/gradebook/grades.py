@@ -14,19 +14,16 @@ from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, laten
 from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT, criterion_points, graded_on
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
-from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
+from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.hints.record import with_hints
 from grader.grading.record import Template, from_record
 from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
-from grader.names import did_you_mean
 from grader.text import shell_quoted
 
-_MAX_NAMED = 5
-_MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
 _COUNTS = ("id", "run", "result", "faults", "marks")  # columns that are taken as they are
 _NAMES = ("older_marks", "revalued_marks", "over_marks")  # of criteria, between spaces
 _POINTS = ("score", "out_of", "pending")
@@ -109,22 +106,12 @@ class Grades:
         return self._select(f"WHERE {condition} ORDER BY key", *values)
 
     def find(self, name: str) -> StudentGrade:
-        """Return the grade of the student with this key, else login, address, number or full name; raises InputError."""
+        """Return the grade of the student with this key, else of the only one whom a typed name may mean; raises InputError."""
         name = storable(name)
         for grade in list(self._select("WHERE key = ?", name)):
             return grade
-        students = list(self.book.students())
-        keys = [students[index].key for index in People(map(clues_of, students)).named(name)]
-        if len(keys) == 1:
-            return self.find(keys[0])
-        if keys:
-            more = " and others" if len(keys) > _MAX_NAMED else ""
-            listed = f"{', '.join(map(repr, keys[:_MAX_NAMED]))}{more}"
-            raise InputError(f"{name!r} is ambiguous: it may be {listed}; use one of these ids")
-        some = students[:_MAX_SUGGESTED_FROM]
-        guess = did_you_mean(name, {word for student in some for word in (student.key, student.login, student.name)})
-        advice = guess or f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
-        raise InputError(f"there is no student {name!r} in the gradebook{advice}")
+        advice = f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
+        return self.find(find_typed(list(self.book.students()), name, advice).key)
 
     def report(self, grade: StudentGrade) -> Report:
         """Return the report on a student's newest submission with the manual marks; raises InputError without a submission."""

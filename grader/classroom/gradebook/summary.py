@@ -8,6 +8,7 @@ from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.fixes import CommonFix, common_fixes
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
+from grader.classroom.gradebook.late_totals import LateTotals, late_totals
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.grading.rubric import Rubric
 
@@ -25,6 +26,7 @@ class ClassSummary(NamedTuple):
     identical: tuple[IdenticalWork, ...]
     evidence_only: int
     agreement: Agreement
+    late: LateTotals
 
 
 def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
@@ -41,4 +43,5 @@ def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
         tuple(identical_work(book)),
         count_evidence_only(book, rubric),
         agreement(book, rubric),
+        late_totals(grades),
     )

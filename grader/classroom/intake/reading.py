@@ -5,6 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom.intake.intake import Intake, assign
 from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
@@ -79,6 +80,32 @@ def _is_one_submission(children: Children) -> bool:
     robots = [name for name in children.files if name.lower().endswith((".urdf", ".xacro"))]
     several = len(children.folders) + sum(1 for name in children.files if ending_of(name))
     return teams.is_package(children) or several == 0 or (len(robots) == 1 and several == 1)
+
+
+class Download(NamedTuple):
+    """A whole class as an LMS or nbgrader gives it."""
+
+    layout: str
+    students: int
+
+
+def find_download(path: Path, rubric_id: str) -> Download | None:
+    """Return the download of a class at a path, a folder or a zip; None for anything that may be the submission of one student.
+
+    In Canvas, the names of two students' archives or robots prove it: a student may have pictures with such names.
+    """
+    try:
+        listing = _listing(path)
+        top = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), path.resolve().name, rubric_id)
+        folder = next((folder for folder in (top, _unwrapped(top)) if is_download(folder)), None)
+        if folder is None:
+            return None
+        layout = _detected(folder)
+        students = nbgrader.count_students(folder) if layout == "nbgrader" else len(LAYOUTS[layout](folder))
+    except (InputError, OSError, ValueError):
+        return None
+    is_class = students > 1 and (layout != "canvas" or canvas.count_certain(folder.children) > 1)
+    return Download(layout, students) if is_class else None
 
 
 def read_class(

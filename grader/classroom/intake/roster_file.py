@@ -3,28 +3,33 @@
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from operator import itemgetter
 from pathlib import Path
 
-from grader.classroom.intake.names import iso_time
 from grader.classroom.intake.roster import Roster, RosterEntry
-from grader.classroom.students import Student
+from grader.classroom.intake.roster_values import RowReader
+from grader.classroom.matching import plain_word
 from grader.errors import InputError
 from grader.files.reading import read_capped
-from grader.text import printable_path
+from grader.text import first_lines, printable_path
 
 _ALIASES = {
     "id": "id userid key",
     "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber matrikelnummer",
     "login": "login loginid username user sisloginid netid account",
     "github": "github githubusername githublogin githubuser githubid githubaccount",
-    "name": "name fullname student studentname sortablename vollständigername",
+    "name": (
+        "name fullname student studentname sortablename vollständigername nomcomplet nombrecompleto nomecompleto volledigenaam"
+    ),
     "first": "first firstname firstnames givenname givennames forename vorname",
     "last": "last lastname surname familyname nachname",
     "email": "email emailaddress mail sisemail emailadresse",
     "canvas": "canvas canvasid canvasuserid",
-    "moodle": "moodle moodleid participantid participant identifier",
+    "moodle": (
+        "moodle moodleid participantid participant identifier identifiant identificador identificativo identificatie"
+    ),
     "group": "group groupname team teamname gruppe",
     "section": "section class tutorial",
     "marker": "marker gradedby assignedgrader teachingassistant ta",
@@ -32,105 +37,99 @@ _ALIASES = {
     "extension": "extension extensiondays extradays",
     "submitted": "submitted submittedat submissiontime",
     "late": "late islate dayslate latedays",
+    "status": "status statut stato estado",
 }
 _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
 _WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle"})
 _ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 _LIMIT = 16 * 1024 * 1024  # bytes
-_YES = frozenset({"yes", "y", "true", "late", "x", "ja"})
-_NO = frozenset({"no", "n", "false", "on time", "-", "nein"})
-_PARTICIPANT = re.compile(r"(?:participant|teilnehmer(?:/?in)?)\s*([0-9]+)", re.IGNORECASE)
+_MAX_MISTAKES = 20
+_UNIQUE = {
+    "key": "id",
+    "canvas": "canvas id",
+    "moodle": "moodle id",
+    "sis": "sis id",
+    "login": "login",
+    "email": "email address",
+}
 
 
 def read_roster(path: Path) -> Roster:
-    """Return the roster in a CSV file in UTF-8, UTF-16 with a byte order mark, or cp1252; raises InputError.
+    """Return the roster in a CSV file in UTF-8, UTF-16 with a byte order mark, or cp1252.
 
     Columns can be in any order, separated by commas, semicolons or tabs; unknown columns are ignored. A student's key is the id, else
-    the university's id, login, address, name, or LMS id.
+    the university's id, login, address, name, or LMS id. Raises InputError with a line for each mistake in the file.
     """
     shown = printable_path(path)
     rows = _rows(_text_of(read_capped(path, _LIMIT, advice=""), shown), shown)
     _, header = next(rows, (1, []))
     fields = _fields(header, shown) if header else []
-    plain = set(map(_plain, header))
-    is_from_canvas = {"student", "id"} <= plain and not {"sis", "login"}.isdisjoint(fields)
+    mistakes: list[tuple[int, str]] = []
+    read = list(_by_field(rows, fields, mistakes))
+    is_from_canvas = _is_from_canvas(header, fields) and any(row["id"].isdecimal() for _, row in read)
+    if is_from_canvas:  # Canvas has rows of points and comments above the students
+        read = [(line, row) for line, row in read if row["id"]]
+    reader = RowReader(is_from_canvas=is_from_canvas)
     entries: list[RosterEntry] = []
-    notes: list[str] = []
-    lines: dict[tuple[str, str], int] = {}
-    for line, cells in rows:
-        if len(cells) < len(fields) or any(cells[len(fields) :]):
-            raise InputError(f"line {line} of {shown} has {len(cells)} cells where the first line has {len(fields)}")
-        row = dict.fromkeys(_ALIASES, "")  # the first cell of each field that is not empty
-        row |= {field: cell for field, cell in reversed(list(zip(fields, cells, strict=False))) if cell}
-        if is_from_canvas:
-            if not row["id"]:  # Canvas has rows of points and comments above the students
-                continue
-            row["canvas"] = row["canvas"] or row["id"]
-        entry = _entry(row, f"line {line} of {shown}")
-        for field in ("key", "canvas", "moodle"):
-            value = getattr(entry.student, field)
-            first = lines.setdefault((field, value), line) if value else line
-            if first != line:
-                what = "id" if field == "key" else f"{field} id"
-                raise InputError(f"{shown} has the {what} {value} twice, in lines {first} and {line}")
-        if row["submitted"] and not entry.submitted:
-            notes.append(f"line {line}: {row['submitted']!r} is not a time such as 2026-09-01T10:00, and was ignored")
-        entries.append(entry)
+    lines: list[int] = []
+    for line, row in read:
+        entry, wrong = reader.entry(line, row)
+        mistakes += ((line, text) for text in wrong)
+        if entry is not None:
+            entries.append(entry)
+            lines.append(line)
+    complaints = [f"line {line} of {shown} {text}" for line, text in sorted(mistakes, key=itemgetter(0))]
+    complaints += _duplicates(zip(lines, entries, strict=True), shown)
+    if complaints:
+        raise InputError("\n".join(first_lines(complaints, _MAX_MISTAKES)))
     if not entries:
         raise InputError(f"{shown} has no students")
     ids = (found[1] for cell in header if is_from_canvas and (found := _ASSIGNMENT.fullmatch(cell)))
-    return Roster(entries, tuple(notes), map("Canvas {}".format, ids))
+    return Roster(entries, tuple(_notes(reader, shown)), map("Canvas {}".format, ids))
 
 
-def _entry(row: dict[str, str], where: str) -> RosterEntry:
-    participant = _PARTICIPANT.fullmatch(row["id"])
-    own_id = "" if participant else row["id"]
-    moodle = row["moodle"] or (participant[1] if participant else "")
-    moodle = found[1] if (found := re.search(r"([0-9]+)$", moodle)) else ""
-    sis = row["sis"] or ("" if own_id == row["canvas"] else own_id)
-    login = row["login"] or row["github"]
-    name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
-    key = own_id or row["sis"] or login or row["email"] or name or row["canvas"] or moodle
-    if not key:
-        raise InputError(f"{where} has no id, login, name or email address: add one of them")
-    return RosterEntry(
-        Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
-        row["section"],
-        *_due(row, where),
-        iso_time(row["submitted"]),
-        *_late(row["late"], where),
-        (row["github"],) if row["github"] not in ("", login) else (),
-        row["group"],
-        row["marker"],
-    )
+def _by_field(
+    rows: Iterator[tuple[int, list[str]]], fields: list[str], mistakes: list[tuple[int, str]]
+) -> Iterator[tuple[int, dict[str, str]]]:
+    """Yield the line of each row, and its first cell of each field that is not empty."""
+    for line, cells in rows:
+        if len(cells) < len(fields) or any(cells[len(fields) :]):
+            mistakes.append((line, f"has {len(cells)} cells where the first line has {len(fields)}"))
+            continue
+        filled = {field: cell for field, cell in reversed(list(zip(fields, cells, strict=False))) if cell}
+        yield line, dict.fromkeys(_ALIASES, "") | filled
 
 
-def _due(row: dict[str, str], where: str) -> tuple[str, float]:
-    """Return a student's own deadline and extension in days: the column extension may hold either."""
-    days = _days(row["extension"])
-    written = row["due"] or ("" if days is not None else row["extension"])
-    due = iso_time(written)
-    if written and not due:
-        raise InputError(f"{where} has the date {written!r}: write it as 2026-09-01 or 2026-09-01T23:59")
-    return due, days or 0.0
+def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
+    return {"student", "id"} <= set(map(_plain, header)) and not {"sis", "login"}.isdisjoint(fields)
 
 
-def _late(text: str, where: str) -> tuple[bool | None, float | None]:
-    said = text.casefold()
-    if not said:
-        return None, None
-    if said in _YES or said in _NO:
-        return said in _YES, None
-    days = _days(said)
-    if days is None:
-        raise InputError(f"{where} has {text!r} for late: write yes, no, or a number of days")
-    return days > 0, days
+def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> Iterator[str]:
+    """Yield the ids and addresses that two students have: the first of each student."""
+    lines: dict[tuple[str, str], int] = {}
+    for line, entry in entries:
+        found = ""
+        for field, title in _UNIQUE.items():
+            value = getattr(entry.student, field)
+            same = value if field == "key" else plain_word(value)
+            first = lines.setdefault((field, same), line) if same else line
+            if first != line and not found:
+                found = f"{shown} has the {title} {value} twice, in lines {first} and {line}"
+        if found:
+            yield found
 
 
-def _days(text: str) -> float | None:
-    found = re.fullmatch(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?", text)
-    return float(found[1].replace(",", ".")) if found else None
+def _notes(reader: RowReader, shown: str) -> Iterator[str]:
+    for line, text in reader.ignored:
+        yield f"line {line} of {shown}: {text!r} is not a time such as 2026-09-01T10:00, and was ignored"
+    if reader.unread:
+        line, status = reader.unread[0]
+        count = f" ({len(reader.unread)} lines)" if len(reader.unread) > 1 else ""
+        yield (
+            f"line {line} of {shown}: it is not clear from the status {status!r} how late the submission is{count}: add a column"
+            " `late` with no or the number of days"
+        )
 
 
 def _text_of(data: bytes, shown: str) -> str:

@@ -113,7 +113,9 @@ def test_an_invalid_time_is_noted(tmp_path: Path) -> None:
     """An LMS may write text instead of a time of submission: it is ignored with a note."""
     roster = read(tmp_path, "id,submitted\n1,yesterday\n")
     assert roster.entries[0].submitted == ""
-    assert roster.notes == ("line 2: 'yesterday' is not a time such as 2026-09-01T10:00, and was ignored",)
+    assert roster.notes == (
+        f"line 2 of {tmp_path}/roster.csv: 'yesterday' is not a time such as 2026-09-01T10:00, and was ignored",
+    )
 
 
 @pytest.mark.parametrize(
@@ -163,11 +165,77 @@ def test_times(time: object) -> None:
 
 
 @given(st.binary(max_size=300))
-def test_any_bytes_give_a_roster_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
-    """Any bytes are read or refused in one line."""
+def test_any_bytes_give_a_roster_or_lines(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    """Any bytes are read, or refused with a line for each mistake."""
     try:
         roster = read(tmp_path_factory.getbasetemp(), b"id,name\n" + data)
     except InputError as error:
-        assert "\n" not in str(error)
+        assert all(line.isprintable() for line in str(error).split("\n"))
     else:
         assert all(student.key.isprintable() for student in roster.students)
+
+
+@pytest.mark.parametrize(
+    ("columns", "row", "message"),
+    [
+        ("id,late", "1,-1", "line 2 of FILE has '-1' for late: write yes, no, or a number of days from 0"),
+        ("id,extension", "1,-2", "line 2 of FILE has '-2' for extension: write a number of days from 0, or a date"),
+        ("id,extension", "1,soon", "line 2 of FILE has the date 'soon': write it as 2026-09-01 or 2026-09-01T23:59"),
+        ("id,due", "1,2026-02-30", "line 2 of FILE has the date '2026-02-30', which does not exist: write it as"),
+        ("id,due", "1,2026-09-01T25:00", "line 2 of FILE has the date '2026-09-01T25:00', which does not exist"),
+        (
+            "id,submitted",
+            "1,2026-02-30 10:00",
+            "line 2 of FILE has '2026-02-30 10:00' for submitted, which does not exist",
+        ),
+        (
+            "id,due,extension",
+            "1,2026-09-01,2026-09-02",
+            "line 2 of FILE has both '2026-09-01' for due and '2026-09-02'",
+        ),
+        ("id,canvas id", "1,ash", "line 2 of FILE has 'ash' for the canvas id, which is a number"),
+        ("id,participant id", "1,s12345", "line 2 of FILE has 's12345' for the participant id, which is a number"),
+        ("id,email", "1,ash", "line 2 of FILE has 'ash' for the email address, which needs an @"),
+        ("id,group", "1,-", "line 2 of FILE has '-' for the group: leave the cell empty for a student without a group"),
+        ("id,group", "1,\N{ZERO WIDTH SPACE}", "line 2 of FILE has '\\u200b' for the group"),
+        ("id,group", "1,N/A", "line 2 of FILE has 'N/A' for the group"),
+        ("id,email", "1,a@x.org\n2,A@X.org", "FILE has the email address A@X.org twice, in lines 2 and 3"),
+        ("id,login", "1,ash\n2,birch\n3,ash", "FILE has the login ash twice, in lines 2 and 4"),
+        ("name,sis id,id", "Ash,1,8\nBirch,1,9", "FILE has the sis id 1 twice, in lines 2 and 3"),
+        ("Student,ID,SIS Login ID", "Ash,7,ash\nBirch,x,birch", "line 3 of FILE has 'x' for the canvas id"),
+    ],
+)
+def test_bad_values(tmp_path: Path, columns: str, row: str, message: str) -> None:
+    """A value that cannot be right is refused with its line: nothing is ignored silently."""
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, f"{columns}\n{row}\n")
+    assert str(caught.value).startswith(message.replace("FILE", str(tmp_path / "roster.csv")))
+    assert "\n" not in str(caught.value)
+
+
+def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
+    """One line for each, in the order of the file, the duplicates last; of many, the first twenty."""
+    text = "id,late,due,group\n1,maybe,2026-13-01,-\n2\n1,yes,,A\n"
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, text)
+    found = [line.removeprefix("line ").replace(f"of {tmp_path}/", "") for line in str(caught.value).split("\n")]
+    assert [line[:26] for line in found] == [
+        "2 roster.csv has the date ",
+        "2 roster.csv has 'maybe' f",
+        "2 roster.csv has '-' for t",
+        "3 roster.csv has 1 cells w",
+        f"{tmp_path}/roster.csv has the id 1"[:26],
+    ]
+    with pytest.raises(InputError) as caught:
+        read(tmp_path, "id,late\n" + "".join(f"{number},maybe\n" for number in range(50)))
+    assert str(caught.value).split("\n")[19:] == [
+        f"line 21 of {tmp_path}/roster.csv has 'maybe' for late: write yes, no, or a number of days from 0",
+        "... and 30 more",
+    ]
+
+
+def test_ids_of_an_own_roster_with_the_columns_of_canvas(tmp_path: Path) -> None:
+    """A roster whose ids are no numbers is not taken for a gradebook of Canvas."""
+    assert read(tmp_path, "Student,ID,Login\nAnn Ash,aa1,ash\n").entries[0].student == Student(
+        "aa1", "Ann Ash", login="ash", sis="aa1"
+    )

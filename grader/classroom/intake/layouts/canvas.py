@@ -62,10 +62,13 @@ def is_layout(children: Children) -> bool:
 
 def is_class(children: Children, name: str) -> bool:
     """Return whether this is a download of several users, or of one in a folder that is named like a download."""
-    if not is_layout(children):
-        return False
-    users = {(file.is_anonymous, file.user) for name in children.files + children.folders if (file := _parsed(name))}
-    return len(users) > 1 or "submissions" in name.casefold()
+    return is_layout(children) and ("submissions" in name.casefold() or count_certain(children) > 1)
+
+
+def count_certain(children: Children) -> int:
+    """Return of how many users there are archives, URDFs or folders: other files may be one student's pictures."""
+    names = children.folders + [name for name in children.files if ending_of(name)]
+    return len({(file.is_anonymous, file.user) for name in names if (file := _parsed(name))})
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:

@@ -34,6 +34,12 @@ def is_course(folder: ClassFolder) -> bool:
     return course is not None and _has_evidence(folder, course)
 
 
+def count_students(folder: ClassFolder) -> int:
+    """Return how many students have a folder in a course."""
+    course = find_course(folder)
+    return 0 if course is None else len(folder.listing.children(course.rstrip("/")).folders)
+
+
 def _has_evidence(folder: ClassFolder, start: str) -> bool:
     """Return whether there is a submission with a timestamp, or for the lab."""
     found = _assignments(folder.listing, start)

@@ -1,0 +1,143 @@
+"""The values in a row of a roster, and which of them are wrong."""
+
+import re
+import unicodedata
+from collections.abc import Callable
+
+from grader.classroom.intake.moodle_status import days_late
+from grader.classroom.intake.names import iso_time
+from grader.classroom.intake.roster import RosterEntry
+from grader.classroom.students import Student
+from grader.text import printable_path
+
+Complain = Callable[[str], None]
+_YES = frozenset({"yes", "y", "true", "late", "x", "ja"})
+_NO = frozenset({"no", "n", "false", "on time", "-", "nein"})
+_NO_GROUP = frozenset({"none", "n/a", "null", "nil", "no group"})
+_PARTICIPANT = re.compile(r"(?:participant|teilnehmer(?:/?in)?)\s*[0-9]+", re.IGNORECASE)
+_WORD_AND_NUMBER = re.compile(r"(?:[^\W\d]{4,}\D*)?([0-9]+)")  # Participant 123, in any language
+_DATE = re.compile(r"\d{4}-\d\d?-\d\d?(?!\d)")
+
+
+class RowReader:
+    """Reads the rows of one roster. `unread` are the lines with a Status that is not understood, and `ignored` odd times."""
+
+    def __init__(self, *, is_from_canvas: bool) -> None:
+        self._is_from_canvas = is_from_canvas
+        self.unread: list[tuple[int, str]] = []
+        self.ignored: list[tuple[int, str]] = []
+
+    def entry(self, line: int, row: dict[str, str]) -> tuple[RosterEntry | None, list[str]]:
+        """Return the student in a row, given by field, and what is wrong in it; no student if the row names none."""
+        mistakes: list[str] = []
+        return self._entry(line, row, mistakes.append), mistakes
+
+    def _entry(self, line: int, row: dict[str, str], complain: Complain) -> RosterEntry | None:
+        is_participant = bool(_PARTICIPANT.fullmatch(row["id"]))
+        own_id = "" if is_participant else row["id"]
+        canvas = _canvas(row["canvas"] or (own_id if self._is_from_canvas else ""), complain)
+        moodle = _moodle(row["moodle"] or (row["id"] if is_participant else ""), complain)
+        sis = row["sis"] or ("" if own_id == canvas else own_id)
+        login = row["login"] or row["github"]
+        name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
+        email = _email(row["email"], complain)
+        key = own_id or row["sis"] or login or email or name or canvas or moodle
+        if not key:
+            complain("has no id, login, name or email address: add one of them")
+            return None
+        due, extension = _due(row, complain)
+        is_late, days = _late(row["late"], complain)
+        if row["status"] and moodle and not (row["late"] or row["submitted"]):
+            is_late, days = self._of_status(line, row["status"], due, extension)
+        return RosterEntry(
+            Student(printable_path(key), name, email, login, sis, canvas, moodle),
+            row["section"],
+            due,
+            extension,
+            self._submitted(line, row["submitted"], complain),
+            is_late,
+            days,
+            (row["github"],) if row["github"] not in ("", login) else (),
+            _group(row["group"], complain),
+            row["marker"],
+        )
+
+    def _of_status(self, line: int, status: str, due: str, extension: float) -> tuple[bool | None, float | None]:
+        """Return the lateness by Moodle, which knows neither the roster's extension nor the student's own deadline there."""
+        days = days_late(status)
+        if days is None:
+            self.unread.append((line, status))
+        if not days:
+            return None, None
+        if due:
+            return True, None
+        return days > extension, max(0.0, days - extension)
+
+    def _submitted(self, line: int, text: str, complain: Complain) -> str:
+        time = iso_time(text)
+        if text and not time and _DATE.match(text):
+            complain(f"has {text!r} for submitted, which does not exist: write it as 2026-09-01T10:00")
+        elif text and not time:
+            self.ignored.append((line, text))
+        return time
+
+
+def _canvas(text: str, complain: Complain) -> str:
+    if text and not re.fullmatch("[0-9]+", text):
+        complain(f"has {text!r} for the canvas id, which is a number")
+        return ""
+    return text
+
+
+def _moodle(text: str, complain: Complain) -> str:
+    found = _WORD_AND_NUMBER.fullmatch(text)
+    if text and not found:
+        complain(f"has {text!r} for the participant id, which is a number (other ids are in a column `id`)")
+    return found[1] if found else ""
+
+
+def _email(text: str, complain: Complain) -> str:
+    if text and not re.fullmatch(r"[^@\s]+@[^@\s]+", text):
+        complain(f"has {text!r} for the email address, which needs an @")
+    return text
+
+
+def _group(text: str, complain: Complain) -> str:
+    visible = [letter for letter in text if unicodedata.category(letter)[0] in "LN"]
+    if text and (not visible or text.casefold() in _NO_GROUP):
+        complain(f"has {text!r} for the group: leave the cell empty for a student without a group")
+    return text
+
+
+def _due(row: dict[str, str], complain: Complain) -> tuple[str, float]:
+    """Return a student's own deadline and extension in days: the column extension may hold either."""
+    days = _days(row["extension"])
+    if row["extension"].startswith("-"):
+        complain(f"has {row['extension']!r} for extension: write a number of days from 0, or a date")
+        return "", 0.0
+    written = row["due"] or ("" if days is not None else row["extension"])
+    due = iso_time(written)
+    if written and not due:
+        why = ", which does not exist" if _DATE.match(written) else ""
+        complain(f"has the date {written!r}{why}: write it as 2026-09-01 or 2026-09-01T23:59")
+    if row["due"] and row["extension"] and days is None:
+        complain(f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one date")
+    return due, days or 0.0
+
+
+def _late(text: str, complain: Complain) -> tuple[bool | None, float | None]:
+    said = text.casefold()
+    if not said:
+        return None, None
+    if said in _YES or said in _NO:
+        return said in _YES, None
+    days = _days(said)
+    if days is None:
+        complain(f"has {text!r} for late: write yes, no, or a number of days from 0")
+        return None, None
+    return days > 0, days
+
+
+def _days(text: str) -> float | None:
+    found = re.fullmatch(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?", text)
+    return float(found[1].replace(",", ".")) if found else None

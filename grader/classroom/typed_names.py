@@ -1,0 +1,86 @@
+"""Find the student whom a person types: by id, login, address, number, full name, or some words of a name.
+
+Never one of several: a manual mark must not go to the wrong student.
+"""
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+
+from grader.classroom.matching import NUMBERS, Clue, People, claims_of, clues_of, plain_name
+from grader.classroom.students import Student
+from grader.errors import InputError
+from grader.names import did_you_mean
+from grader.text import printable
+
+_TYPED = (*NUMBERS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
+_MAX_LISTED = 10
+_MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
+_WORD = re.compile(r"[^\s\-]+")  # of a name: Ash-Birch is two
+_LETTERS = str.maketrans({"ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "æ": "ae", "œ": "oe", "ı": "i"})
+_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"})
+
+
+def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
+    """Return the only student whom a typed name may mean.
+
+    Raises InputError with those who fit if these are several, else with similar names, else with `advice`, which ends the sentence.
+    """
+    people = People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
+    found = [students[index] for index in _named(people, name)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
+    guess = ""
+    if similar := [students[index] for index in _similar(people, name)]:
+        guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_listed(similar)}?"
+    some = students[:_MAX_SUGGESTED_FROM]
+    guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
+    raise InputError(f"there is no student {name!r} in the gradebook{guess or advice}")
+
+
+def _named(people: People, name: str) -> list[int]:
+    """Return the positions of all people whom a typed name may mean, in any case."""
+    claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
+    matches = (people.find({kind: claims.get(kind, ())}, (kind,)) for kind in _TYPED)
+    found = {index for match in matches for index in match.people}
+    return sorted(found | _with_words(people, name, lambda word: (word,)))
+
+
+def _similar(people: People, name: str) -> list[int]:
+    """Return the positions of all people whose names differ in accents: Muller and Mueller are similar to Müller."""
+    return sorted(_with_words(people, name, _without_accents))
+
+
+def _with_words(people: People, name: str, spellings: Callable[[str], Iterable[str]]) -> set[int]:
+    """Return the positions of people whose name has all words of a name, in one of the spellings of both."""
+    wanted = [set(spellings(word)) for word in _WORD.findall(plain_name(name))]
+    return {
+        index
+        for index, clues in enumerate(people.clues)
+        for plain in clues.get(Clue.NAME, ())
+        if wanted and _has_all({word for part in _WORD.findall(plain) for word in spellings(part)}, wanted)
+    }
+
+
+def _has_all(words: set[str], wanted: Iterable[set[str]]) -> bool:
+    return not any(map(words.isdisjoint, wanted))
+
+
+def _without_accents(word: str) -> tuple[str, ...]:
+    """Return a normalised word without accents, and with the two letters that stand for an umlaut: muller and mueller."""
+    composed = unicodedata.normalize("NFC", word)
+    written_out = (composed.translate(_LETTERS), composed.translate(_UMLAUTS).translate(_LETTERS))
+    return tuple(
+        "".join(letter for letter in unicodedata.normalize("NFKD", text) if not unicodedata.combining(letter))
+        for text in written_out
+    )
+
+
+def _listed(students: Sequence[Student]) -> str:
+    """Return the ids and names of students, at most _MAX_LISTED."""
+    shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students]
+    more = len(shown) - _MAX_LISTED
+    return f"{', '.join(shown[:_MAX_LISTED])}{f' and {more} more' if more > 0 else ''}"

@@ -1,0 +1,103 @@
+"""The student whom a person types: the only one who fits, or a list of those who do."""
+
+import unicodedata
+
+import pytest
+
+from grader.classroom.students import Student
+from grader.classroom.typed_names import find_typed
+from grader.errors import InputError
+
+ASH = Student("s1", "Ash, Ann Marie", "ann.ash@example.org", "aash", canvas="101")
+BIRCH = Student("s2", "Jörg Birch-Müller", "JM@example.org", "jm2", moodle="77")
+CEDAR = Student("s3", "Ann Cedar", "cedar@example.org", "cedar")
+DOGWOOD = Student("s4", "Søren Strauß", login="MÜLLER-s4")
+ELM = Student("elm bea_104")  # a folder of nobody on the roster
+CLASS = (ASH, BIRCH, CEDAR, DOGWOOD, ELM)
+ADVICE = "; advice"
+
+
+@pytest.mark.parametrize(
+    ("student", "names"),
+    [
+        (
+            ASH,
+            [
+                "Ann Marie Ash",
+                "Ash, Ann Marie",
+                "Ash, Ann",
+                "ann ash",
+                "ASH",
+                "Marie",
+                "aash",
+                "AASH",
+                "101",
+                "ann.ash",
+            ],
+        ),
+        (
+            BIRCH,
+            [
+                "Jörg Birch-Müller",
+                "Müller, Jörg",
+                "MÜLLER",
+                "jörg",
+                "birch",
+                "jm@Example.org",
+                "JM",
+                "77",
+                "Jörg  müller",
+            ],
+        ),
+        (CEDAR, ["cedar", "Ann Cedar", "S3", "cedar ann"]),
+        (DOGWOOD, ["strauss", "Strauß", "søren", "müller-S4"]),
+        (ELM, ["bea", "elm bea"]),
+    ],
+)
+def test_the_only_student_who_fits(student: Student, names: list[str]) -> None:
+    """By id, login, address, number, and any words of the name, in any case and however accents are encoded."""
+    for name in names:
+        for form in ("NFC", "NFD"):
+            assert find_typed(CLASS, unicodedata.normalize(form, name), ADVICE) == student, name
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("Ann", "'Ann' is ambiguous: it may be 's1' (Ash, Ann Marie), 's3' (Ann Cedar); use one of these ids"),
+        ("Muller", "there is no student 'Muller' in the gradebook; did you mean 's2' (Jörg Birch-Müller)?"),
+        (
+            "mueller, jorg",
+            "there is no student 'mueller, jorg' in the gradebook; did you mean 's2' (Jörg Birch-Müller)?",
+        ),
+        ("Soren", "there is no student 'Soren' in the gradebook; did you mean 's4' (Søren Strauß)?"),
+        ("Soeren", "there is no student 'Soeren' in the gradebook; did you mean 's4' (Søren Strauß)?"),
+        ("Cedr", "there is no student 'Cedr' in the gradebook; did you mean 'cedar'?"),
+        ("Zelkova", "there is no student 'Zelkova' in the gradebook; advice"),
+        ("", "there is no student '' in the gradebook; advice"),
+        (",", "there is no student ',' in the gradebook; advice"),
+    ],
+)
+def test_who_is_not_found(name: str, why: str) -> None:
+    """Several who fit are listed; without accents nobody fits, but those who would are suggested."""
+    with pytest.raises(InputError) as caught:
+        find_typed(CLASS, name, ADVICE)
+    assert str(caught.value) == why
+
+
+def test_an_identifier_of_one_and_the_name_of_another() -> None:
+    """A login that is the surname of another student finds neither."""
+    with pytest.raises(InputError, match=r"it may be 's2' \(Jörg Birch-Müller\), 's9' \(Zoe Zelkova\)"):
+        find_typed((*CLASS, Student("s9", "Zoe Zelkova", login="birch")), "birch", ADVICE)
+
+
+@pytest.mark.parametrize(
+    ("typed", "start"), [("Müller", "'Müller' is ambiguous: it may be"), ("Muller", "did you mean one of")]
+)
+def test_at_most_ten_are_listed(typed: str, start: str) -> None:
+    """The others are counted."""
+    many = [Student(f"s{number:02}", f"Kim{number} Müller") for number in range(13)]
+    with pytest.raises(InputError) as caught:
+        find_typed(many, typed, ADVICE)
+    assert f"{start} 's00' (Kim0 Müller), 's01' (Kim1 Müller)" in str(caught.value)
+    assert "'s09' (Kim9 Müller) and 3 more" in str(caught.value)
