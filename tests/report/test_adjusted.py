@@ -2,6 +2,7 @@
 
 import os
 from decimal import Decimal
+from html import unescape
 from typing import Any
 from unittest.mock import patch
 
