@@ -24,6 +24,12 @@ FILES = (
 )
 
 
+NO_GROUP = (
+    "not named like the student with this id on the roster; if this is a group assignment, add a column `group` to the"
+    " roster, and the submission counts for each member"
+)
+
+
 def one(tmp_path: Path, *names: str) -> ClassSubmission:
     (submission,) = read_class(lay_out(tmp_path, *names), layout="canvas").submissions()
     return submission
@@ -112,6 +118,7 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
     assert intake.notes == (
         "ashal_5 has the name of f, but another number: left unassigned",
         "leekim_4 is ambiguous: it matches several students on the roster: left unassigned",
+        f"xx_1: {NO_GROUP}",
     )
 
 
