@@ -1,4 +1,4 @@
-"""Follow the tutorial in docs/write-a-rubric.md. `python -m tests.tutorial` writes the output of its commands into it.
+"""Follow the tutorials in docs/. `python -m tests.tutorial` writes the output of the commands into docs/write-a-rubric.md.
 
 An output on the page stays as it is if it matches, where "..." stands for any text.
 """
@@ -56,7 +56,8 @@ def _run(commands: str, folder: Path) -> tuple[str, int]:
             subprocess.run(command, shell=True, check=True, cwd=folder, timeout=HANG_TIMEOUT)
             continue
         words, target = (words[:-2], words[-1]) if words[-2:-1] == [">"] else (words, "")
-        done = run_with_input(words[1:], b"", folder=folder)
+        words, source = (words[:-2], (folder / words[-1]).read_bytes()) if words[-2:-1] == ["<"] else (words, b"")
+        done = run_with_input(words[1:], source, folder=folder)
         code = done.returncode
         if target:
             (folder / target).write_bytes(done.stdout)

@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
+from grader.grading.criterion import Criterion
 from grader.grading.report import Hint, Report, Result
 from grader.report.json_data import edit, exact, location, problem, rounded, to_json
 
@@ -74,14 +75,20 @@ def _result(result: Result) -> dict[str, Any]:
 
 def additions(result: Result) -> dict[str, Any]:
     """Return the keys that few criteria have: extra credit, an adjustment, a manual mark, a comment without points."""
-    mark, comment, adjustment = result.manual_mark, result.comment, result.criterion.adjustment
-    found = {
-        "bonus": True if result.criterion.bonus else None,
-        "adjustment": adjustment._asdict() if adjustment else None,
-        "mark": {"points": exact(mark.points), "by": mark.by, "comment": mark.comment} if mark else None,
-        "comment": comment._asdict() if comment else None,
+    mark, comment = result.manual_mark, result.comment
+    return {
+        **kinds(result.criterion),
+        **({"mark": {"points": exact(mark.points), "by": mark.by, "comment": mark.comment}} if mark else {}),
+        **({"comment": comment._asdict()} if comment else {}),
     }
-    return {key: value for key, value in found.items() if value is not None}
+
+
+def kinds(criterion: Criterion) -> dict[str, Any]:
+    """Return the keys that few criteria of a rubric have: extra credit, an adjustment."""
+    return {
+        **({"bonus": True} if criterion.bonus else {}),
+        **({"adjustment": criterion.adjustment._asdict()} if criterion.adjustment is not None else {}),
+    }
 
 
 def _hint(hint: Hint) -> dict[str, Any]:

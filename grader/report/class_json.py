@@ -9,6 +9,7 @@ from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.report.as_json import kinds
 from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
@@ -63,7 +64,9 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "max_score": exact(grade.out_of) if has_result else None,
         "pending": exact(grade.pending) if has_result else None,
         "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
-        "total": exact(grade.total) if has_result else None,
+        "total": exact(grade.total) if has_result or grade.final is not None else None,
+        "final_mark": exact(grade.final),
+        "is_excused": grade.is_excused,
         "is_final": not grade.why_not_final,
         "carried": carried,
         "marks_by_hand": grade.marks,
@@ -89,6 +92,8 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
     return {
         "counts": dict(sorted(statistics.verdicts.items())),
         "max_score": exact(statistics.out_of),
+        "final_marks": statistics.final,
+        "excused": statistics.excused,
         "graded": statistics.graded,
         "pending": statistics.pending,
         "undecided": statistics.undecided,
@@ -104,6 +109,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
+                **kinds(row.criterion),
                 "passed": row.passed,
                 "marked_by_hand": row.marked,
                 **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},

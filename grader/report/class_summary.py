@@ -21,9 +21,12 @@ from grader.report.class_words import (
     MAX_GROUPS,
     MAX_LISTED,
     MAX_NAMED,
+    adjusted_lines,
     counts_line,
+    criterion_name,
     earlier_line,
     edit_lines,
+    final_line,
     gain,
     identical_line,
     is_low,
@@ -48,11 +51,11 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
     """
     statistics = summary.statistics
     wrapped(console, Text(printable(summary.rubric.title), style="bold"), 0)
-    for line in filter(None, (counts_line(statistics), earlier_line(statistics))):
+    for line in filter(None, (counts_line(statistics), final_line(statistics), earlier_line(statistics))):
         wrapped(console, Text(line), 0)
     if statistics.graded:
         _print_marks(statistics, console)
-        _print_criteria(statistics.criteria, console)
+        _print_criteria(statistics.criteria, adjusted_lines(summary.rubric), console)
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
     _print_agreement([*agreement_lines(summary.agreement)], console)
@@ -147,7 +150,7 @@ def _print_rest(number: int, console: Console) -> None:
         wrapped(console, Text(f"... and {number} more", style="dim"), 2)
 
 
-def _print_criteria(criteria: Iterable[CriterionStatistics], console: Console) -> None:
+def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[str], console: Console) -> None:
     console.print()
     table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("criterion", no_wrap=True)
@@ -158,7 +161,7 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], console: Console) -
         table.add_column(name, justify="right", no_wrap=True)
     for row in asked:
         table.add_row(
-            printable(row.criterion.id),
+            criterion_name(row.criterion),
             format_points(row.criterion.points),
             str(row.passed),
             *([str(row.carried)] if has_carried else []),
@@ -169,6 +172,8 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], console: Console) -
         )
     console.print(table)
     wrapped(console, Text(CRITERIA_NOTE, style="dim"), 0)
+    for line in adjusted:
+        wrapped(console, Text(line), 0)
 
 
 def _discrimination_text(discrimination: float | None) -> Text:

@@ -8,6 +8,8 @@ from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.source import Edit
 from grader.text import counted, counted_points, enumerated, format_points, printable
 
@@ -46,6 +48,29 @@ def earlier_line(statistics: ClassStatistics) -> str:
     """Return how many students were graded by an earlier rubric only; empty if there are none."""
     earlier = statistics.verdicts.get("graded", 0) - statistics.graded
     return f"{earlier} graded by an earlier rubric only: not in these statistics" if earlier else ""
+
+
+def final_line(statistics: ClassStatistics) -> str:
+    """Return how many students have a final mark or are excused; empty if there are none."""
+    final, excused = statistics.final, statistics.excused
+    others = final - statistics.final_graded
+    parts = (
+        (final, f"{counted(final, 'student')} {'has' if final == 1 else 'have'} a final mark"),
+        (others, f"{others} of them without a graded submission: not in these statistics"),
+        (excused, f"{counted(excused, 'student')} {'is' if excused == 1 else 'are'} excused: not in these statistics"),
+    )
+    return "; ".join(words for count, words in parts if count)
+
+
+def criterion_name(criterion: Criterion) -> str:
+    """Return the id of a criterion, and whether it is extra credit."""
+    return printable(f"{criterion.id} (bonus)" if criterion.bonus else criterion.id)
+
+
+def adjusted_lines(rubric: Rubric) -> list[str]:
+    """Return the criteria that the rubric adjusts, each with the reason."""
+    adjusted = ((row.id, row.adjustment) for row in rubric.criteria if row.adjustment is not None)
+    return [printable(f"{name}: {adjustment.message}.") for name, adjustment in adjusted]
 
 
 def mark_lines(statistics: ClassStatistics) -> Iterator[str]:

@@ -122,12 +122,15 @@ _CRITERION_STATISTICS = _object(
         **_all(_TOTAL, "passed marked_by_hand carried failed skipped pending errored"),
         "share": _nullable(_POINTS),
         "discrimination": _nullable({"type": "number", "minimum": -1, "maximum": 1}),
-    }
+        "bonus": {"const": True},
+        "adjustment": _ADJUSTMENT,
+    },
+    optional=("bonus", "adjustment"),
 )
 _STATISTICS = _object(
     {
         "counts": _object(dict.fromkeys(_STATUSES, _COUNT), optional=_STATUSES),
-        **_all(_TOTAL, "graded pending undecided"),
+        **_all(_TOTAL, "final_marks excused graded pending undecided"),
         "points": _object(_all(_POINTS, "earned lost pending")),
         "reasons": _array(_object({"reason": _TEXT, "count": _COUNT})),
         **_all(_POINTS, "max_score mean deviation lowest median highest"),
@@ -145,7 +148,8 @@ _STUDENT = _object(
         "status": {"enum": ["graded", "unreadable", "errored", "missing"]},
         **_all(_nullable(_POINTS), "score max_score pending total"),
         "late": _object({"days": _TOTAL, "points": {"type": "number", "maximum": 0}, "because": _TEXT}),
-        "is_final": _FLAG,
+        "final_mark": _nullable(_POINTS),
+        **_all(_FLAG, "is_excused is_final"),
         **_all(_TOTAL, "marks_by_hand attempt"),
         **_all(_array(_TEXT), "paths earlier carried"),
     }

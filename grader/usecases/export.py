@@ -117,7 +117,7 @@ def _feedback(
         (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
     )
     kind = Format(request.feedback_format)
-    return feedback_zip(request.target, grades.book, grades, kind, due, worksheet, progress, warn)
+    return feedback_zip(request.target, grades, kind, due, worksheet, progress, warn)
 
 
 def _refuse_options(request: ExportRequest) -> None:

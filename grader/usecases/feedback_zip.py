@@ -2,11 +2,11 @@
 
 import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.feedback_names import ZIP, canvas_name, moodle_folder
@@ -26,45 +26,21 @@ from grader.usecases.report_names import file_names
 _MAX_LISTED = 50  # students without a file
 
 
+@dataclass(frozen=True, slots=True)
 class Feedback:
-    """The reports of the students who have a result or a final mark, and the students who get none, with the reason."""
+    """The reports of students, each with the grade, and the students without one, with the reason.
 
-    def __init__(self, grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay) -> None:
-        self.grades = [grade for grade in grades.all() if grade.result is not None or grade.final is not None]
-        self.name = f"{file_names([grades.newest_rubric().id]).popitem()[1]}-feedback.{kind.ending}"
-        self.ending = f".{kind.ending}"
-        self.without: dict[str, str] = {}
-        self._reports = self._rendered(grades, kind, due, progress)
+    `name` is that of the file that a student gets, with its ending.
+    """
 
-    def __iter__(self) -> Iterator[tuple[StudentGrade, bytes]]:
-        return (
-            (grade, self._reports[grade.student.key]) for grade in self.grades if grade.student.key in self._reports
-        )
-
-    def _rendered(
-        self, grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay
-    ) -> dict[str, bytes]:
-        """Return the reports by student; those with a submission come from other processes, which a submission may crash."""
-        rendered = {
-            grade.student.key: render(report_of(grades, grade), kind).encode("utf-8", "backslashreplace")
-            for grade in self.grades
-            if grade.result is None
-        }
-        names = {grade.student.key: str(number) for number, grade in enumerate(self.grades) if grade.result is not None}
-        with (
-            tempfile.TemporaryDirectory() as folder,
-            Processes(processors(), REPORT_SECONDS) as executor,
-            progress("writing reports") as show,
-        ):
-            self.without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show)
-            for key in names.keys() - self.without.keys():
-                rendered[key] = Path(folder, f"{names[key]}.{kind.ending}").read_bytes()
-        return rendered
+    name: str
+    ending: str
+    reports: list[tuple[StudentGrade, bytes]]
+    without: dict[str, str]
 
 
 def feedback_zip(
     lms: str,
-    book: Gradebook,
     grades: Grades,
     kind: Format,
     due: datetime | None,
@@ -76,31 +52,53 @@ def feedback_zip(
 
     `worksheet` is Moodle's, if it is given: its participants get the reports.
     """
-    search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=False)
-    feedback = Feedback(grades, kind, due, progress)
+    search_class_hints(grades.book, HintOptions(), progress, warn, reports=True, statistics=False)
+    feedback = _feedback(grades, kind, due, progress)
     files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, worksheet)
     if not files:
         why = next(iter(feedback.without.values()), "no student has a result or a final mark")
         raise InputError(f"no report can be given to a student in {lms.title()}: {why}")
     for line in first_lines([f"no feedback for {key}: {why}" for key, why in feedback.without.items()], _MAX_LISTED):
         warn(printable(line))
-    open_grades = sum(bool(grade.why_not_final) and not grade.is_excused for grade, _ in feedback)
-    if open_grades:
-        warn(f"{counted(open_grades, 'report')} of grades that are not final yet")
-    warn(
-        f"feedback: {counted(len(files), 'file')} for {counted(len(feedback.grades) - len(feedback.without), 'student')}"
-    )
+    given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
+    if count := sum(bool(grade.why_not_final) and not grade.is_excused for grade in given):
+        warn(f"{counted(count, 'report')} of grades that are not final yet")
+    warn(f"feedback: {counted(len(files), 'file')} for {counted(len(given), 'student')}")
     return zip_of(files)
+
+
+def _feedback(grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay) -> Feedback:
+    """Return the reports of the students who have a result or a final mark.
+
+    Those with a submission come from other processes, which a submission may crash.
+    """
+    found = [grade for grade in grades.all() if grade.result is not None or grade.final is not None]
+    names = {grade.student.key: str(number) for number, grade in enumerate(found) if grade.result is not None}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Processes(processors(), REPORT_SECONDS) as executor,
+        progress("writing reports") as show,
+    ):
+        without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show)
+        written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
+        reports = {key: path.read_bytes() for key, path in written.items()}
+    for grade in found:
+        if grade.result is None:
+            reports[grade.student.key] = render(report_of(grades, grade), kind).encode("utf-8", "backslashreplace")
+    (name,) = file_names([grades.newest_rubric().id]).values()
+    listed = [(grade, reports[grade.student.key]) for grade in found if grade.student.key in reports]
+    return Feedback(f"{name}-feedback.{kind.ending}", f".{kind.ending}", listed, without)
 
 
 def _for_moodle(feedback: Feedback, worksheet: tuple[bytes, FillOptions] | None) -> dict[str, bytes]:
     """Return the files by their paths: a folder for each participant, whose number is in the gradebook or in the worksheet."""
-    numbers = {grade.student.key: grade.student.moodle for grade in feedback.grades}
+    numbers = {grade.student.key: grade.student.moodle for grade, _ in feedback.reports}
     why = "the gradebook has no participant number: pass the grading worksheet with --into"
     if worksheet is not None:
-        numbers, why = _participants(feedback.grades, *worksheet), "has no row in the worksheet, or an ambiguous one"
+        numbers = _participants([grade for grade, _ in feedback.reports], *worksheet)
+        why = "has no row in the worksheet, or an ambiguous one"
     counts, files = Counter(numbers.values()), dict[str, bytes]()
-    for grade, report in feedback:
+    for grade, report in feedback.reports:
         number = numbers.get(grade.student.key, "")
         if number and counts[number] == 1:
             files[f"{moodle_folder(grade.student, number)}/{feedback.name}"] = report
@@ -123,17 +121,18 @@ def _participants(found: Sequence[StudentGrade], data: bytes, options: FillOptio
 def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
     """Return the files by their names; the students of a group's submission have one, because Canvas gives it to each of them."""
     submissions: dict[tuple[str, ...], list[tuple[StudentGrade, bytes]]] = defaultdict(list)
-    for grade, report in feedback:
-        submissions[grade.files.paths or ("", grade.student.key)].append((grade, report))
-    files: dict[str, bytes] = {}
-    for paths, members in submissions.items():
+    for grade, report in feedback.reports:
+        files = tuple(PurePosixPath(path).name for path in grade.files.paths)
+        submissions[files or ("", grade.student.key)].append((grade, report))
+    named: dict[str, bytes] = {}
+    for files, members in submissions.items():
         students = [grade.student for grade, _ in members]
-        name, why = canvas_name(filter(None, paths) if paths[0] else (), students, feedback.ending)
+        name, why = canvas_name(files if files[0] else (), students, feedback.ending)
         if len({report for _, report in members}) > 1:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
             report = members[0][1]
-            files[name] = zip_of({feedback.name: report}) if name.lower().endswith(ZIP) else report
+            named[name] = zip_of({feedback.name: report}) if name.lower().endswith(ZIP) else report
         else:
-            feedback.without |= {student.key: why for student in students}
-    return files
+            feedback.without.update((student.key, why) for student in students)
+    return named

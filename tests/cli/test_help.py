@@ -28,7 +28,7 @@ def parse(line: str) -> None:
     """Parse a command line without running it; fail if it is wrong usage."""
     words = shlex.split(line, comments=True)
     assert words[0] == "grader"
-    for sign in (">", "|"):
+    for sign in ("<", ">", "|"):
         words = words[: words.index(sign)] if sign in words else words
     grader: Any = get_command(make_app(COMMANDS))
     for _, command in walk(grader):

@@ -8,6 +8,9 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.run_writer import save_student
+from grader.classroom.gradebook.stored import Enrolment
+from grader.classroom.students import Student
 from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run, refusal, write_submission
 
 
@@ -128,3 +131,59 @@ def test_names_are_escaped(top: Path) -> None:
     for text in (done.stdout, done.stderr, stats(top / "book.db")):
         assert not set(text) & set("\x1b\x07\u202e\r")
     assert "[red]" in done.stdout
+
+
+def sections(path: Path) -> None:
+    """Write a gradebook with the sections A (two graded, one late) and B (one graded, one missing), and a student without a section."""
+    rubric = lab("due = 2026-09-10T12:00:00Z\npercent_per_day = 10")
+    enrolled = {
+        "ash": ("A", "ppppp", 0),
+        "birch": ("A", "pfspp", 2),
+        "cedar": ("B", "pppff", 0),
+        "fir": ("", "ffff?", 0),
+    }
+    with Gradebook(path, create=True) as book:
+        run = record_run(book, rubric, [graded_as(rubric, key, signs) for key, (_, signs, _) in enrolled.items()])
+        assert run == 1
+        with book.transaction():
+            for key, (section, _, late) in {**enrolled, "elm": ("B", "", 0)}.items():
+                enrolment = Enrolment(1, days_late=late, section=section, marker="Kim" if section == "A" else "Lee")
+                save_student(book, Student(key), enrolment)
+
+
+def test_sections_side_by_side(tmp_path: Path) -> None:
+    """Students, grades on decided points, lateness, and the criteria that differ most between named sections."""
+    sections(tmp_path / "book.db")
+    lines = stats(tmp_path / "book.db", "--by", "section").splitlines()
+    assert lines[:5] == [
+        "Grades on decided points, out of 11",
+        "section       students  graded  mean  median  late  lost by lateness",
+        "(no section)         1       1   0.0     0.0     0                 0",
+        "A                    2       2   9.5     9.5     1               2.2",
+        "B                    2       1   6.0     6.0     0                 0",
+    ]
+    assert lines[8:] == [
+        "The criteria that differ most: the mean share of the points that was earned",
+        "  essay (4): (no section) 0%, A 100%, B 0%",
+        "  picture (1): A 100%, B 0%",
+        "  box (2.5): (no section) 0%, A 50%, B 100%",
+        "  tall (0.5): (no section) 0%, A 50%, B 100%",
+    ]
+
+
+def test_sections_in_json(tmp_path: Path) -> None:
+    """The comparison is added to the data of the class, which are otherwise the same."""
+    sections(tmp_path / "book.db")
+    book = ("--gradebook", tmp_path / "book.db", "--format", "json")
+    plain, data = (json.loads(grader("stats", *more, *book).stdout) for more in ((), ("--by", "marker")))
+    jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
+    comparison = data.pop("comparison")
+    assert data == plain
+    assert comparison["by"] == "marker"
+    assert [(group["name"], group["students"], group["graded"], group["mean"]) for group in comparison["groups"]] == [
+        ("Kim", 2, 2, 9.5),
+        ("Lee", 3, 2, 3),
+    ]
+    assert comparison["groups"][0]["late_points"] == 2.2
+    assert comparison["groups"][0]["shares"]["box"] == 0.5
+    assert comparison["differing"][0] == "essay"

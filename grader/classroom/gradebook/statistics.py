@@ -18,7 +18,7 @@ from grader.grading.rubric import Rubric
 _BINS = 10
 _MAX_FAILURES = 20
 _MARKED = "m"  # in place of a status letter, for a criterion with a manual mark
-_VERDICTS = "SELECT verdict, count(*) FROM grade GROUP BY verdict"
+_VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,10 @@ class PointTotals(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ClassStatistics:
-    """A class at a glance: the scores of graded submissions without late penalties; `verdicts` counts all students.
+    """A class at a glance: the scores of graded submissions without late penalties; `verdicts` counts all students but the `excused`.
+
+    `final` students have a final mark, which replaces the score; only `final_graded` of them have a graded submission, so that they
+    are in the statistics.
 
     `mean` and the figures below it are over decided points: the grade of a student is the share that was earned of the points that
     are decided, times the maximum of a submission, `out_of`. Students most of whose automatic points are undecided, `undecided`,
@@ -80,6 +83,9 @@ class ClassStatistics:
 
     verdicts: Mapping[str, int]
     out_of: Decimal
+    excused: int
+    final: int
+    final_graded: int
     graded: int
     pending: int
     undecided: int
@@ -111,8 +117,12 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     letters = f"pfs?!{SETTLED}"
     criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in letters)]
     failures = grouped(failure_counts(book, rubric))[:_MAX_FAILURES]
+    verdicts = list(book.rows(_VERDICTS))
     return ClassStatistics(
-        verdicts={str(verdict): int(count) for verdict, count in book.rows(_VERDICTS)},
+        verdicts={str(verdict): int(count) for verdict, is_excused, count, _ in verdicts if not is_excused},
+        excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
+        final=sum(final for *_, final in verdicts),
+        final_graded=sum(pattern.students for pattern in patterns if pattern.final is not None),
         out_of=_points(most),
         graded=graded,
         pending=sum(pattern.students for pattern in patterns if pattern.pending),

@@ -12,7 +12,7 @@ the report in it for a zip. In a group that is graded together, each member gets
 
 import re
 import unicodedata
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Sequence
 from pathlib import PurePosixPath
 
 from grader.classroom.students import Student
@@ -41,13 +41,12 @@ def canvas_target(name: str) -> tuple[str, str] | None:
     return (found[0], found[1]) if len(found) == 2 and found[1].isdecimal() else None
 
 
-def canvas_name(paths: Iterable[str], members: Collection[Student], ending: str) -> tuple[str, str]:
+def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
     """Return the name under which Canvas gives a report to the students of one submission, or an empty name and why there is none.
 
-    `paths` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the report.
+    `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the report.
     """
     users = {student.canvas for student in members} - {""}
-    names = [PurePosixPath(path).name for path in paths]
     certain = [name for name in names if _is_certain(name, users)]
     fitting = sorted((rank, name) for name in certain if (rank := _rank(name, ending)) is not None)
     if fitting:

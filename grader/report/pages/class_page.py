@@ -18,8 +18,10 @@ from grader.report.class_words import (
     IDENTICAL_NOTE,
     MAX_LISTED,
     VERDICTS,
+    adjusted_lines,
     earlier_line,
     edit_lines,
+    final_line,
     gain,
     is_low,
     mark_lines,
@@ -58,8 +60,14 @@ def render_class_page(
         "title": summary.rubric.title,
         "rubric": summary.rubric,
         "counts": [(f"status-{verdict}", words) for verdict, words in VERDICTS.items()],
-        "others": [("pending", "to grade manually"), ("late", "late")],
-        "earlier": earlier_line(summary.statistics),
+        "others": [
+            ("pending", "to grade manually"),
+            ("late", "late"),
+            ("final", "with a final mark"),
+            ("excused", "excused"),
+        ],
+        "notes": [*filter(None, (final_line(summary.statistics), earlier_line(summary.statistics)))],
+        "adjusted": adjusted_lines(summary.rubric),
         "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
         "reasons": summary.statistics.reasons[1:],
         "bars": _bars(summary.statistics),
@@ -100,7 +108,7 @@ def _columns(rows: Sequence[StudentRow]) -> list[tuple[str, str, str]]:
         ("score", "score", "number"),
         ("pending", "needs manual grading", "number"),
         ("late", "late", "number"),
-        ("total", "total after the late penalty", "number"),
+        ("total", "final mark, or total after the late penalty", "number"),
     )
     has_names = any(row.name != row.key for row in rows)
     names = [("key", "id", "")] if has_names else []

@@ -46,10 +46,11 @@ def student_rows(
 
 def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, links: Mapping[str, str]) -> StudentRow:
     key, is_graded = grade.student.key, grade.result is not None
-    status = grade.why_attention or VERDICTS[grade.verdict]
+    status = grade.why_attention or ("excused" if grade.is_excused else VERDICTS[grade.verdict])
     about = key, grade.student.name or key, links.get(key, ""), grade.verdict, status
+    total = format_points(grade.total) if grade.late.points or grade.final is not None else ""
     if not is_graded:
-        return StudentRow(*about, "", "", "", "", "")
+        return StudentRow(*about, "", "", "", total, "")
     maximum = "" if grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
     lost = _costliest(summary, member)
     return StudentRow(
@@ -57,7 +58,7 @@ def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, link
         f"{format_points(grade.score)}{maximum}",
         format_points(grade.pending) if grade.pending else "",
         counted(grade.late.days, "day") if grade.late.days else "",
-        format_points(grade.total) if grade.late.points else "",
+        total,
         enumerated([criterion.id for criterion in lost], _MAX_LOST),
     )
 
@@ -74,11 +75,14 @@ def groups(
     """Yield the groups of students on the page, each with the id that its buttons use."""
     statistics = summary.statistics
     for verdict, words in VERDICTS.items():
-        yield f"status-{verdict}", Group(words, [one.student.key for one in grades if one.verdict == verdict])
+        keys = [one.student.key for one in grades if one.verdict == verdict and not one.is_excused]
+        yield f"status-{verdict}", Group(words, keys)
     yield "attention", Group("need attention", [one.student.key for one in grades if one.why_attention])
     pending = {one.student.key for one in grades if one.pending}
     yield "pending", Group("need manual grading", [key for key in members if key in pending])
     yield "late", Group("late", [one.student.key for one in grades if one.late.days])
+    yield "final", Group("a final mark", [one.student.key for one in grades if one.final is not None])
+    yield "excused", Group("excused", [one.student.key for one in grades if one.is_excused])
     for tenth in range(len(statistics.bins)):
         keys = [key for key, member in members.items() if member.tenth == tenth]
         yield f"grade-{tenth}", Group(f"a grade of {span(statistics, tenth)}", keys)

@@ -139,6 +139,42 @@ def test_rows_without_a_grade_are_omitted_with_the_reason() -> None:
     assert filled.preflight.matches
 
 
+def test_excuses() -> None:
+    """An excuse is EX, is counted, replaces a grade with a notice, and is missed if there is no row; N/A stays."""
+    rows = ["Ann,11,,,A,", "Bob,12,,,A,80", "Cem,13,,,A,ex", "Dee,14,,,A,N/A", "Eli,15,,,A"]
+    excused = [LmsGrade(Student(f"k{n}", canvas=str(n)), None, "", "excused", is_excused=True) for n in range(11, 17)]
+    filled = fill(gradebook(*rows), *excused)
+    assert lines(filled)[2:] == ["Ann,11,,,A,EX", "Bob,12,,,A,EX", "Cem,13,,,A,ex"]
+    found = filled.preflight
+    assert found.excused == ["Ann", "Bob", "Cem"]
+    assert found.conflicts == [Conflict(4, "Bob", "80", "EX")]
+    assert (found.filled, found.unchanged) == (2, 1)
+    assert [note.why for note in found.ungraded] == [
+        "is not assigned this assignment in Canvas",
+        "the row has 5 cells and the header 6",
+    ]
+    assert found.missing == [RowNote(0, "k16", "is excused, but no row in the file")]
+    assert not found.matches
+    again = fill(filled.data, *excused[:3])
+    assert again.data == filled.data
+    assert (again.preflight.filled, again.preflight.unchanged) == (0, 3)
+
+
+def test_only_this_assignment() -> None:
+    """The columns that identify students stay, each once, and the row of points; all else is left out, quotes and all."""
+    header = 'Student,ID,"SIS User ID",SIS Login ID,Section,Notes,Quiz (1),Lab 6 (2),Section,Current Score'
+    points = '"    Points Possible",,,,,,10,100,,(read only)'
+    posting = ",,,,,,,Manual Posting,,"
+    rows = ('"Doe, Jane",11,S11,jdoe,A,mine,7,,B,90', "Short,12", "Roe,13,,,A,mine,7,80,B,90")
+    data = f"{header}\r\n{posting}\r\n{points}\r\n" + "".join(f"{row}\r\n" for row in rows)
+    filled = fill(data.encode(), graded("x", canvas="11"), only=True)
+    assert filled.data.decode() == (
+        'Student,ID,"SIS User ID",SIS Login ID,Section,Lab 6 (2)\r\n,,,,,Manual Posting\r\n'
+        '"    Points Possible",,,,,100\r\n"Doe, Jane",11,S11,jdoe,A,58.50\r\n'
+    )
+    assert not filled.preflight.warnings
+
+
 def test_existing_grades() -> None:
     """The same grade stays as it is written; another one is overwritten and reported."""
     rows = ["Ann,11,,,A,58.5", "Bob,12,,,A,80", "Cem,13,,,A,B+", "Dee,14,,,A,-"]

@@ -50,7 +50,6 @@ def test_whose_file_canvas_takes_it_for(name: str, target: tuple[str, str] | Non
         (["a_101_2001_lab6.urdf", "a_101_2002_lab6.zip"], ANYBODY, ".md", "a_101_2002_lab6.zip"),
         (["a_101_2001_lab6.urdf", "a_101_2002_photo.png"], ANYBODY, ".md", "a_101_2001_lab6.urdf"),
         (["a_101_2001_LAB6.ZIP"], ANYBODY, ".html", "a_101_2001_LAB6.ZIP"),
-        (["class/a_101_2001_lab6.zip"], ANYBODY, ".html", "a_101_2001_lab6.zip"),
         (["mallory_77_101_2001_lab6.zip"], USER_101, ".md", ""),  # Canvas would read 77
         (["mallory_77_101_2001_lab6.zip"], ANYBODY, ".md", ""),
         (["a_102_2001_lab6.zip"], USER_101, ".md", ""),

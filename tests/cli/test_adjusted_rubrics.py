@@ -1,0 +1,283 @@
+"""Adjusted criteria and extra credit through the command line: grade, batch, regrade, marks, exit codes, exports."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
+
+EVERYBODY, DROPPED = "Points given to everybody: odd handout.", "Not counted: odd handout."
+
+
+def adjusted(text: str, name: str, action: str) -> str:
+    """Return a rubric with an adjustment."""
+    return f'{text}\n\n[adjust.{name}]\naction = "{action}"\nreason = "odd handout"\n'
+
+
+def with_bonus(text: str, name: str) -> str:
+    """Return a rubric in which a criterion is extra credit."""
+    assert f'id = "{name}"' in text
+    return text.replace(f'id = "{name}"', f'id = "{name}"\nbonus = true')
+
+
+def rubric(folder: Path, text: str, name: str = "lab.toml") -> Path:
+    """Write a rubric and return its path."""
+    (folder / name).write_text(text)
+    return folder / name
+
+
+def report(path: Path, lab: Path, *more: object) -> tuple[int, Any]:
+    """Return the exit code and the report of `grader grade`."""
+    done = grader("grade", path, "--rubric", lab, "--format", "json", *more)
+    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
+
+
+def result(data: Any, name: str) -> Any:
+    """Return a criterion of a report."""
+    return next(row for row in data["results"] if row["id"] == name)
+
+
+def students(top: Path) -> dict[str, Any]:
+    """Return the current grades by student."""
+    done = grader("export", "json", "--gradebook", top / "book.db")
+    return {student["id"]: student for student in json.loads(done.stdout)["students"]}
+
+
+def scores(top: Path) -> dict[str, tuple[Any, Any, Any]]:
+    """Return score, maximum and pending points by student."""
+    return {key: (one["score"], one["max_score"], one["pending"]) for key, one in students(top).items()}
+
+
+@pytest.fixture
+def wrong(tmp_path: Path) -> Path:
+    """Return a submission with everything, but a box of another size."""
+    write_submission(tmp_path / "emil", "1 1 2")
+    return tmp_path / "emil"
+
+
+# --- One submission -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("action", "points", "score", "most"), [("full", 2.5, 6, 11), ("drop", 0, 3.5, 8.5)])
+def test_one_submission(wrong: Path, tmp_path: Path, action: str, points: float, score: float, most: float) -> None:
+    """Everybody gets the points, or the maximum is smaller; what requires the criterion is checked; the exit code is 0."""
+    lab = rubric(tmp_path, adjusted(lab_text(tall="1").replace("height = -0.5", "height = -1"), "box", action))
+    code, data = report(wrong, lab)
+    row = result(data, "box")
+    assert (code, row["status"], row["points"], row["feedback"], row["hints"]) == (0, "failed", points, "", [])
+    assert row["adjustment"] == {"action": action, "reason": "odd handout"}
+    assert result(data, "tall")["status"] == "passed"
+    assert (data["score"], data["max_score"]) == (score + 0.5, most + 0.5)
+    shown = grader("grade", wrong, "--rubric", lab)
+    assert (shown.returncode, "1 1 2" in shown.stdout) == (0, False)  # not the student's mistake
+    assert shown.stdout.count("odd handout") == 1
+
+
+def test_a_criterion_that_requires_a_missing_thing_fails_itself(tmp_path: Path) -> None:
+    """What an adjusted criterion misses is not said to be its fault: the next one that misses it fails."""
+    write_submission(tmp_path / "anna")
+    (tmp_path / "anna" / "robot.urdf").write_text(urdf().replace('name="base"', 'name="bass"'))
+    _, data = report(tmp_path / "anna", rubric(tmp_path, adjusted(lab_text(), "box", "drop")))
+    assert (result(data, "tall")["status"], result(data, "tall")["because"]) == ("failed", None)
+    code, data = report(tmp_path / "anna", rubric(tmp_path, lab_text()))
+    assert (code, result(data, "tall")["because"]) == (1, "box")
+
+
+def test_pending_criteria(wrong: Path, tmp_path: Path) -> None:
+    """Nobody needs to grade an adjusted question."""
+    for action, points in (("full", 4), ("drop", 0)):
+        _, data = report(wrong, rubric(tmp_path, adjusted(lab_text(), "essay", action)))
+        assert (result(data, "essay")["points"], data["pending"]) == (points, 1)
+
+
+def test_extra_credit_is_above_the_maximum(tmp_path: Path) -> None:
+    """It is in the score and not in the maximum; without it the exit code is 0, and the threshold is of the maximum."""
+    write_submission(tmp_path / "anna")
+    lab = rubric(tmp_path, with_bonus(lab_text(), "box"))
+    code, data = report(tmp_path / "anna", lab)
+    assert (code, data["score"], data["max_score"]) == (0, 6, 8.5)
+    assert (result(data, "box")["bonus"], result(data, "box")["max_points"]) == (True, 2.5)
+    (tmp_path / "anna" / "robot.urdf").write_text(urdf("1 1 2"))
+    text = lab_text().replace('requires = ["box"]', "").replace("-0.5", "-1")
+    free = rubric(tmp_path, with_bonus(text, "box"), "free.toml")
+    assert report(tmp_path / "anna", free)[0] == 0
+    assert report(tmp_path / "anna", lab)[0] == 1  # `tall` requires the box and is skipped: this counts
+    assert report(tmp_path / "anna", free, "--fail-under", "42%")[0] == 1  # 3.5 of 8.5
+    assert report(tmp_path / "anna", free, "--fail-under", "41%")[0] == 0
+    shown = grader("grade", tmp_path / "anna", "--rubric", free).stdout
+    assert "box  0/2.5 bonus" in shown
+    assert "Extra credit: 0 of 2.5 points, which are not part of the maximum." in " ".join(shown.split())
+
+
+def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path: Path) -> None:
+    """The instructor has dropped it for this reason: the exit code is 3 without the adjustment, and 0 with it."""
+    text = lab_text(extra="1").replace(
+        'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "urdf_loads"',
+        'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "behaves"',
+    )
+    hostile = {"PYTHONPATH": str(Path(__file__).parent.parent / "classroom" / "hostile")}
+    (wrong / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
+    codes = [
+        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), **hostile).returncode
+        for chosen in (text, adjusted(text, "extra", "drop"))
+    ]
+    assert codes == [3, 0]
+
+
+# --- A class --------------------------------------------------------------------------------------------------------------
+
+
+def test_the_class_gets_the_new_totals_without_force(top: Path) -> None:
+    """An adjustment is another rubric: all are graded again. Marks do not count meanwhile, and come back."""
+    before = scores(top)
+    assert before["emil"] == (3, 11, 5)
+    for name, points in (("box", 1), ("essay", 1)):
+        assert grader("mark", "emil", name, points, "--gradebook", top / "book.db").returncode == 0
+    marked = scores(top)
+    assert marked["emil"] == (5, 11, 1)
+    text = adjusted(adjusted(lab_text(), "box", "full"), "essay", "drop")
+    assert batch(top, rubric=rubric(top, text)).returncode == 0
+    assert scores(top) == {
+        "anna": (6, 7, 1),
+        "ben": (6, 7, 1),
+        "cleo": (2.5, 7, 4.5),  # could not be read: what is given to everybody is given
+        "dora": (None, None, None),  # nothing was submitted
+        "emil": (5.5, 7, 1),  # and `tall` is not skipped any more: it fails
+    }
+    assert students(top)["emil"]["marks_by_hand"] == 0
+    assert students(top)["emil"]["carried"] == []
+    batch(top)
+    assert scores(top) == marked
+
+
+def test_a_part_that_was_not_submitted_stays_not_graded(top: Path) -> None:
+    """What is given to everybody is given on graded parts only."""
+    batch(top, "--part", "robot", rubric=rubric(top, adjusted(lab_text(), "essay", "full")))
+    assert scores(top)["anna"] == (6, 6, 0)
+
+
+def test_review_does_not_ask(top: Path) -> None:
+    """An adjusted question is not in the queue."""
+    batch(top, rubric=rubric(top, adjusted(adjusted(lab_text(), "essay", "drop"), "picture", "full")))
+    assert "nothing needs manual grading" in grader("review", "--gradebook", top / "book.db").stdout
+
+
+def test_statistics(top: Path) -> None:
+    """Adjusted criteria are no mistakes and not among the hardest; a grade above the maximum is in the last bar."""
+    text = with_bonus(adjusted(adjusted(lab_text(), "essay", "full"), "picture", "drop"), "box")
+    text = text.replace('requires = ["box"]', "")
+    batch(top, rubric=rubric(top, text))
+    data = json.loads(grader("stats", "--gradebook", top / "book.db", "--format", "json").stdout)["statistics"]
+    assert (data["max_score"], data["highest"], data["lowest"]) == (7.5, 10, 7)
+    assert data["tenths"] == [0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
+    assert data["points"] == {"earned": 27, "lost": 0.5, "pending": 0}
+    rows = {row["id"]: row for row in data["criteria"]}
+    assert rows["box"]["bonus"] is True
+    assert rows["essay"]["adjustment"] == {"action": "full", "reason": "odd handout"}
+    assert (rows["essay"]["share"], rows["picture"]["share"]) == (None, None)
+    shown = grader("stats", "--gradebook", top / "book.db").stdout
+    assert "essay: Points given to everybody: odd handout." in shown
+    assert "picture: Not counted: odd handout." in shown
+    assert "box (bonus)" in shown
+
+
+def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
+    """How many students have one, also without a submission."""
+    from decimal import Decimal
+
+    from grader.classroom.gradebook.gradebook import Gradebook
+    from grader.classroom.gradebook.grades import Grades
+    from grader.classroom.gradebook.marks import Entry, add_mark
+
+    with Gradebook(top / "book.db") as book:
+        for key, entry in (
+            ("anna", Entry("excused")),
+            ("dora", Entry("points", Decimal(0))),
+            ("emil", Entry("points", Decimal(40))),
+        ):
+            add_mark(book, Grades(book).find(key), "total", entry)
+    data = json.loads(grader("stats", "--gradebook", top / "book.db", "--format", "json").stdout)["statistics"]
+    assert (data["final_marks"], data["excused"], data["graded"], data["highest"]) == (2, 1, 2, 40)
+    assert sum(data["tenths"]) == 2
+    shown = " ".join(grader("stats", "--gradebook", top / "book.db").stdout.split())
+    assert (
+        "2 students have a final mark; 1 of them without a graded submission: not in these statistics; "
+        "1 student is excused: not in these statistics"
+    ) in shown
+    assert "2 graded, 1 could not be graded, 1 without a submission" in shown
+
+
+# --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------
+
+
+def test_the_late_penalty_is_of_the_maximum_without_extra_credit(top: Path) -> None:
+    """Ten percent of 8.5 points, not of 11; a dropped criterion lowers the maximum as well."""
+    (top / "roster.csv").write_text("id,late\nanna,1\nben,\n")
+    for text, points in (
+        (with_bonus(lab_text("percent_per_day = 10"), "box"), -0.85),
+        (adjusted(lab_text("percent_per_day = 10"), "picture", "drop"), -1),
+        (adjusted(lab_text("percent_per_day = 10"), "picture", "full"), -1.1),
+    ):
+        batch(top, rubric=rubric(top, text))
+        assert students(top)["anna"]["late"]["points"] == points
+
+
+def test_rubric_commands(tmp_path: Path) -> None:
+    """`check` takes sums without extra credit and adjustments; `show`, the handout and `explain` name both."""
+    (tmp_path / "robot.urdf").write_text(urdf())
+    text = 'points = 8.5\nreference = "robot.urdf"\n' + with_bonus(lab_text(), "box")
+    lab = rubric(tmp_path, adjusted(text, "picture", "drop"))
+    assert "5 criteria, 7.5 points and 2.5 bonus points, no mistakes" in grader("rubric", "check", lab).stdout
+    shown = grader("rubric", "show", lab).stdout
+    assert "(7.5 points and 2.5 bonus points)" in shown
+    assert "About box (bonus)\n" in shown
+    assert f"About picture\n    {DROPPED}\n" in shown
+    handout = grader("rubric", "show", lab, "--markdown").stdout
+    assert "| 2.5 bonus |" in handout
+    assert DROPPED.removesuffix(".") in handout
+    assert "box (2.5 bonus points, part robot of small)" in grader("explain", "box", "--rubric", lab).stdout
+    assert DROPPED in grader("explain", "picture", "--rubric", lab).stdout
+    wrong = rubric(tmp_path, text.replace("points = 8.5", "points = 11"))
+    assert "the rubric declares 11 points, but its criteria add up to 8.5" in grader("rubric", "check", wrong).stderr
+
+
+def test_the_reference_needs_no_extra_credit(tmp_path: Path) -> None:
+    """Neither `check` nor `test` miss a bonus or an adjusted criterion that the reference does not get; others they do."""
+    (tmp_path / "robot.urdf").write_text(urdf("1 1 2"))
+    text = 'reference = "robot.urdf"\n' + lab_text().replace('requires = ["box"]', "").replace("-0.5", "-1")
+    for chosen in (with_bonus(text, "box"), adjusted(text, "box", "drop"), adjusted(text, "box", "full")):
+        lab = rubric(tmp_path, chosen)
+        assert "its reference gets full marks" in grader("rubric", "check", lab).stdout
+        data = json.loads(grader("rubric", "test", lab, "--format", "json").stdout)
+        assert data["reference"]["lost"] == []
+        assert data["mutants"]["caught"] > 0
+        assert "box" not in data["idle"]
+    lab = rubric(tmp_path, text)
+    assert "the reference does not get box" in grader("rubric", "check", lab).stderr
+
+
+def test_a_mutant_is_not_caught_by_an_adjusted_criterion(tmp_path: Path) -> None:
+    """It loses no points there; a bonus catches it."""
+    (tmp_path / "robot.urdf").write_text(urdf())
+    text = 'reference = "robot.urdf"\n' + lab_text().replace('requires = ["box"]', "")
+    data = [
+        json.loads(grader("rubric", "test", rubric(tmp_path, chosen), "--format", "json").stdout)
+        for chosen in (text, with_bonus(text, "box"), adjusted(text, "box", "drop"))
+    ]
+    caught = [found["mutants"]["caught"] for found in data]
+    assert caught[0] == caught[1] > caught[2]
+
+
+def test_the_gradescope_bundle_counts_what_gradescope_grades(tmp_path: Path) -> None:
+    """Autograder points are the maximum without manual grading; an adjusted question needs none."""
+    lab = rubric(tmp_path, with_bonus(adjusted(lab_text(), "essay", "full"), "picture"))
+    done = grader("bundle", "gradescope", tmp_path / "a.zip", "--rubric", lab)
+    assert "autograder points: 10; manual grading: 1 bonus point for picture (1 bonus)" in done.stdout
+
+
+def test_an_adjustment_of_nothing_is_refused(tmp_path: Path) -> None:
+    """With the criterion that may be meant."""
+    lab = rubric(tmp_path, adjusted(lab_text(), "esay", "drop"))
+    assert "adjusts 'esay', which does not exist" in refusal(grader("grade", tmp_path, "--rubric", lab))
