@@ -163,3 +163,21 @@ def test_an_anonymous_download_matches_no_student(tmp_path: Path) -> None:
         assert (intake.unmatched, intake.absent) == ((), ())
         assert [line.partition(":")[0] for line in intake.notes] == ["this is an anonymous download"]
     assert len(read_class(tmp_path, roster).contested) == 2
+
+
+def test_a_roster_settles_names_that_end_in_a_number(tmp_path: Path) -> None:
+    """If only one of the numbers is a student's, it is the user id; if both are, the file may be either's."""
+    files = ("redash_7_101_5_lab6.zip", "blueash_7_LATE_102_6_lab6-1.zip", "blueash_7_LATE_102_4_lab6.zip")
+    students = [Student("a", "Ash, Red", canvas="101"), Student("b", "Ash, Blue", canvas="102")]
+    intake = read_class(lay_out(tmp_path, *files), Roster(map(RosterEntry, students)))
+    assert assigned(intake) == {"a": files[:1], "b": files[1:2]}
+    red, blue = intake.submissions()
+    assert (red.is_late, red.names, blue.is_late, blue.names, blue.attempt) == (
+        False,
+        ("lab6.zip",),
+        True,
+        ("lab6-1.zip",),
+        2,
+    )
+    seven = Roster(map(RosterEntry, (*students, Student("c", canvas="7"))))
+    assert not set(assigned(read_class(tmp_path, seven, layout="canvas"))) & {"a", "c"}
