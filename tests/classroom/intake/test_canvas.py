@@ -181,3 +181,11 @@ def test_a_roster_settles_names_that_end_in_a_number(tmp_path: Path) -> None:
     )
     seven = Roster(map(RosterEntry, (*students, Student("c", canvas="7"))))
     assert not set(assigned(read_class(tmp_path, seven, layout="canvas"))) & {"a", "c"}
+
+
+def test_a_student_who_is_called_like_an_anonymous_one(tmp_path: Path) -> None:
+    """One such name does not make the download anonymous: the others are matched as ever."""
+    lay_out(tmp_path, "anon_ab3xy_101_1_lab6.zip", "ashann_102_2_lab6.zip")
+    intake = read_class(tmp_path, Roster([RosterEntry(Student("a", "Ash, Ann", canvas="102"))]))
+    assert assigned(intake) == {"a": ("ashann_102_2_lab6.zip",), "anon_ab3xy": ("anon_ab3xy_101_1_lab6.zip",)}
+    assert (intake.unmatched, intake.notes) == (("anon_ab3xy",), ())

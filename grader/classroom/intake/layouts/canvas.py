@@ -87,7 +87,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
     contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
     found = (_submission(files, start) for files in certain.values() if files)
-    is_anonymous = any(anonymous for anonymous, _ in by_user)
+    is_anonymous = all(anonymous for anonymous, _ in by_user)  # a student may be called anon_ab3xy
     return Submissions(found, contested=tuple(contested), is_anonymous=is_anonymous)
 
 
