@@ -118,6 +118,10 @@ def test_an_anonymous_review_in_the_terminal(top: Path, scoped_class: Path) -> N
     assert len(names) == 5 and revealing(" ".join(names), scoped_class) == set()
     assert "Pictures:\n" in done.stdout and ": not shown here" in done.stdout
     assert "The roots." in done.stdout and "Because of the roots." in done.stdout
+    assert (
+        "\nWhy? a written answer, needs manual grading\n" in done.stdout
+        and "\n2 files, need manual grading\n" in done.stdout
+    )
     again = review(top, "q\n", "--anonymous", "--criterion", "picture")
     assert shown(again)[0].startswith("1 of 3  submission 1: About picture")
     refused = refusal(review(top, "", "--anonymous", "--pictures", top / "out"))
@@ -242,6 +246,27 @@ def test_pictures_of_a_folder_are_opened(top: Path, viewer: dict[str, str]) -> N
     done = review(top, "s\n" * 6, "--open", PATH=str(top))
     assert (done.returncode, len(done.stderr.splitlines())) == (0, 1)
     assert done.stderr.startswith("grader: nothing is opened: xdg-open: No such file or directory; open it yourself: /")
+
+
+def test_the_page_is_opened(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With --html, --open opens the address in the browser; Ctrl-C ends the review."""
+    from grader.usecases import local_server, viewer
+
+    def interrupted(_server: object) -> None:
+        raise KeyboardInterrupt
+
+    def fails(_viewer: object, target: str) -> str:
+        opened.append(target)
+        return "no display"
+
+    opened: list[str] = []
+    monkeypatch.setattr(local_server.LocalServer, "serve_forever", interrupted)
+    monkeypatch.setattr(viewer.Viewer, "_problem", fails)
+    done = review(top, "", "--html", "--open")
+    address = done.stdout.splitlines()[0]
+    assert (done.returncode, opened) == (0, [address])
+    assert done.stderr.splitlines()[1] == f"grader: nothing is opened: no display; open it yourself: {address}"
+    assert refusal(review(top, "", "--port", "8000")) == "--port needs --html"
 
 
 def test_partial_points_are_shown_as_partial(top: Path, scoped_class: Path) -> None:
