@@ -248,7 +248,17 @@ def test_what_is_refused(top: Path) -> None:
     """One line: the same file, a missing file, a file of another kind."""
     (top / "link.db").symlink_to(top / "a.db")
     (top / "text.db").write_text("no database, but a text that is long enough to have a header " * 3)
+    (top / "empty.db").touch()
+    (top / "folder.db").mkdir()
+    for name, statement in (("other.db", "CREATE TABLE mark (id)"), ("newer.db", "PRAGMA user_version = 99")):
+        shutil.copy(top / ("a.db" if name == "newer.db" else "empty.db"), top / name)
+        with closing(sqlite3.connect(top / name)) as connection:
+            connection.execute(statement)
     for second, why in (
+        ("empty.db", f"{top}/empty.db is not a gradebook: name another file"),
+        ("other.db", f"{top}/other.db is not a gradebook: name another file"),
+        ("newer.db", f"{top}/newer.db was made by a newer grader"),
+        ("folder.db", f"there is no gradebook {top}/folder.db"),
         ("a.db", "cannot be merged into itself: name two gradebooks"),
         ("link.db", "cannot be merged into itself: name two gradebooks"),
         ("none.db", f"there is no gradebook {top}/none.db"),

@@ -39,9 +39,9 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     Raises InputError for a file that is not a gradebook or that cannot be written.
     """
 
-    def __init__(self, path: Path, *, create: bool = False) -> None:
+    def __init__(self, path: Path, *, create: bool = False, shown: str = "") -> None:
         self.path = path
-        self.shown = printable_path(path)
+        self.shown = shown or printable_path(path)
         if not create and not path.exists():
             command = f"grader batch PATH --gradebook {shell_quoted(self.shown)}"
             raise InputError(f"there is no gradebook {self.shown}: create it with `{command}`")

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.histories import MergeItem, UnmatchedStudent, compare, is_newest
 from grader.classroom.gradebook.marks import account, insert_mark
+from grader.classroom.gradebook.schema import APPLICATION_ID
 from grader.errors import InputError
 from grader.text import printable_path
 
@@ -34,19 +35,20 @@ class Merged(NamedTuple):
 def copy_of(path: Path) -> Iterator[Gradebook]:
     """Yield a temporary copy of a gradebook: the file itself is only read, also if it is in use or of an earlier version."""
     shown = printable_path(path)
-    if not path.exists():
+    if not path.is_file():
         raise InputError(f"there is no gradebook {shown}")
     with TemporaryDirectory() as folder:
         copy = Path(folder, "copy.db")
         try:
             address = f"{path.resolve().as_uri()}?mode=ro"
             with closing(sqlite3.connect(address, uri=True)) as source, closing(sqlite3.connect(copy)) as target:
+                if source.execute("PRAGMA application_id").fetchone() != (APPLICATION_ID,):
+                    raise InputError(f"{shown} is not a gradebook: name another file")
                 target.execute("PRAGMA synchronous = OFF")  # it is only a copy
                 source.backup(target)
         except sqlite3.DatabaseError as error:
             raise InputError(f"the gradebook {shown}: {error}") from None
-        with Gradebook(copy) as book:
-            book.shown = shown
+        with Gradebook(copy, shown=shown) as book:
             yield book
 
 
