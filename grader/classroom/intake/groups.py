@@ -48,7 +48,7 @@ class CanvasGroups:
         """Return whether a file has the name of neither a student's own nor a group, although the student has none."""
         entry = self._entries[owner]
         own = set(canvas_names(entry.student.name))
-        return bool(own) and not entry.team and all(canvas_name(name) not in own for name, _ in student.readings)
+        return bool(own) and not entry.group and all(canvas_name(name) not in own for name, _ in student.readings)
 
     def _read(self, name: str, number: str, position: int | None) -> GroupClaim | None:
         """Return the claim of a name and a user id; None if no group has that name."""

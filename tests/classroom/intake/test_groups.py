@@ -252,3 +252,12 @@ def test_a_student_who_is_called_like_a_group_takes_nothing_away(tmp_path: Path)
     assert intake.notes[-1] == (
         "reds_104 is named like the group 'Reds', but 104 is Dogwood, who has no group on the roster: counts for Dogwood only"
     )
+
+
+def test_a_gradebook_of_canvas_has_sections_only(tmp_path: Path) -> None:
+    """A section is no group: the note still asks for the groups."""
+    roster = Roster([RosterEntry(ASH, "ROB-1"), RosterEntry(BIRCH, "ROB-1")])
+    intake = read_class(lay_out(tmp_path, "teama_101_1_lab6.zip"), roster)
+    assert assigned(intake) == {"Ash": ("teama_101_1_lab6.zip",)}
+    assert len(intake.notes) == 1
+    assert "add a column `group`" in intake.notes[0]
