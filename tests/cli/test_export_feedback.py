@@ -84,7 +84,8 @@ def test_reports_have_final_marks_excuses_and_comments(top: Path) -> None:
     def notes(key: str) -> list[str]:
         return list(json.loads((top / "reports" / f"{key}.json").read_text())["notes"])
 
-    assert notes("anna") == ["Final mark: 7.5 points, given by Kim instead of the sum of the criteria. an interview"]
+    final = "Final mark: 7.5 points, given by Kim instead of the sum of the criteria. an interview"
+    assert notes("anna") == [final, "Graded manually by Kim."]
     assert notes("ben") == ["Excused. ill"]
     assert notes("emil") == ["Comment by Lee: nice <b>colours</b>\x1b"]
     assert "Comment by Lee: nice &lt;b&gt;colours&lt;/b&gt;" in (top / "reports" / "emil.md").read_text()
@@ -181,6 +182,8 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
         ]
         anna, dora = (archive.read(name).decode() for name in archive.namelist())
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    assert "Note: Graded automatically." in anna
+    assert "Note: Graded manually by Lee." in dora
     assert "The roots." in anna  # the student's answer
     assert "Because of the roots" not in anna  # the model answer
     assert "Note: Final mark: 0 points, given by Lee instead of the sum of the criteria. never came" in dora
