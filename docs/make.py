@@ -10,7 +10,7 @@ from rich.console import Console
 from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.hints.hinting import hinted
-from grader.grading.keys import CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
+from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
@@ -24,6 +24,7 @@ KEYS = {
     "[defaults]": DEFAULTS,
     "[[evidence]]": EVIDENCE,
     "[late]": LATE,
+    "[adjust.CRITERION]": ADJUSTMENT,
     "[test]": TEST,
     "[[test.ignore]]": IGNORE,
 }

@@ -185,9 +185,11 @@ class _Grading:
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
-        own = criterion.id  # the mistake of an adjusted criterion does not count, so it excuses no other one
-        key = missing.kind, missing.name
-        first = self.missed.setdefault(key, own) if criterion.adjustment is None else own
+        first = self.missed.get((missing.kind, missing.name), criterion.id)
+        if (
+            criterion.adjustment is None
+        ):  # the mistake of an adjusted criterion does not count, so it excuses no other one
+            self.missed[missing.kind, missing.name] = first
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None

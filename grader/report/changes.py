@@ -29,7 +29,7 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
         wrapped(console, Text("nothing changed"), 0)
     for (reason, *details), found in _groups(changes, _reason):
         console.print()
-        wrapped(console, Text(printable(f"{reason}: {counted(len(found), 'student')}"), style="bold"), 0)
+        wrapped(console, Text(printable(f"{reason} ({counted(len(found), 'student')})"), style="bold"), 0)
         for line in details:
             wrapped(console, Text(printable(line)), 2)
         for steps, some in _groups(found, lambda change: change.steps):

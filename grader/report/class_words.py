@@ -10,6 +10,7 @@ from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
+from grader.report.details import sentence
 from grader.source import Edit
 from grader.text import counted, counted_points, enumerated, format_points, printable
 
@@ -70,7 +71,7 @@ def criterion_name(criterion: Criterion) -> str:
 def adjusted_lines(rubric: Rubric) -> list[str]:
     """Return the criteria that the rubric adjusts, each with the reason."""
     adjusted = ((row.id, row.adjustment) for row in rubric.criteria if row.adjustment is not None)
-    return [printable(f"{name}: {adjustment.message}.") for name, adjustment in adjusted]
+    return [f"{printable(name)}: {sentence(adjustment.message)}" for name, adjustment in adjusted]
 
 
 def mark_lines(statistics: ClassStatistics) -> Iterator[str]:

@@ -7,8 +7,8 @@ from grader.checks.manual import MANUAL_CHECKS
 from grader.grading.report import Report, Result
 from grader.grading.worth import worth
 from grader.problems import Problem
-from grader.report.details import result_details, sentence
-from grader.report.order import Failure, failures, in_order
+from grader.report.details import sentence
+from grader.report.order import Failure, failures
 from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted, signed_points
 
@@ -85,15 +85,6 @@ def bonus_line(report: Report) -> str:
 def summaries(report: Report) -> list[str]:
     """Return what a report says first: the URDF, how many criteria passed, the extra credit, and the package."""
     return [*filter(None, (summary(report), bonus_line(report), package_line(report)))]
-
-
-def remark_lines(report: Report) -> list[str]:
-    """Return what the rubric or a person says of criteria without giving points, a line for each."""
-    order = in_order(report)
-    return [
-        printable(f"{result.criterion.id}: ") + result_details(result, report).words[-1]
-        for result in (*order.adjusted, *order.commented)
-    ]
 
 
 def package_line(report: Report) -> str:

@@ -11,7 +11,7 @@ from grader.grading.report import Hint, Report
 from grader.report.content import earned_text, other_problems, points_of, undecided
 from grader.report.details import location_text, result_details, sentence
 from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
-from grader.report.order import Failure, failures, in_order
+from grader.report.order import Failure, failures, is_failure
 from grader.source import Location, Source
 from grader.text import printable
 
@@ -92,9 +92,10 @@ def _undecided(report: Report, base: Base) -> Iterator[Finding]:
 
 
 def _remarks(report: Report, base: Base) -> Iterator[Finding]:
-    """Yield a note for each criterion that is adjusted, or has a comment and is no other finding."""
-    order = in_order(report)
-    for result in (*order.adjusted, *order.commented):
+    """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
+    for result in report.results:
+        if is_failure(result) or not (result.is_adjusted or result.comment):
+            continue
         details, criterion = result_details(result, report), result.criterion
         words = details.words if result.is_adjusted else (details.comment,)
         fallback = _fallback(report, base, of_package=criterion.check.subject == "package")

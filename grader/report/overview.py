@@ -58,7 +58,7 @@ def _line(result: Result) -> Text:
     if status_of(result) == "passed":
         return Text(printable(result.criterion.title))
     name = Text(printable(result.criterion.id))
-    if result.because is not None and result.manual_mark is None:
+    if result.because is not None and result.manual_mark is None and not result.is_adjusted:
         name.append(f"  skipped because {printable(result.because)} failed", "dim")
     return name
 

@@ -10,6 +10,7 @@ from grader.grading.rubric import Rubric
 from grader.grading.worth import worth
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
+from grader.report.details import sentence
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
@@ -37,7 +38,7 @@ def rubric_text(rubric: Rubric) -> str:
             bonus = " (bonus)" if criterion.bonus else ""
             lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}")
             if criterion.adjustment is not None:
-                lines.append(textwrap.indent(_filled(printable(f"{criterion.adjustment.message}.")), "    "))
+                lines.append(textwrap.indent(_filled(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
                 lines.append(textwrap.indent(_filled(f"Model answer: {printable(criterion.answer)}"), "    "))
     return "\n".join(lines) + "\n"
@@ -89,7 +90,7 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
         _filled(f"Passes when: {criterion.title}."),
     ]
     if criterion.adjustment is not None:
-        lines += ["", _filled(printable(f"{criterion.adjustment.message}."))]
+        lines += ["", _filled(sentence(criterion.adjustment.message))]
     if criterion.feedback:
         lines += ["", _filled(criterion.feedback)]
     if criterion.requires:

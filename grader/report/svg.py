@@ -7,11 +7,13 @@ from lxml import etree
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
-from grader.report.content import bonus_line, remark_lines, score_text, summary, why_no_picture
+from grader.report.content import bonus_line, score_text, summary, why_no_picture
+from grader.report.details import result_details
 from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import DARK_RULES, SVG, put
 from grader.report.svg_text import LINE, put_lines, wrapped
+from grader.text import printable
 
 _STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
 _LEFT, _TITLE = 14.0, 28.0  # pixels
@@ -20,8 +22,19 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    words = (summary(report), bonus_line(report), *remark_lines(report))
+    words = (summary(report), bonus_line(report), *_remark_lines(report))
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
+
+
+def _remark_lines(report: Report) -> list[str]:
+    """Return the adjustments and comments, a line for each."""
+    lines: list[str] = []
+    for result in report.results:
+        details, name = result_details(result, report), printable(result.criterion.id)
+        lines += [
+            f"{name}: {text}" for text in (*(details.sentences if result.is_adjusted else ()), details.comment) if text
+        ]
+    return lines
 
 
 def inspection_svg(inspection: Inspection) -> str:

@@ -61,7 +61,8 @@ def _show_pending(order: Order, page: Page) -> None:
     page.console.print()
     wrapped(page.console, Text(content.pending_points(page.report), "bold"), 0)
     for reason, results in alike(order.pending, content.pending_reason):
-        if content.is_manual(results[0]) and (page.is_verbose or any(result.criterion.answer for result in results)):
+        has_answers = page.is_verbose or any(result.criterion.answer for result in results)
+        if (content.is_manual(results[0]) and has_answers) or any(result.comment for result in results):
             for result in results:
                 show_answer(result, page)
             continue

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
+from tests.command_line import ROOT
 
 EVERYBODY, DROPPED = "Points given to everybody: odd handout.", "Not counted: odd handout."
 
@@ -181,25 +182,16 @@ def test_statistics(top: Path) -> None:
     assert "essay: Points given to everybody: odd handout." in shown
     assert "picture: Not counted: odd handout." in shown
     assert "box (bonus)" in shown
+    assert "box: 'base' shows" not in shown  # extra credit that was not earned is no common mistake
+    assert "tall: the bottom of 'base'" in shown
 
 
 def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
     """How many students have one, also without a submission."""
-    from decimal import Decimal
-
-    from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Grades
-    from grader.classroom.gradebook.marks import Entry, add_mark
-
-    with Gradebook(top / "book.db") as book:
-        for key, entry in (
-            ("anna", Entry("excused")),
-            ("dora", Entry("points", Decimal(0))),
-            ("emil", Entry("points", Decimal(40))),
-        ):
-            add_mark(book, Grades(book).find(key), "total", entry)
+    for key, points in (("anna", "--excused"), ("dora", 0), ("emil", 10)):
+        assert grader("mark", key, "total", points, "--gradebook", top / "book.db").returncode == 0
     data = json.loads(grader("stats", "--gradebook", top / "book.db", "--format", "json").stdout)["statistics"]
-    assert (data["final_marks"], data["excused"], data["graded"], data["highest"]) == (2, 1, 2, 40)
+    assert (data["final_marks"], data["excused"], data["graded"], data["highest"], data["lowest"]) == (2, 1, 2, 11, 10)
     assert sum(data["tenths"]) == 2
     shown = " ".join(grader("stats", "--gradebook", top / "book.db").stdout.split())
     assert (
@@ -281,3 +273,36 @@ def test_an_adjustment_of_nothing_is_refused(tmp_path: Path) -> None:
     """With the criterion that may be meant."""
     lab = rubric(tmp_path, adjusted(lab_text(), "esay", "drop"))
     assert "adjusts 'esay', which does not exist" in refusal(grader("grade", tmp_path, "--rubric", lab))
+
+
+def test_hints(tmp_path: Path) -> None:
+    """None for adjusted criteria, and none counts their points as gained; extra credit has hints."""
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").replace('"lab6"', f'"{ROOT}/rubrics/lab6"', 1)
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/')
+    sample = ROOT / "submissions" / "several-mistakes"
+    base = with_bonus(text.replace("points = 70\n", "").replace("points = 100\n", ""), "base-green")
+    _, data = report(sample, rubric(tmp_path, adjusted(base, "stands-on-ground", "full")))
+    gains = [set(hint["gains"]) for row in data["results"] for hint in row["hints"]]
+    assert {"footprint-at-wheel-bottoms"} in gains
+    assert not any("stands-on-ground" in names for names in gains)
+    assert result(data, "stands-on-ground")["hints"] == []
+    assert result(data, "base-green")["hints"][0]["gains"] == {"base-green": 6}
+
+
+def test_comments_are_in_reports_of_the_class(top: Path) -> None:
+    """Without points, with the grader's name; the points are those of the check."""
+    for name in ("loads", "box", "essay"):
+        done = grader("mark", "emil", name, "--comment", f"see {name}", "--by", "Kim", "--gradebook", top / "book.db")
+        assert done.returncode == 0
+    assert scores(top)["emil"] == (3, 11, 5)
+    batch(
+        top,
+        "--reports",
+        top / "reports",
+        *(word for kind in ("terminal", "json") for word in ("--report-format", kind)),
+    )
+    shown = " ".join((top / "reports" / "emil.txt").read_text().split())
+    assert all(f"Comment by Kim: see {name}." in shown for name in ("loads", "box", "essay"))
+    data = json.loads((top / "reports" / "emil.json").read_text())
+    assert result(data, "box")["comment"] == {"text": "see box", "by": "Kim"}
+    assert result(data, "box")["points"] == 0

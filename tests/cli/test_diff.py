@@ -54,17 +54,17 @@ def test_all_reasons(top: Path) -> None:
     write_submission(top / "class" / "dora")
     batch(top)
     assert diff(top) == (
-        "\nthe submission changed: 1 student\n  Anna Ek (anna): 6 to 3 (-3)\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
-        "\nfirst submission: 1 student\n  Dora Fi (dora): none to 6\n"
+        "\nthe submission changed (1 student)\n  Anna Ek (anna): 6 to 3 (-3)\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
+        "\nfirst submission (1 student)\n  Dora Fi (dora): none to 6\n"
     )
     grader("mark", "dora", "essay", "3", "--gradebook", top / "book.db")
     (top / "newer.toml").write_text(lab_text(loads="4", extra="1"))
     batch(top, rubric=top / "newer.toml")
     assert diff(top) == (
-        "\nthe rubric changed: 3 students\n  loads: points 3 to 4\n  extra: added\n"
+        "\nthe rubric changed (3 students)\n  loads: points 3 to 4\n  extra: added\n"
         "  loads: 3 to 4 (+1)\n  extra: none to 1\n"
         "    Anna Ek (anna): 3 to 5 (+2)\n    Ben Oh (ben): 6 to 8 (+2)\n    Ben Oh (emil): 3 to 5 (+2)\n"
-        "\nthe rubric changed; manual marks changed: 1 student\n  loads: points 3 to 4\n  extra: added\n"
+        "\nthe rubric changed; manual marks changed (1 student)\n  loads: points 3 to 4\n  extra: added\n"
         "  Dora Fi (dora): 6 to 11 (+5)\n    loads: 3 to 4 (+1)\n    essay: none to 3\n    extra: none to 1\n"
     )
     assert diff(top, "--to", 2) == "nothing changed\n"
@@ -139,7 +139,7 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
         record_run(book, rubric, [graded_as(rubric, "anna", "?????")])
         record_run(book, rubric, [graded_as(rubric, "anna", "?????", "b", "it is no zip")])
     assert diff(tmp_path) == (
-        "\nthe submission changed; it was graded, and is unreadable: 1 student\n  anna: 0 as before\n"
+        "\nthe submission changed; it was graded, and is unreadable (1 student)\n  anna: 0 as before\n"
     )
 
 
@@ -154,7 +154,7 @@ def test_a_long_class_is_grouped(tmp_path: Path) -> None:
     lines = diff(tmp_path).splitlines()
     assert lines[:4] == [
         "",
-        "the submission changed; the rubric changed: 120 students",
+        "the submission changed; the rubric changed (120 students)",
         "  box: points 2.5 to 5",
         "  box: 2.5 to 5 (+2.5)",
     ]

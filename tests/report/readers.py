@@ -271,6 +271,7 @@ def gradescope_text(text: str) -> str:
 _FINDINGS = "it contains what to fix, one finding per line, and nothing else"
 _TESTS = "it has a test for each criterion, and no room for anything else"
 _NAMED = "of ten notices one names all that wait and all that are skipped"
+_SUM = "it names what to fix, and gives the sum of the extra credit with the score"
 _PERSON = "it is for a person, who has started this grader and named this rubric"
 
 
@@ -303,7 +304,7 @@ READERS: Mapping[Format, FormatReader] = {
         read_commands,
         commands_structure,
         commands_text,
-        dict.fromkeys(("message of pending", "found"), _NAMED),
+        dict.fromkeys(("message of pending", "found"), _NAMED) | {"earned bonus": _SUM},
     ),
     Format.GRADESCOPE: FormatReader(read_by_schema("gradescope"), json_structure, gradescope_text),
     Format.CLASSROOM50: FormatReader(
@@ -321,6 +322,7 @@ READERS: Mapping[Format, FormatReader] = {
                 ("title of skipped", "because", "title of pending", "message of pending", "found"), _FINDINGS
             ),
             **dict.fromkeys(("note", "aside", "package", "waits", "score", "rubric", "version"), _FINDINGS),
+            "earned bonus": _FINDINGS,
         },
     ),
 }

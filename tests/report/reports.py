@@ -1,4 +1,4 @@
-"""Reports that no sample has: manual marks, fractions of points, errors of the grader, hints."""
+"""Reports that no sample has: manual marks, fractions of points, errors of the grader, hints, adjustments, extra credit."""
 
 from dataclasses import replace
 from decimal import Decimal
@@ -6,10 +6,10 @@ from pathlib import Path
 
 from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
-from grader.grading.report import Hint, ManualMark, Report
-from grader.grading.rubric import load_rubric
+from grader.grading.report import Hint, ManualComment, ManualMark, Report
+from grader.grading.rubric import load_rubric, read_rubric
 from grader.source import Edit, Location
-from tests.samples import SAMPLES, opened
+from tests.samples import LAB6, SAMPLES, opened
 
 _BOX = """
 [[criterion]]
@@ -73,4 +73,56 @@ def marked() -> Report:
         chosen = next(result for result in report.results if result.outcome.status == status)
         rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
     results = tuple(result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results)
+    return replace(report, results=results)
+
+
+_ADJUSTED = """
+[[criterion]]
+id = "flat-base"
+part = "task1"
+title = "The base is flat"
+points = 5
+check = "shows_box"
+with = { link = "base_link", size = [0.6, 0.4, 0.1], tolerance = 0.002 }
+feedback = "Try a flat base."
+bonus = true
+
+[[criterion]]
+id = "base-is-there"
+part = "task1"
+title = "The base is a box"
+points = 3
+check = "shows_box"
+with = { link = "base_link", size = [0.6, 0.4, 0.2], tolerance = 0.002 }
+bonus = true
+
+[adjust.lidar-frame]
+action = "full"
+reason = "the <handout> was *odd*"
+
+[adjust.right-wheel-forward]
+action = "drop"
+reason = "turning was not taught"
+
+[adjust.base-on-ground]
+action = "full"
+reason = "the ground was missing"
+
+[adjust.answer-floating-link]
+action = "full"
+reason = "the question was ambiguous"
+
+[adjust.rviz-fixed-frame]
+action = "drop"
+reason = "RViz was broken"
+"""
+COMMENTED = ("base-green", "base-box", "answer-launch-nodes", "launch-found", "flat-base", "lidar-frame")
+
+
+def adjusted() -> Report:
+    """Return a report with extra credit, earned and not, with all kinds of adjusted criteria, and with comments without points."""
+    rubric = read_rubric(LAB6.data + _ADJUSTED.encode(), LAB6.path)
+    report = grade(rubric, opened("submissions/several-mistakes", rubric))
+    comments = {name: ManualComment(f"seen <{name}>\nin *class*", "Ada") for name in COMMENTED}
+    results = tuple(result._replace(comment=comments.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results)

@@ -1,5 +1,6 @@
 """Every format contains the same facts, except those that its row of READERS excuses; the terminal shows all of them with `--verbose`."""
 
+import json
 import os
 import re
 from collections.abc import Iterator
@@ -14,7 +15,10 @@ from grader.report.content import other_problems
 from grader.report.formats import Format, render
 from grader.text import format_points, printable
 from tests.report.readers import READERS, read_commands
+from tests.report.reports import adjusted
 from tests.samples import REPORTED, SAMPLES
+
+_ADJUSTED = "adjusted"  # no sample
 
 
 class Fact(NamedTuple):
@@ -60,6 +64,24 @@ def facts(report: Report) -> Iterator[Fact]:
 def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
     criterion, outcome = result.criterion, result.outcome
     name, status = criterion.id, outcome.status
+    if criterion.bonus:
+        earned, most = format_points(result.points), format_points(criterion.points)
+        keys = f'"points":{earned},"max_points":{most},', f'"points":{earned},"maxPoints":{most},"bonus":true'
+        yield Fact(
+            "earned bonus" if result.points else "bonus",
+            (f"{earned}/{most} bonus", f'"score":{earned},"status"', *keys),
+            name,
+        )
+    if result.comment is not None:
+        words = " ".join(result.comment.text.split())
+        yield Fact(
+            "comment", (f"Comment by Ada: {words}", f'"text":{json.dumps(result.comment.text)},"by":"Ada"'), name
+        )
+    if criterion.adjustment is not None:
+        yield Fact("title", (criterion.title, name), name)
+        reason = json.dumps(criterion.adjustment.reason)
+        yield Fact("adjustment", (f"{result.why_given}.", f'"reason":{reason}'), name)
+        return
     if status == "passed":
         return
     is_open = status in ("skipped", "pending")
@@ -107,11 +129,11 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
 @cache
 def omitted(name: str) -> frozenset[tuple[Format, Fact]]:
     """Return the facts of a sample's report that the formats omit."""
-    report = SAMPLES[name].grade()
+    report = adjusted() if name == _ADJUSTED else SAMPLES[name].grade()
     return frozenset((kind, fact) for kind in READERS for fact in missing_from(kind, report))
 
 
-@pytest.mark.parametrize("name", REPORTED)
+@pytest.mark.parametrize("name", [*REPORTED, _ADJUSTED])
 def test_all_formats_contain_the_same_facts(name: str) -> None:
     """For each criterion its title, message, location and feedback; for the submission all of its facts."""
     assert not {(kind.value, fact) for kind, fact in omitted(name) if fact.kind not in READERS[kind].excused}
@@ -119,6 +141,6 @@ def test_all_formats_contain_the_same_facts(name: str) -> None:
 
 def test_every_excuse_is_needed() -> None:
     """A format that contains a fact needs no excuse for it."""
-    found = frozenset().union(*map(omitted, REPORTED))
+    found = frozenset().union(*map(omitted, [*REPORTED, _ADJUSTED]))
     for kind, read in READERS.items():
         assert set(read.excused) == {fact.kind for format_, fact in found if format_ is kind}

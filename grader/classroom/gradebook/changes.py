@@ -102,7 +102,7 @@ class _StudentState(NamedTuple):
 
 
 _NOBODY = _StudentState("", "", "", "", None, "", {}, (), {})
-_Comparison = Callable[[str, str], Mapping[str, tuple[RubricChange, ...]]]
+_Comparison = Callable[[str, str, tuple[str, ...]], tuple[RubricChange, ...]]
 
 
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
@@ -131,8 +131,12 @@ def changes(before: Snapshot, after: Snapshot) -> list[Change]:
     rubrics = {state.sha256: state.rubric for state in (*old.values(), *new.values()) if state.rubric is not None}
 
     @cache
-    def comparison(before: str, after: str) -> Mapping[str, tuple[RubricChange, ...]]:
+    def changed(before: str, after: str) -> Mapping[str, tuple[RubricChange, ...]]:
         return rubric_changes(rubrics[before], rubrics[after])
+
+    @cache
+    def comparison(before: str, after: str, names: tuple[str, ...]) -> tuple[RubricChange, ...]:
+        return tuple(concerning(names, changed(before, after), rubrics[before], rubrics[after]))
 
     keys = sorted(old.keys() | new.keys())
     found = (_change(key, old.get(key, _NOBODY), new.get(key, _NOBODY), comparison) for key in keys)
@@ -182,11 +186,8 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
     why = (*(reason for holds, reason in reasons if holds), *final)
-    rubric: tuple[RubricChange, ...] = ()
-    if not is_same_rubric and old.rubric is not None and new.rubric is not None:
-        names = [step.criterion for step in steps]
-        rubric = tuple(concerning(names, comparison(old.sha256, new.sha256), old.rubric, new.rubric))
-    return Change(*whole, steps, why, name, rubric)
+    names = tuple(step.criterion for step in steps)
+    return Change(*whole, steps, why, name, () if is_same_rubric else comparison(old.sha256, new.sha256, names))
 
 
 def _has_other_marks(old: _StudentState, new: _StudentState) -> bool:

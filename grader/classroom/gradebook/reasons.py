@@ -32,11 +32,11 @@ def failure_counts(book: Gradebook, rubric: Rubric) -> Counter[Failure]:
 
 
 def failures_in(failures: str, rubric: Rubric, marks: Mapping[str, int]) -> Iterator[Failure]:
-    """Yield the failures of a submission that are stored as JSON, except where a mark gives all points."""
+    """Yield the failures of a submission that are stored as JSON, except of extra credit, or where a mark gives all points."""
     for failure in map(Failure.from_json, json.loads(failures)):
         criterion = rubric.criteria[failure.position]
         is_full = marks.get(criterion.id) == int(criterion.points * UNITS_PER_POINT)
-        if not is_full:
+        if not (is_full or criterion.bonus):
             yield failure
 
 

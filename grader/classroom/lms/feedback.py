@@ -51,9 +51,15 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
             (result,) = group
             message = _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
             message = f"{message}. {result.why_given}" if result.why_given else message
+            message = (
+                result.why_given if result.is_adjusted else message
+            )  # what the check found is not the student's mistake
             if result.manual_mark is None and (comment := _comment(result)):
-                message = f"{message}. {comment}" if result.outcome.status != "passed" else comment
-            yield FeedbackItem(result.criterion.title, result.points, out_of, message)
+                message = (
+                    f"{message}. {comment}" if result.outcome.status != "passed" or result.is_adjusted else comment
+                )
+            title = f"{result.criterion.title} (extra credit)" if result.criterion.bonus else result.criterion.title
+            yield FeedbackItem(title, result.points, out_of, message)
         elif kind == "skipped":
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
         else:
@@ -68,8 +74,8 @@ def _comment(result: Result) -> str:
 
 
 def _cause(result: Result) -> tuple[str, str] | None:
-    """Return why a criterion is skipped or pending, if other criteria may have the same cause, and nobody commented on it."""
-    if result.manual_mark is not None or result.comment is not None:
+    """Return why a criterion is skipped or pending, if others may have the same cause, and neither a person nor the rubric says more."""
+    if result.manual_mark is not None or result.comment is not None or result.is_adjusted:
         return None
     if result.because is not None:
         return "skipped", result.because

@@ -66,7 +66,7 @@ def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, link
 def _costliest(summary: ClassSummary, member: Member | None) -> list[Criterion]:
     """Return the criteria in which a student lost points, the highest maximum first."""
     lost = [summary.rubric.criteria[position] for position in (member.lost if member is not None else ())]
-    return sorted(lost, key=lambda criterion: -criterion.points)
+    return sorted((row for row in lost if not row.bonus), key=lambda criterion: -criterion.points)
 
 
 def groups(

@@ -131,6 +131,6 @@ def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, l
 def _row(result: Result, cards: Collection[str]) -> Row:
     status = status_of(result)
     title = result.criterion.title if status == "passed" else ""
-    because = (result.because or "") if result.manual_mark is None else ""
+    because = (result.because or "") if result.manual_mark is None and not result.is_adjusted else ""
     card = next((name for name in (result.criterion.id, because) if name in cards), "")
     return Row(result.criterion.id, title, status, content.earned_text((result,)), because, card)

@@ -17,12 +17,16 @@ from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.criterion import Adjustment
-from grader.grading.rubric import read_rubric
+from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.validation import TOTAL
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 
 LAB = lab()
 OTHER = lab(box="5")
+_ADJUST = '\n[adjust.essay]\naction = "full"\nreason = "ambiguous"\n[adjust.loads]\naction = "drop"\nreason = "odd"\n'
+ADJUSTED = read_rubric(
+    (lab_text().replace('id = "tall"', 'id = "tall"\nbonus = true') + _ADJUST).encode(), Path("small.toml")
+)
 
 
 @pytest.fixture
@@ -178,17 +182,18 @@ STATUS_LETTERS = st.text("pfs?!-", min_size=5, max_size=5)
 
 @settings(max_examples=40)
 @given(
+    st.sampled_from([OTHER, ADJUSTED]),
     STATUS_LETTERS,
     STATUS_LETTERS,
     st.lists(st.tuples(st.sampled_from([criterion.id for criterion in LAB.criteria]), st.booleans()), max_size=4),
 )
-def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) -> None:
-    """The difference of the scores is the sum of the steps, and the newer score is the current one."""
+def test_steps_add_up(newer: Rubric, before: str, after: str, marks: list[tuple[str, bool]]) -> None:
+    """The difference of the scores is the sum of the steps, and the newer score is the current one, also of the report."""
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
         run(book, anna=before)
-        run(book, OTHER, anna=after)
+        run(book, newer, anna=after)
         for name, is_given in marks:
             put(book, "anna", name, "0.25" if is_given else None)
         for change in found(book):
@@ -197,7 +202,10 @@ def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) ->
             assert change.why
             total = sum(((step.after or 0) - (step.before or 0) for step in change.steps), Decimal(0))
             assert change.after - change.before == total
-            assert change.after == Grades(book).find("anna").score
+            grade = Grades(book).find("anna")
+            report = Grades(book).report(grade)
+            assert change.after == grade.score == report.score
+            assert (grade.out_of, grade.pending) == (report.max_score, report.pending)
 
 
 def put_entry(book: Gradebook, key: str, kind: Kind, points: str | None = None, criterion: str = TOTAL) -> None:
