@@ -62,7 +62,7 @@ def feedback_zip(
         warn(printable(line))
     given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
     if count := sum(bool(grade.why_not_final) and not grade.is_excused for grade in given):
-        warn(f"{counted(count, 'report')} of grades that are not final yet")
+        warn(f"reports of grades that are not final yet: {count}")
     warn(f"feedback: {counted(len(files), 'file')} for {counted(len(given), 'student')}")
     return zip_of(files)
 
