@@ -62,10 +62,12 @@ def message_text(item: QueuedResult) -> str:
         return f"the check: {outcome.status}"
     match outcome.measured:
         case str():
-            return "a written answer, needs manual grading"
+            found = "a written answer, needs manual grading"
         case tuple() | list() as files:
-            return f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
-    return "nothing was found; needs manual grading"
+            found = f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
+        case _:
+            found = "nothing to show, needs manual grading"
+    return printable(f"{item.result.criterion.arguments.get('question', '')} {found}".strip())
 
 
 def marked_text(item: QueuedResult) -> str:

@@ -1,5 +1,6 @@
 """Grade what needs manual grading at a terminal, one item at a time."""
 
+from contextlib import nullcontext
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -30,7 +31,8 @@ def review(
 
     Pictures are written into the folder `pictures` first. With `opens`, those of each item are opened in the system's viewer.
     """
-    with Gradebook(gradebook) as book, TemporaryDirectory() as temporary:
+    needs_folder = opens and pictures is None
+    with Gradebook(gradebook) as book, TemporaryDirectory() if needs_folder else nullcontext("") as temporary:
         session = ReviewSession(Grades(book, answers=True), scope)
         if not session.queue:
             return NOTHING

@@ -150,6 +150,16 @@ def test_the_same_decision_twice_is_no_conflict(top: Path) -> None:
     assert [row[2] for row in entries(top / "a.db")] == [1, 2, 4, 2]
 
 
+def test_equal_entries_are_counted(top: Path) -> None:
+    """Two marks of one second are two entries, also if the other gradebook has one of them."""
+    for path, number in (("a.db", 1), ("b.db", 2)):
+        for _ in range(number):
+            put(top / path, "ash", "essay", points("2"), "Kim", 2)
+    assert merge(top).stdout == f"1 entry of 1 student merged into {top}/a.db\n"
+    assert [row[2] for row in entries(top / "a.db")] == [1, 2, 2]
+    assert "nothing to merge" in merge(top).stdout
+
+
 def test_second_opinions_are_merged(top: Path) -> None:
     """They are never a conflict, and change no grade."""
     put(top / "a.db", "ash", "essay", points("2"), "Kim", 2)

@@ -115,7 +115,9 @@ def queued_result(
     grades: Grades, queued: QueuedCriterion, scope: ReviewScope = EVERYTHING, number: int | None = None
 ) -> QueuedResult | None:
     """Return a queued criterion in its current state; None if it is no longer graded."""
-    grade = grades.find(queued.key)
+    grade = next(grades.between(queued.key, queued.key), None)
+    if grade is None or grade.result is None:
+        return None
     # Before the report, so that no later mark counts as shown.
     newest = newest_of(grades.book, grade, queued.criterion, scope)
     for result in grades.report(grade).results:

@@ -106,12 +106,7 @@ class ReviewSession:
         if not inside:
             return None
         number = self._numbers.get(self.queue[position].key)
-        try:
-            return queued_result(self._grades, self.queue[position], self.scope, number)
-        except InputError:
-            if number is None:
-                raise
-            raise InputError(f"submission {number} is no longer in the gradebook") from None
+        return queued_result(self._grades, self.queue[position], self.scope, number)
 
     def current_item(self) -> QueuedResult:
         """Return the current item; raise InputError if it is no longer graded."""
