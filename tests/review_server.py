@@ -8,6 +8,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
+from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.usecases.local_server import HOST
 from grader.usecases.review_page import serving
 
@@ -66,9 +67,9 @@ class Review(NamedTuple):
 
 
 @contextmanager
-def running(gradebook: Path, criterion: str = "", by: str = "Kim") -> Iterator[Review]:
+def running(gradebook: Path, criterion: str = "", by: str = "Kim", *, anonymous: bool = False) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(gradebook, criterion, by) as (server, _):
+    with serving(gradebook, ReviewScope(criterion, by, anonymous=anonymous)) as (server, _):
         assert server is not None
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()

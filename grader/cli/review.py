@@ -16,10 +16,17 @@ from grader.usecases.writing import write_stdout
 def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
+    section: Annotated[str, typer.Option(metavar="NAME", help="Only this section of the roster.")] = "",
+    mine: Annotated[bool, typer.Option("--mine", help="Only students whose marker in the roster is --by.")] = False,
+    second: Annotated[
+        bool, typer.Option("--second", help="Give second opinions, which change no grade; needs --by.")
+    ] = False,
+    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, keys and paths of students.")] = False,
     by: ByOption = "",
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
     ] = None,
+    opens: Annotated[bool, typer.Option("--open", help="Open the pictures of each item, or the page.")] = False,
     html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
     port: Annotated[
         int,
@@ -31,7 +38,10 @@ def review(
     """Grade what needs manual grading, one item at a time.
 
     Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a comment: 3.5
-    the roots are missing. You can stop at any time: marks are kept, and the next review continues with the rest.
+    the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next review continues with
+    the rest.
+
+    With --second, you do not see the marks of others, and yours change no grade: `grader stats` shows the agreement.
 
     With --html, you review on a page in the browser that shows the pictures. The command prints the address of the page, which works
     on this machine only. Ctrl-C ends the review.
@@ -44,14 +54,23 @@ def review(
 
       grader review --gradebook lab6.db --criterion answer-floating-link
 
-      grader review --gradebook lab6.db --pictures pictures
+      grader review --gradebook lab6.db --pictures pictures --open
+
+      grader review --gradebook lab6.db --section A --anonymous
+
+      grader review --gradebook lab6.db --mine --by Kim
+
+      grader review --gradebook lab6.db --second --by Lee
     """
+    from grader.classroom.gradebook.manual_queue import ReviewScope
+
+    scope = ReviewScope(criterion, by, section, mine, second, anonymous)
     if html:
         from grader.usecases.review_page import review_in_browser
 
         if pictures is not None:
             raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")
-        write_stdout(review_in_browser(gradebook, criterion, by, port, TERMINAL))
+        write_stdout(review_in_browser(gradebook, scope, port, TERMINAL, opens=opens))
         return 0
     if port:
         raise InputError("--port needs --html")
@@ -59,5 +78,5 @@ def review(
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    write_stdout(review_all(gradebook, criterion, by, pictures, TERMINAL))
+    write_stdout(review_all(gradebook, scope, pictures, TERMINAL, opens=opens))
     return 0

@@ -16,6 +16,7 @@ SYMBOLS = {
     "pending": "?",
     "errored": "!",
     "adjusted": "=",
+    "partial": "~",
 }  # of each status
 _MAX_NAMED = 2
 
@@ -64,7 +65,7 @@ def _details(result: Result, report: Report) -> Details:
         mark = sentence(f"Marked{_by(result.manual_mark.by) or ' manually'}{comment}")
         if outcome.status == "pending":
             return Details((mark,), *answers)
-        expected = _expected(result) if status_of(result) == "failed" else ""
+        expected = _expected(result) if status_of(result) in ("failed", "partial") else ""
         return Details((mark, sentence(f"The check: {outcome.status}. {outcome.message}")), expected=expected)
     if result.carried:  # the feedback would ask for a change of what is as it should be
         return Details(
@@ -103,12 +104,17 @@ def _lines(text: object) -> tuple[str, ...]:
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion, `adjusted` if the rubric decides its points; a manual mark passes if it gives all points."""
+    """Return the status of a criterion: `adjusted` if the rubric decides its points, `partial` if a manual mark gives a part of them.
+
+    A manual mark passes if it gives all points.
+    """
     if result.is_adjusted:
         return "adjusted"
     if result.manual_mark is None:
         return result.outcome.status
-    return "passed" if result.points >= result.criterion.points else "failed"
+    if result.points >= result.criterion.points:
+        return "passed"
+    return "partial" if result.points else "failed"
 
 
 def group_status(group: Group) -> str:
@@ -118,8 +124,9 @@ def group_status(group: Group) -> str:
     """
     counting = [result for result in group.results if not result.criterion.bonus] or group.results
     open_or_lost = [result for result in counting if result.points < result.criterion.points]
-    if any(is_failure(result) for result in open_or_lost):
-        return "failed"
+    lost = {status_of(result) for result in open_or_lost if is_failure(result)}
+    if lost:
+        return "partial" if lost == {"partial"} else "failed"
     return next((status_of(result) for result in open_or_lost), "passed")
 
 

@@ -22,8 +22,9 @@ STYLES = {
     "pending": "cyan",
     "errored": "bold magenta",
     "adjusted": "blue",
+    "partial": "bold yellow",
 }
-_ASCII = dict(zip(SYMBOLS, "+X-?!=", strict=True))  # for a terminal in another encoding
+_ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
@@ -64,7 +65,7 @@ def show_failure(failure: Failure, page: Page) -> None:
 
 def _head(failure: Failure, details: Details, console: Console) -> Text:
     result = failure.result
-    status = "errored" if result.outcome.status == "errored" and result.manual_mark is None else "failed"
+    status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
     text = Text.assemble(mark(status, console), " ", (printable(result.criterion.id), "bold"))
     text.append(f"  {content.cost_text(failure)}", STYLES[status])
     if details.location is not None:

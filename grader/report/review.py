@@ -1,6 +1,6 @@
 """A criterion as `grader review` shows it: the answer, the model answer, where the pictures are."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -8,23 +8,28 @@ from rich.text import Text
 
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
-from grader.classroom.students import Student
 from grader.report.console import wrapped
-from grader.text import counted_points, printable
+from grader.report.details import status_of
+from grader.text import counted, counted_points, printable
 
 _INDENT = 2
 _WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
-def render_item(item: QueuedResult, position: str, pictures: Sequence[str], console: Console) -> None:
-    """Print a criterion of a student, at `position` in the review. Text of the submission is never interpreted as markup."""
+def render_item(
+    item: QueuedResult, position: str, pictures: Sequence[str], comments: Mapping[int, str], console: Console
+) -> None:
+    """Print a criterion of a student, at `position` in the review, and earlier comments with their numbers.
+
+    Text of the submission is never interpreted as markup.
+    """
     criterion, outcome = item.result.criterion, item.result.outcome
     console.print()
-    head = f"{position}  {who(item.grade.student)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
+    head = f"{position}  {who(item)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
     wrapped(console, Text(head, style="bold"), 0)
-    wrapped(console, Text(printable(outcome.message)), 0)
-    if item.result.manual_mark is not None and item.mark is not None:
-        wrapped(console, Text(f"Marked: {mark_text(item.mark)}", style="bold"), 0)
+    wrapped(console, Text(message_text(item)), 0)
+    if marked := marked_text(item):
+        wrapped(console, Text(f"Marked: {marked}", style="bold"), 0)
     if isinstance(outcome.measured, str):
         _print_block("Found", outcome.measured, console)
     if files := files_text(item):
@@ -35,11 +40,40 @@ def render_item(item: QueuedResult, position: str, pictures: Sequence[str], cons
         _print_block("Model answer", criterion.answer, console)
     if place := place_text(item):
         wrapped(console, Text(f"in {place}", "dim"), 0)
+    if comments:
+        lines = (f"#{number} {' '.join(comment.split())}" for number, comment in comments.items())
+        _print_block("Earlier comments", "\n".join(lines), console)
 
 
-def who(student: Student) -> str:
-    """Return the name and key of a student, printable."""
+def who(item: QueuedResult) -> str:
+    """Return the name and key of the student, or the number of an anonymous one; printable."""
+    student = item.grade.student
+    if item.number is not None:
+        return f"submission {item.number}"
     return printable(f"{student.name} ({student.key})" if student.name else student.key)
+
+
+def message_text(item: QueuedResult) -> str:
+    """Return what was found; without the names of files, which students choose, if the student is anonymous."""
+    outcome = item.result.outcome
+    if item.number is None:
+        return printable(outcome.message)
+    if outcome.status != "pending":
+        return f"the check: {outcome.status}"
+    match outcome.measured:
+        case str():
+            return "a written answer, needs manual grading"
+        case tuple() | list() as files:
+            return f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
+    return "nothing was found; needs manual grading"
+
+
+def marked_text(item: QueuedResult) -> str:
+    """Return the mark that counts, and whether it gives all points, none or a part; empty without one."""
+    if item.result.manual_mark is None or item.mark is None:
+        return ""
+    is_partial = status_of(item.result) == "partial"
+    return f"{mark_text(item.mark)}{' (partial points)' if is_partial else ''}"
 
 
 def mark_text(mark: Mark) -> str:
@@ -52,14 +86,14 @@ def mark_text(mark: Mark) -> str:
 
 def files_text(item: QueuedResult) -> list[str]:
     """Return where the files are that a criterion is about, printable."""
-    measured = item.result.outcome.measured
+    measured = item.result.outcome.measured if item.number is None else None
     return [printable(_where(item, str(file))) for file in measured] if isinstance(measured, tuple | list) else []
 
 
 def place_text(item: QueuedResult) -> str:
     """Return where the answer is, printable: the file, and the line where editors count lines. Empty if there is none."""
     location = item.result.outcome.location
-    if location is None:
+    if location is None or item.number is not None:
         return ""
     line = "" if location.path.lower().endswith(_WITHOUT_LINES) else f", line {location.line}"
     return printable(f"{_where(item, location.path)}{line}")

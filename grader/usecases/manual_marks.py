@@ -1,6 +1,5 @@
 """Give, withdraw or undo a manual mark by command."""
 
-import re
 from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import numbered_comments
+from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, numbered_comments
 from grader.classroom.gradebook.marks import (
     TAKE_BACK,
     WITHDRAWN,
@@ -28,8 +27,6 @@ from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
 from grader.text import counted_points, format_points, printable
 from grader.usecases import Warn
-
-_NUMBER = re.compile(r"#([0-9]{1,9})")
 
 
 class MarkRequest(NamedTuple):
@@ -114,7 +111,7 @@ def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
 
 def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
     """Return the comment; `#2` is an earlier one, which is repeated on standard error."""
-    number = _NUMBER.fullmatch(request.comment.strip())
+    number = COMMENT_NUMBER.fullmatch(request.comment.strip())
     if number is None:
         return request.comment
     comment = numbered_comments(book, request.criterion).get(int(number[1]))

@@ -3,9 +3,11 @@
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
 from grader.classroom.review.session import ReviewSession
 from grader.errors import InputError
@@ -13,30 +15,48 @@ from grader.report.review import mark_text, render_item
 from grader.report.screen import draw
 from grader.text import format_points
 from grader.usecases import Terminal
-from grader.usecases.review_pictures import write_pictures
+from grader.usecases.review_pictures import PictureFolder, WrittenPictures, write_all_pictures
+from grader.usecases.viewer import Viewer
 
 NOTHING = "nothing needs manual grading\n"
-_HELP = "points and a comment, s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+_HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
 
-def review(gradebook: Path, criterion: str, by: str, pictures: Path | None, terminal: Terminal) -> str:
+def review(
+    gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal: Terminal, *, opens: bool = False
+) -> str:
     """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary.
 
-    Pictures are written into the folder `pictures` first.
+    Pictures are written into the folder `pictures` first. With `opens`, those of each item are opened in the system's viewer.
     """
-    with Gradebook(gradebook) as book:
-        session = ReviewSession(Grades(book, answers=True), criterion, by)
+    with Gradebook(gradebook) as book, TemporaryDirectory() as temporary:
+        session = ReviewSession(Grades(book, answers=True), scope)
         if not session.queue:
             return NOTHING
-        files = write_pictures(session, book, pictures, terminal.show) if pictures is not None else {}
+        folder = PictureFolder(session, book, pictures or Path(temporary)) if pictures or opens else None
+        written = write_all_pictures(session, folder, terminal.show) if folder and pictures else {}
+        viewer = Viewer(terminal.warn) if opens else None
         while session.item is not None:
-            lines = files.get(session.queue[session.position], [])
-            page = partial(render_item, session.item, f"{session.position + 1} of {len(session.queue)}", lines)
-            terminal.show(draw(page, terminal.screen()))
+            queued = session.queue[session.position]
+            if folder is not None and queued not in written:
+                written[queued] = folder.write(session.item)
+            found = written.get(queued, WrittenPictures())
+            _show(session, found, terminal)
+            if viewer is not None:
+                viewer.open(map(str, found.files))
             if not _go_on(session, terminal):
                 break
         return summary(session)
+
+
+def _show(session: ReviewSession, pictures: WrittenPictures, terminal: Terminal) -> None:
+    assert session.item is not None
+    position = f"{session.position + 1} of {len(session.queue)}"
+    used = session.comments()
+    comments = {number: text for number, text in session.numbered_comments().items() if text in used}
+    page = partial(render_item, session.item, position, pictures.lines, comments)
+    terminal.show(draw(page, terminal.screen()))
 
 
 def summary(session: ReviewSession) -> str:
@@ -72,9 +92,23 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
             terminal.warn(str(error))
             continue
         if points is not None:
-            return _mark(session, points, comment.strip(), terminal)
+            text = _comment(session, comment.strip(), terminal)
+            if text is None:
+                continue
+            return _mark(session, points, text, terminal)
         terminal.warn(_HELP)
     return False
+
+
+def _comment(session: ReviewSession, typed: str, terminal: Terminal) -> str | None:
+    """Return the comment: `#2` is an earlier one; None if there is none with this number."""
+    number = COMMENT_NUMBER.fullmatch(typed)
+    if number is None:
+        return typed
+    comment = session.numbered_comments().get(int(number[1]))
+    if comment is None:
+        terminal.warn(f"there is no comment {number[0]}")
+    return comment
 
 
 def _undo(session: ReviewSession, terminal: Terminal) -> bool:

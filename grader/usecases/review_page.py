@@ -11,7 +11,7 @@ from typing import Any
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
 from grader.classroom.review.session import ReviewSession, item_pictures
 from grader.documents.pictures import NotShown, Picture
@@ -21,6 +21,7 @@ from grader.report.review import mark_text
 from grader.usecases import Terminal
 from grader.usecases.local_server import LocalServer, Request, Response
 from grader.usecases.review import NOTHING, summary
+from grader.usecases.viewer import Viewer
 
 Album = tuple[Picture | NotShown, ...]
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
@@ -174,9 +175,11 @@ def _json(answer: Mapping[str, Any], status: HTTPStatus = HTTPStatus.OK) -> Resp
     return Response(json.dumps(answer).encode(), _JSON, status)
 
 
-def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, terminal: Terminal) -> str:
-    """Serve the review page until Ctrl-C, and return a summary. Prints the address. Raises InputError."""
-    with serving(gradebook, criterion, by, port) as (server, page):
+def review_in_browser(
+    gradebook: Path, scope: ReviewScope, port: int, terminal: Terminal, *, opens: bool = False
+) -> str:
+    """Serve the review page until Ctrl-C, and return a summary. Prints the address, and opens it. Raises InputError."""
+    with serving(gradebook, scope, port) as (server, page):
         if server is None:
             return NOTHING
         with suppress(KeyboardInterrupt):
@@ -184,13 +187,15 @@ def review_in_browser(gradebook: Path, criterion: str, by: str, port: int, termi
             terminal.warn(
                 "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
             )
+            if opens:
+                Viewer(terminal.warn).open([server.url])
             server.serve_forever()
         return server.worker.submit(lambda: summary(page.session)).result()
 
 
 @contextmanager
 def serving(
-    gradebook: Path, criterion: str = "", by: str = "", port: int = 0
+    gradebook: Path, scope: ReviewScope = EVERYTHING, port: int = 0
 ) -> Iterator[tuple[LocalServer | None, ReviewPage]]:
     """Yield a server for a review, None if nothing needs manual grading.
 
@@ -199,7 +204,7 @@ def serving(
     with ThreadPoolExecutor(1) as worker, ThreadPoolExecutor(1) as reader:
         book = worker.submit(Gradebook, gradebook).result()
         try:
-            session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), criterion, by)).result()
+            session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), scope)).result()
             page = ReviewPage(session, book.shown, reader)
             if not session.queue:
                 yield None, page

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
@@ -14,45 +15,69 @@ from grader.usecases.class_reports import refuse_report_folder
 from grader.usecases.report_names import file_names, report_names, update_index
 from grader.usecases.writing import make_folder, save_bytes
 
-PicturesOfItems = dict[QueuedCriterion, list[str]]
+
+class WrittenPictures(NamedTuple):
+    """The pictures of an item: a line for each, also for those that are not shown, and the files."""
+
+    lines: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
 
 
-def write_pictures(
-    session: ReviewSession, book: Gradebook, folder: Path, show: Callable[[str], None]
-) -> PicturesOfItems:
-    """Write each picture as FOLDER/CRITERION/STUDENT.NUMBER.ENDING, and print the student of each; return the lines of each item.
+class PictureFolder:
+    """Writes pictures as FOLDER/CRITERION/STUDENT.NUMBER.ENDING.
 
-    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
-    Raises InputError.
+    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten:
+    an anonymous review, which must not say whose files are there, needs an empty folder. Raises InputError.
     """
-    refuse_report_folder(folder, (), sorted({Path(run.source) for run in book.runs()}))
-    names = report_names(book)
-    folders = file_names([criterion.id for criterion in session.criteria])
-    make_folder(folder)
-    update_index(folder, {key: names[key] for key in sorted({queued.key for queued in session.queue})})
-    lines: PicturesOfItems = {}
+
+    def __init__(self, session: ReviewSession, book: Gradebook, folder: Path) -> None:
+        self._session, self._folder = session, folder
+        refuse_report_folder(folder, (), sorted({Path(run.source) for run in book.runs()}))
+        self._folders = file_names([criterion.id for criterion in session.criteria])
+        self._names = {} if session.scope.anonymous else report_names(book)
+        make_folder(folder)
+        if not session.scope.anonymous:
+            update_index(folder, {key: self._names[key] for key in sorted({queued.key for queued in session.queue})})
+        elif any(folder.iterdir()):
+            raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
+
+    def write(self, item: QueuedResult) -> WrittenPictures:
+        """Write the pictures of an item."""
+        key, criterion = item.grade.student.key, item.result.criterion.id
+        name = self._names[key] if item.number is None else f"submission-{item.number}"
+        start = self._folder / self._folders[criterion] / name
+        found = item_pictures(item, self._session.rubric_of(item))
+        written = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
+        return WrittenPictures(
+            tuple(line for line, _ in written), tuple(path for _, path in written if path is not None)
+        )
+
+
+def write_all_pictures(
+    session: ReviewSession, folder: PictureFolder, show: Callable[[str], None]
+) -> dict[QueuedCriterion, WrittenPictures]:
+    """Write the pictures of all items, and print the student of each; return those of each item."""
+    found: dict[QueuedCriterion, WrittenPictures] = {}
     for position, queued in enumerate(session.queue):
         item = session.item_at(position)
         if item is None:
             continue
-        start = folder / folders[queued.criterion] / names[queued.key]
-        found = item_pictures(item, session.rubric_of(item))
-        lines[queued] = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
-        for line in lines[queued]:
-            show(f"{who(item.grade.student)}, {printable(queued.criterion)}: {line}\n")
+        found[queued] = folder.write(item)
+        for line in found[queued].lines:
+            show(f"{who(item)}, {printable(queued.criterion)}: {line}\n")
     session.start()
-    return lines
+    return found
 
 
-def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
-    """Write a picture and return the line about it; a picture that is not shown has only the line."""
+def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> tuple[str, Path | None]:
+    """Write a picture, and return the line about it and its path; a picture that is not shown has only the line."""
     if isinstance(found, NotShown):
-        return printable(str(found))
+        return printable(str(found)), None
     path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")
     make_folder(path.parent)
     _refuse_symlink(path)
     save_bytes(path, found.data, [item.grade.files.root])
-    return f"{printable_path(path)}  {printable(found.words)}"
+    return f"{printable_path(path)}  {printable(found.words)}", path
 
 
 def _refuse_symlink(path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, queued_result
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, queued_result
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.report.screen import Screen
 from grader.usecases import Terminal
@@ -21,7 +21,7 @@ from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
-HELP = "points and a comment, s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
 
 
 @pytest.fixture
@@ -257,7 +257,7 @@ def test_undo_of_a_criterion_that_is_no_longer_graded(top: Path) -> None:
         return line
 
     terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None)
-    assert review_class(top / "book.db", "essay", "Kim", None, terminal).startswith("1 marked, ")
+    assert review_class(top / "book.db", ReviewScope("essay", "Kim"), None, terminal).startswith("1 marked, ")
     assert lines == ["not undone: this criterion is no longer graded for this student"]
     assert [row[:3] for row in marks(top)] == [("anna", "essay", 3.0), ("emil", "essay", 2.0)]
 

@@ -1,13 +1,22 @@
 """What needs manual grading in a class, and the marks and comments that it has so far."""
 
+import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import Mark, newest_mark
+from grader.classroom.gradebook.marks import Mark, newest_mark, newest_second
+from grader.classroom.gradebook.stored import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.grading.report import Result
+from grader.classroom.matching import plain_group, plain_name
+from grader.errors import InputError
+from grader.grading.report import ManualMark, Result
+from grader.text import enumerated
+
+COMMENT_NUMBER = re.compile(r"#([0-9]{1,9})")  # how a person refers to an earlier comment
+_MAX_NAMED = 6
+_STUDENTS = "SELECT key, section, marker FROM student"
 
 
 class QueuedCriterion(NamedTuple):
@@ -17,47 +26,117 @@ class QueuedCriterion(NamedTuple):
     criterion: str
 
 
+class ReviewScope(NamedTuple):
+    """What a review shows: one criterion, one section, the students whose marker `by` is. `by` is the name that reports show.
+
+    With `second`, a second opinion is given on what others have marked or have to mark, without their marks. With `anonymous`,
+    students have numbers instead of names.
+    """
+
+    criterion: str = ""
+    by: str = ""
+    section: str = ""
+    mine: bool = False
+    second: bool = False
+    anonymous: bool = False
+
+
+EVERYTHING = ReviewScope()
+
+
 @dataclass(frozen=True, slots=True)
 class QueuedResult:
-    """A queued criterion in its current state, with its newest mark, which may take an earlier one back."""
+    """A queued criterion in its current state, with its newest mark, which may take an earlier one back.
+
+    With `is_second`, both are those of a second opinion. An anonymous student has a `number`.
+    """
 
     grade: StudentGrade
     result: Result
     mark: Mark | None = None
+    is_second: bool = False
+    number: int | None = None
 
     @property
     def newest(self) -> int:
         """The id of the newest mark, 0 if there is none."""
         return self.mark.id if self.mark is not None else 0
 
+    @property
+    def is_open(self) -> bool:
+        """Return whether it still needs a mark, or a second opinion."""
+        return self.result.manual_mark is None if self.is_second else self.result.is_open
 
-def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCriterion]:
+
+_QUEUED = (
+    "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ?1 AND final IS NULL AND NOT is_excused AND "
+)
+_MARKED = "EXISTS (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?3"
+_OPEN = f"substr(statuses, ?2, 1) = '?' AND NOT {_MARKED}) AND ?4 = ?4 ORDER BY key"
+# What somebody else has marked or has to mark, and this grader has given no opinion on.
+_OPEN_FOR_SECOND = f"""(substr(statuses, ?2, 1) = '?' OR {_MARKED})) AND NOT {_MARKED} AND grader_name = ?4) AND NOT EXISTS (
+    SELECT 1 FROM second_mark WHERE student = grade.id AND criterion = ?3 AND grader_name = ?4 AND points IS NOT NULL
+    AND second_mark.digest = grade.digest
+) ORDER BY key"""
+
+
+def manual_grading_queue(grades: Grades, scope: ReviewScope = EVERYTHING) -> list[QueuedCriterion]:
     """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
 
-    Unreadable submissions are not in it: they need a fix, not points.
+    Unreadable submissions are not in it: they need a fix, not points. Students with a final mark or an excuse need no other marks.
+    Raises InputError for a section or marker that no student has.
     """
-    rubric = grades.newest_rubric()
-    query = (
-        "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(statuses, ?, 1) = '?' AND NOT EXISTS"
-        " (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?) ORDER BY key"
-    )
+    rubric, students = grades.newest_rubric(), _students_of(grades.book, scope)
+    query = _QUEUED + (_OPEN_FOR_SECOND if scope.second else _OPEN)
     return [
         QueuedCriterion(str(key), row.id)
         for position, row in enumerate(rubric.criteria)
-        if criterion in ("", row.id) and row.adjustment is None
-        for (key,) in grades.book.rows(query, rubric.sha256, position + 1, row.id)
+        if scope.criterion in ("", row.id) and row.adjustment is None
+        for (key,) in grades.book.rows(query, rubric.sha256, position + 1, row.id, storable(scope.by))
+        if key in students
     ]
 
 
-def queued_result(grades: Grades, queued: QueuedCriterion) -> QueuedResult | None:
+def _students_of(book: Gradebook, scope: ReviewScope) -> set[str]:
+    """Return the keys of the students in the section, and of the marker. Raises InputError if there is none."""
+    rows = [(str(key), str(section), str(marker)) for key, section, marker in book.rows(_STUDENTS)]
+    for column, wanted, plain in ((1, scope.section, plain_group), (2, scope.by if scope.mine else "", plain_name)):
+        found = [row for row in rows if plain(row[column]) == plain(wanted)]
+        if wanted and not found:
+            name = ("section", "marker")[column - 1]
+            known = sorted({row[column] for row in rows if row[column]})
+            names = f"; the roster has {enumerated([repr(one) for one in known], _MAX_NAMED)}" if known else ""
+            raise InputError(f"no student has the {name} {wanted!r} in the roster{names}")
+        rows = found if wanted else rows
+    return {row[0] for row in rows}
+
+
+def queued_result(
+    grades: Grades, queued: QueuedCriterion, scope: ReviewScope = EVERYTHING, number: int | None = None
+) -> QueuedResult | None:
     """Return a queued criterion in its current state; None if it is no longer graded."""
     grade = grades.find(queued.key)
     # Before the report, so that no later mark counts as shown.
-    newest = newest_mark(grades.book, grade.id, queued.criterion)
+    newest = newest_of(grades.book, grade, queued.criterion, scope)
     for result in grades.report(grade).results:
         if result.criterion.id == queued.criterion:
-            return QueuedResult(grade, result, newest)
+            shown = _blind(result, newest) if scope.second else result
+            return QueuedResult(grade, shown, newest, scope.second, number)
     return None
+
+
+def newest_of(book: Gradebook, grade: StudentGrade, criterion: str, scope: ReviewScope) -> Mark | None:
+    """Return the newest mark of a criterion, or the newest second opinion of this grader."""
+    if scope.second:
+        return newest_second(book, grade, criterion, scope.by)
+    return newest_mark(book, grade.id, criterion)
+
+
+def _blind(result: Result, own: Mark | None) -> Result:
+    """Return a result with the second opinion of this grader instead of what others have marked."""
+    points = own.points if own is not None else None
+    given = ManualMark(points, own.by, own.comment) if own is not None and points is not None else None
+    return result._replace(manual_mark=given, comment=None)
 
 
 def reusable_comments(book: Gradebook, criterion: str, most: int, *, second: bool = False) -> list[str]:

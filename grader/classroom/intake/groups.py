@@ -44,6 +44,12 @@ class CanvasGroups:
             return GroupClaim(tuple(sorted(members)), "can be read as the name of several groups")
         return claims[0] if claims else None
 
+    def is_named_otherwise(self, student: Student, owner: int) -> bool:
+        """Return whether a file has the name of neither a student's own nor a group, although the student has none."""
+        entry = self._entries[owner]
+        own = set(canvas_names(entry.student.name))
+        return bool(own) and not entry.team and all(canvas_name(name) not in own for name, _ in student.readings)
+
     def _read(self, name: str, number: str, position: int | None) -> GroupClaim | None:
         """Return the claim of a name and a user id; None if no group has that name."""
         plain = canvas_name(name)

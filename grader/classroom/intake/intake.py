@@ -169,6 +169,7 @@ class _Matches(NamedTuple):
 def _match(submissions: Submissions, roster: Roster) -> _Matches:
     matches = _Matches({}, [], set(), set(), [], {})
     groups = CanvasGroups(roster)
+    otherwise: list[str] = []
     claims: dict[int, list[tuple[Clue, int]]] = {}  # by owner, the submissions that may be theirs
     for index in range(0 if submissions.is_anonymous else len(submissions)):
         student = submissions.student(index)
@@ -181,12 +182,19 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
             if not claim.doubt:
                 matches.claimants.setdefault(claim.members, []).append(index)
         elif match.position is not None:
+            if claim is None and match.clue is Clue.CANVAS and groups.is_named_otherwise(student, match.position):
+                otherwise.append(student.key)
             claims.setdefault(match.position, []).append((match.clue, index))
         elif match.doubt:
             matches.notes.append(f"{student.key} {match.doubt}: left unassigned")
             matches.contested.update(match.several)
         else:
             matches.unmatched.append(index)
+    if otherwise:
+        matches.notes.append(
+            f"{enumerated(otherwise, _MAX_NAMED)}: not named like the student with this id on the roster; if this is a group"
+            " assignment, add a column `group` to the roster, and the submission counts for each member"
+        )
     for owner, claimants in claims.items():
         clues, indices = zip(*sorted(claimants), strict=True)
         first, *others = (submissions.student(index).key for index in indices)

@@ -12,13 +12,13 @@ _LATE = re.compile(
     r"(?P<after>.+) (?:late|später|verspätet|después|de retraso|in ritardo|atrasado|(?:te )?laat)|en retard de (?P<before>.+)",
     re.IGNORECASE,
 )
-# The first letters of the units in these languages, and what one of them is in days.
+# How the units begin in these languages, or their letter (French has s for seconds), and what one of them is in days.
 _UNITS = (
-    (("year", "jahr", "an", "año", "jaar"), 365.0),
-    (("day", "tag", "jour", "día", "dia", "giorn", "dag"), 1.0),
-    (("hour", "stunde", "std", "heure", "hora", "ora", "ore", "uur", "uren"), 1 / 24),
-    (("min",), 1 / 1440),
-    (("sec", "sek", "seg"), 1 / 86400),
+    (("year", "jahr", "an", "año", "jaar"), "y", 365.0),
+    (("day", "tag", "jour", "día", "dia", "giorn", "dag"), "dj", 1.0),
+    (("hour", "stunde", "std", "heure", "hora", "ora", "ore", "uur", "uren"), "hu", 1 / 24),
+    (("min",), "m", 1 / 1440),
+    (("sec", "sek", "seg"), "s", 1 / 86400),
 )
 _PAIR = re.compile(r"([0-9]{1,6}) ([^\W\d]+)\.?")
 _NUMBER = re.compile(r"[0-9]")
@@ -40,7 +40,8 @@ def _days(duration: str) -> float | None:
         return None
     days = 0.0
     for number, word in _PAIR.findall(duration):
-        unit = next((size for words, size in _UNITS if word.casefold().startswith(words)), None)
+        plain = word.casefold()
+        unit = next((size for words, letters, size in _UNITS if plain.startswith(words) or plain in [*letters]), None)
         if unit is None:
             return None
         days += int(number) * unit

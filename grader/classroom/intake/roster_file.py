@@ -27,9 +27,8 @@ _ALIASES = {
     "last": "last lastname surname familyname nachname",
     "email": "email emailaddress mail sisemail emailadresse",
     "canvas": "canvas canvasid canvasuserid",
-    "moodle": (
-        "moodle moodleid participantid participant identifier identifiant identificador identificativo identificatie"
-    ),
+    "moodle": "moodle moodleid participantid participant",
+    "identifier": "identifier identifiant identificador identificativo identificatie",
     "group": "group groupname team teamname gruppe",
     "section": "section class tutorial",
     "marker": "marker gradedby assignedgrader teachingassistant ta",
@@ -40,7 +39,7 @@ _ALIASES = {
     "status": "status statut stato estado",
 }
 _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
-_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle"})
+_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle", "identifier"})
 _ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 _LIMIT = 16 * 1024 * 1024  # bytes

@@ -35,8 +35,13 @@ class RowReader:
     def _entry(self, line: int, row: dict[str, str], complain: Complain) -> RosterEntry | None:
         is_participant = bool(_PARTICIPANT.fullmatch(row["id"]))
         own_id = "" if is_participant else row["id"]
+        of_moodle = row["moodle"] or (row["id"] if is_participant else "")
+        if _is_of_moodle(row):
+            of_moodle = of_moodle or row["identifier"]
+        else:
+            own_id = own_id or row["identifier"]
         canvas = _canvas(row["canvas"] or (own_id if self._is_from_canvas else ""), complain)
-        moodle = _moodle(row["moodle"] or (row["id"] if is_participant else ""), complain)
+        moodle = _moodle(of_moodle, complain)
         sis = row["sis"] or ("" if own_id == canvas else own_id)
         login = row["login"] or row["github"]
         name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
@@ -80,6 +85,11 @@ class RowReader:
         elif text and not time:
             self.ignored.append((line, text))
         return time
+
+
+def _is_of_moodle(row: dict[str, str]) -> bool:
+    """Return whether the Identifier is Moodle's, as in a worksheet; in a roster of GitHub Classroom it is the course's own id."""
+    return bool(_WORD_AND_NUMBER.fullmatch(row["identifier"])) and not row["github"]
 
 
 def _canvas(text: str, complain: Complain) -> str:

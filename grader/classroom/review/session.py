@@ -1,33 +1,41 @@
 """A review: one person grades the items that need manual grading. Each mark is saved immediately."""
 
 from decimal import Decimal
+from itertools import starmap
 from typing import NamedTuple
 
+from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import (
+    EVERYTHING,
     QueuedResult,
+    ReviewScope,
     manual_grading_queue,
+    newest_of,
+    numbered_comments,
     queued_result,
     reusable_comments,
 )
 from grader.classroom.gradebook.marks import (
     WITHDRAWN,
+    WITHDRAWN_SECOND,
     Entry,
     Mark,
     NewerMarkError,
     add_mark,
     criterion_of,
-    newest_mark,
     restore_mark,
 )
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
+from grader.files.reading import sha256_of
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
 _NOT_GRADED = "this criterion is no longer graded for this student"
+_HIDDEN = "not shown here: the review without --anonymous says why"
 _CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
 
 
@@ -41,15 +49,21 @@ class _Given(NamedTuple):
 class ReviewSession:
     """The queue of a review, and the place in it. Items that this review has marked stay in it; items that others mark meanwhile are skipped.
 
-    `item` is the current item, None at the end of the queue. `by` is the name that reports show.
+    `item` is the current item, None at the end of the queue.
     """
 
-    def __init__(self, grades: Grades, criterion: str = "", by: str = "") -> None:
+    def __init__(self, grades: Grades, scope: ReviewScope = EVERYTHING) -> None:
         self.criteria = grades.newest_rubric().criteria
-        if criterion:
-            criterion_of(grades.newest_rubric(), criterion)
-        self._grades, self._criterion, self._by = grades, criterion, by
-        self.queue = tuple(manual_grading_queue(grades, criterion))
+        for is_wrong, option in ((scope.mine, "--mine"), (scope.second, "--second")):
+            if is_wrong and not scope.by:
+                raise InputError(f"{option} needs --by, your name")
+        if scope.criterion:
+            criterion_of(grades.newest_rubric(), scope.criterion)
+        self.scope, self._grades = scope, grades
+        self._numbers = student_numbers(grades.book) if scope.anonymous else {}
+        order = {criterion.id: criterion.position for criterion in self.criteria}
+        queue = manual_grading_queue(grades, scope)
+        self.queue = tuple(sorted(queue, key=lambda one: (order[one.criterion], self._numbers.get(one.key, 0))))
         self._given: list[_Given] = []
         self._own: dict[int, int] = {}  # the newest mark of this review, by the position of its item
         self._comments: dict[str, list[str]] = {}  # of each criterion, in the order of their keys
@@ -64,7 +78,7 @@ class ReviewSession:
     @property
     def left(self) -> int:
         """The number of items that need manual grading."""
-        return len(manual_grading_queue(self._grades, self._criterion))
+        return len(manual_grading_queue(self._grades, self.scope))
 
     @property
     def is_own(self) -> bool:
@@ -89,7 +103,15 @@ class ReviewSession:
     def item_at(self, position: int) -> QueuedResult | None:
         """Return an item in its current state; None beyond the queue, or if it is no longer graded."""
         inside = 0 <= position < len(self.queue)
-        return queued_result(self._grades, self.queue[position]) if inside else None
+        if not inside:
+            return None
+        number = self._numbers.get(self.queue[position].key)
+        try:
+            return queued_result(self._grades, self.queue[position], self.scope, number)
+        except InputError:
+            if number is None:
+                raise
+            raise InputError(f"submission {number} is no longer in the gradebook") from None
 
     def current_item(self) -> QueuedResult:
         """Return the current item; raise InputError if it is no longer graded."""
@@ -115,7 +137,7 @@ class ReviewSession:
     def _is_shown(self, position: int) -> bool:
         """Go to an item and return whether it is open, or marked by this review."""
         self.go(position)
-        return self.item is not None and (self.item.result.is_open or self.is_own)
+        return self.item is not None and (self.item.is_open or self.is_own)
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
         """Mark the current item, unless it already has this mark.
@@ -126,11 +148,11 @@ class ReviewSession:
         item = self.current_item()
         shown = item.newest if shown is None else shown
         book, criterion = self._grades.book, item.result.criterion
-        newest = newest_mark(book, item.grade.id, criterion.id)
-        entry = Entry("points", points, comment)
+        newest = newest_of(book, item.grade, criterion.id, self.scope)
+        entry = Entry("second" if self.scope.second else "points", points, comment)
         if newest is not None and (newest.id, newest.entry) == (shown, entry):
             return
-        added = add_mark(book, item.grade, criterion.id, entry, self._by, shown=shown)
+        added = add_mark(book, item.grade, criterion.id, entry, self.scope.by, shown=shown)
         self._given.append(_Given(self.position, added.before))
         self._own[self.position] = added.id
 
@@ -151,9 +173,10 @@ class ReviewSession:
             self.position = here - 1
             self.next()
             raise InputError(f"not undone: {_NOT_GRADED}")
+        withdrawn = WITHDRAWN_SECOND if self.scope.second else WITHDRAWN
         try:
             added = restore_mark(
-                self._grades.book, item.grade, item.result.criterion.id, given.before or WITHDRAWN, self._by,
+                self._grades.book, item.grade, item.result.criterion.id, given.before or withdrawn, self.scope.by,
                 shown=self._own[given.position],
             )  # fmt: skip
         except NewerMarkError:
@@ -181,12 +204,23 @@ class ReviewSession:
         A comment keeps its position during the review, because its key is its position.
         """
         criterion = self.queue[self.position].criterion
-        found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS)
+        found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS, second=self.scope.second)
         before = self._comments.get(criterion, [])
         new = iter([comment for comment in found if comment not in before])
         places = [comment if comment in found else next(new, "") for comment in before]
         self._comments[criterion] = [*filter(None, places), *new]
         return self._comments[criterion]
+
+    def numbered_comments(self) -> dict[int, str]:
+        """Return all earlier comments for the criterion of the current item, by their numbers, which never change."""
+        criterion = self.queue[self.position].criterion
+        return numbered_comments(self._grades.book, criterion, second=self.scope.second)
+
+
+def student_numbers(book: Gradebook) -> dict[str, int]:
+    """Return a number for each student with a submission, in an order that says nothing about names."""
+    keys = [str(key) for (key,) in book.rows("SELECT key FROM grade WHERE result IS NOT NULL")]
+    return {key: number for number, key in enumerate(sorted(keys, key=lambda key: sha256_of(key.encode())), 1)}
 
 
 def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
@@ -194,4 +228,12 @@ def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShow
     if not may_have_pictures(item.result):
         return ()
     submission = SubmissionSources(item.grade.files, rubric).submission
-    return (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
+    found = (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
+    return found if item.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
+
+
+def _anonymous(number: int, found: Picture | NotShown) -> Picture | NotShown:
+    """Return a picture without the name of its file, which students choose."""
+    if isinstance(found, Picture):
+        return found._replace(where=f"picture {number}")
+    return NotShown(f"picture {number}", _CHANGED if found.reason == _CHANGED else _HIDDEN)

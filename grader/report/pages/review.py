@@ -9,7 +9,7 @@ from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.documents.pictures import NotShown, Picture
 from grader.grading.criterion import Criterion
 from grader.report.pages.shell import render_page
-from grader.report.review import files_text, mark_text, place_text, who
+from grader.report.review import files_text, marked_text, message_text, place_text, who
 from grader.text import counted, counted_points, format_points, shell_quoted
 
 _SOURCES = "img-src 'self'; connect-src 'self'"
@@ -33,20 +33,22 @@ def item_page(
     given = item.result.manual_mark
     answer = outcome.measured if isinstance(outcome.measured, str) else ""
     values = {
-        "title": f"{place.number} of {place.total}: {who(item.grade.student)}, {criterion.title}",
+        "title": f"{place.number} of {place.total}: {who(item)}, {criterion.title}",
         "place": place,
-        "who": who(item.grade.student),
+        "who": who(item),
         "criterion": criterion,
         "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
-        "score": f"{format_points(item.grade.score)} of {format_points(item.grade.out_of)} points so far",
-        "message": outcome.message,
+        "score": ""
+        if item.is_second
+        else f"{format_points(item.grade.score)} of {format_points(item.grade.out_of)} points so far",
+        "message": message_text(item),
         "answer": _lines(answer),
         "model": _lines(criterion.answer),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
         "pictures": [*_pictures(found, place.number)],
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
-        "marked": mark_text(item.mark) if given is not None and item.mark is not None else "",
+        "marked": marked_text(item),
         "choices": _choices(criterion),
         "comments": [" ".join(comment.split()) for comment in comments],
         "notice": notice,

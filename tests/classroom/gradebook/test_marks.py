@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, manual_grading_queue, queued_result
 from grader.classroom.gradebook.marks import TAKE_BACK, criterion_of, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
@@ -129,8 +129,8 @@ def test_questions_are_grouped_by_criterion(standings: Grades) -> None:
     """Criteria come in the rubric's order; unreadable submissions and missing parts are omitted."""
     expected = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
     assert manual_grading_queue(standings) == expected
-    assert manual_grading_queue(standings, "picture") == expected[2:]
-    assert manual_grading_queue(standings, "box") == []
+    assert manual_grading_queue(standings, ReviewScope("picture")) == expected[2:]
+    assert manual_grading_queue(standings, ReviewScope("box")) == []
 
 
 def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:

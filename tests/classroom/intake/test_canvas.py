@@ -24,6 +24,12 @@ FILES = (
 )
 
 
+NO_GROUP = (
+    "not named like the student with this id on the roster; if this is a group assignment, add a column `group` to the"
+    " roster, and the submission counts for each member"
+)
+
+
 def one(tmp_path: Path, *names: str) -> ClassSubmission:
     (submission,) = read_class(lay_out(tmp_path, *names), layout="canvas").submissions()
     return submission
@@ -112,6 +118,7 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
     assert intake.notes == (
         "ashal_5 has the name of f, but another number: left unassigned",
         "leekim_4 is ambiguous: it matches several students on the roster: left unassigned",
+        f"xx_1: {NO_GROUP}",
     )
 
 
@@ -156,3 +163,29 @@ def test_an_anonymous_download_matches_no_student(tmp_path: Path) -> None:
         assert (intake.unmatched, intake.absent) == ((), ())
         assert [line.partition(":")[0] for line in intake.notes] == ["this is an anonymous download"]
     assert len(read_class(tmp_path, roster).contested) == 2
+
+
+def test_a_roster_settles_names_that_end_in_a_number(tmp_path: Path) -> None:
+    """If only one of the numbers is a student's, it is the user id; if both are, the file may be either's."""
+    files = ("redash_7_101_5_lab6.zip", "blueash_7_LATE_102_6_lab6-1.zip", "blueash_7_LATE_102_4_lab6.zip")
+    students = [Student("a", "Ash, Red", canvas="101"), Student("b", "Ash, Blue", canvas="102")]
+    intake = read_class(lay_out(tmp_path, *files), Roster(map(RosterEntry, students)))
+    assert assigned(intake) == {"a": files[:1], "b": files[1:2]}
+    red, blue = intake.submissions()
+    assert (red.is_late, red.names, blue.is_late, blue.names, blue.attempt) == (
+        False,
+        ("lab6.zip",),
+        True,
+        ("lab6-1.zip",),
+        2,
+    )
+    seven = Roster(map(RosterEntry, (*students, Student("c", canvas="7"))))
+    assert not set(assigned(read_class(tmp_path, seven, layout="canvas"))) & {"a", "c"}
+
+
+def test_a_student_who_is_called_like_an_anonymous_one(tmp_path: Path) -> None:
+    """One such name does not make the download anonymous: the others are matched as ever."""
+    lay_out(tmp_path, "anon_ab3xy_101_1_lab6.zip", "ashann_102_2_lab6.zip")
+    intake = read_class(tmp_path, Roster([RosterEntry(Student("a", "Ash, Ann", canvas="102"))]))
+    assert assigned(intake) == {"a": ("ashann_102_2_lab6.zip",), "anon_ab3xy": ("anon_ab3xy_101_1_lab6.zip",)}
+    assert (intake.unmatched, intake.notes) == (("anon_ab3xy",), ())

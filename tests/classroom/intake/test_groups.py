@@ -167,11 +167,14 @@ def test_a_group_in_canvas(tmp_path: Path, group: str, file: str, numbers: bool)
 
 
 def test_without_a_group_on_the_roster_the_id_decides(tmp_path: Path) -> None:
-    """The member whose id is in the name gets the submission, and so does a student of another name."""
+    """The member whose id is in the name gets the submission, with a note that asks for the groups; others keep their own."""
     files = ("teama_102_555_lab6.zip", "cedarcal_103_556_lab6.zip", "other_104_557_lab6.zip")
     intake = read_class(lay_out(tmp_path, *files), in_groups("", "", "C", "D"))
     assert assigned(intake) == {"Birch": files[:1], "Cedar": files[1:2], "Dogwood": files[2:]}
-    assert (intake.absent, intake.notes) == ((ASH,), ())
+    assert intake.absent == (ASH,)
+    assert [note.partition(";")[0] for note in intake.notes] == [
+        "teama_102: not named like the student with this id on the roster"
+    ]
 
 
 def test_a_member_who_also_submitted(tmp_path: Path) -> None:

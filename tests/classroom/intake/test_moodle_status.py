@@ -28,6 +28,7 @@ GERMAN = "Zur Bewertung abgegeben"
         ("Draft (not submitted) - 3 days 4 hours late", 3 + 4 / 24),
         (f"{GERMAN} - 1 Tag 2 Stunden später - Bewertet", 1 + 2 / 24),
         ("Remis pour évaluation - En retard de 3 jours 1 heure", 3 + 1 / 24),
+        ("Remis pour évaluation - En retard de 10 min 30 s", 10 / 1440 + 30 / 86400),
         ("Enviado para calificar - 2 días 5 horas después", 2 + 5 / 24),
         ("Consegnato per la valutazione - 2 giorni 5 ore in ritardo", 2 + 5 / 24),
         ("Enviado para avaliação - 1 dia 3 horas atrasado", 1 + 3 / 24),

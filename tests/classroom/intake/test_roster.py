@@ -234,6 +234,16 @@ def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
     ]
 
 
+def test_identifiers_that_are_not_of_moodle(tmp_path: Path) -> None:
+    """In the roster of GitHub Classroom the identifier is the course's own id; in a worksheet it is Moodle's."""
+    classroom = read(tmp_path, '"identifier","github_username","github_id","name"\n"1234567","ash-a","99",""\n')
+    assert classroom.entries[0].student == Student("1234567", login="ash-a", sis="1234567")
+    named = read(tmp_path, "identifier,github_username\n'Ash, Ann',ash-a\n".replace("'", '"'))
+    assert named.entries[0].student.key == "Ash, Ann"
+    assert read(tmp_path, "Identifier,email\nParticipant 12,a@x.org\n").entries[0].student.moodle == "12"
+    assert read(tmp_path, "Identifier,email\ns12,a@x.org\n").entries[0].student.key == "s12"
+
+
 def test_ids_of_an_own_roster_with_the_columns_of_canvas(tmp_path: Path) -> None:
     """A roster whose ids are no numbers is not taken for a gradebook of Canvas."""
     assert read(tmp_path, "Student,ID,Login\nAnn Ash,aa1,ash\n").entries[0].student == Student(

@@ -223,6 +223,7 @@ def test_moodle_gives_each_student_the_report(kind: str, book: Path, tmp_path: P
         assert set(re.findall(r"(?:blurred|agreed) for s\d+", text)) == {one.remark}
         assert ("Final mark: " in text) == (one.final is not None)
         assert ("Excused by Kim" in text) == one.is_excused
+        assert (" late, from the roster" in text) == (bool(one.days_late) and not one.is_missing)
         assert "Because of the roots" not in text  # the model answer
     if kind == "markdown":
         (tmp_path / "lms.csv").write_bytes(moodle_file({one.key: "" for one in CLASS[:60]}, {}))

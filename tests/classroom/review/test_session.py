@@ -9,7 +9,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import reusable_comments
+from grader.classroom.gradebook.manual_queue import ReviewScope, reusable_comments
 from grader.classroom.gradebook.marks import NewerMarkError, criterion_of
 from grader.classroom.review.session import ReviewSession
 from grader.errors import InputError
@@ -49,7 +49,7 @@ def entries(book: Gradebook) -> list[tuple[Any, ...]]:
 
 def test_forward_and_back(book: Gradebook) -> None:
     """Nothing is before the first item and after the end; skipped items are shown again."""
-    session = ReviewSession(Grades(book), "essay")
+    session = ReviewSession(Grades(book), ReviewScope("essay"))
     seen = [here(session)]
     assert not session.back()
     assert here(session) == "ash essay open"
@@ -65,7 +65,7 @@ def test_forward_and_back(book: Gradebook) -> None:
 
 def test_own_marks_stay_and_those_of_others_are_passed_over(book: Gradebook) -> None:
     """Going back shows what this review has marked, not what others have."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     session.mark(Decimal(3), "good")
     theirs(book, "birch", "essay", "1")
     session.next()
@@ -79,7 +79,7 @@ def test_own_marks_stay_and_those_of_others_are_passed_over(book: Gradebook) -> 
 
 def test_a_mark_is_not_repeated(book: Gradebook) -> None:
     """The same points and comment add no entry; others replace the mark."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     for points, comment in ((3, "good"), (3, "good"), (3, "very good"), (2, "very good")):
         session.mark(Decimal(points), comment)
         session.go(0)
@@ -91,7 +91,7 @@ def test_a_mark_is_not_repeated(book: Gradebook) -> None:
 
 def test_undo_adds_entries_and_deletes_none(book: Gradebook) -> None:
     """Each undo brings back the mark before, and at last takes the mark back."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     session.mark(Decimal(3), "good")
     session.go(0)
     session.mark(Decimal(2), "no")
@@ -111,7 +111,7 @@ def test_undo_adds_entries_and_deletes_none(book: Gradebook) -> None:
 
 def test_undo_of_the_current_item_comes_first(book: Gradebook) -> None:
     """Elsewhere the newest mark is undone, and the review goes to its item."""
-    session = ReviewSession(Grades(book), "essay")
+    session = ReviewSession(Grades(book), ReviewScope("essay"))
     for points in (1, 2):
         session.mark(Decimal(points), "")
         session.next()
@@ -129,7 +129,7 @@ def test_undo_of_the_current_item_comes_first(book: Gradebook) -> None:
 
 def test_a_newer_mark_is_kept_or_replaced(book: Gradebook) -> None:
     """It is not overwritten unseen; undo brings it back with the name of who gave it, and the author who undid."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     theirs(book, "ash", "essay", "4", "all of it")
     with pytest.raises(NewerMarkError) as caught:
         session.mark(Decimal(1), "")
@@ -146,7 +146,7 @@ def test_a_newer_mark_is_kept_or_replaced(book: Gradebook) -> None:
 
 def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
     """It is refused, and the item is left to who has marked it since."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     session.mark(Decimal(1), "")
     theirs(book, "ash", "essay", "4")
     count = len(entries(book))
@@ -157,7 +157,7 @@ def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
 
 def test_an_undo_of_a_criterion_that_is_no_longer_graded(book: Gradebook, tmp_path: Path) -> None:
     """It is refused with the reason, and forgotten; the review stays at its item."""
-    session = ReviewSession(Grades(book), "essay", "Kim")
+    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
     session.mark(Decimal(1), "")
     session.next()
     grade_without(tmp_path / "book.db", "ash", "essay")
@@ -193,4 +193,4 @@ def test_reusable_comments(book: Gradebook) -> None:
 def test_an_unknown_criterion(book: Gradebook) -> None:
     """It is refused with a suggestion."""
     with pytest.raises(InputError, match="did you mean 'essay'"):
-        ReviewSession(Grades(book), "esay")
+        ReviewSession(Grades(book), ReviewScope("esay"))

@@ -75,17 +75,19 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of a download, one for each user. Folders count as files that someone has unpacked."""
     start, ignored = folder.start, folder.ignored
     by_user: dict[tuple[bool, str], list[_CanvasFile]] = defaultdict(list)
+    known = {entry.student.canvas for entry in folder.roster.entries} if folder.roster is not None else set[str]()
     for name in (*folder.children.folders, *folder.children.files):
         file = _parsed(name)
         if file is None:
             ignored.add(start + name, "is not named like a submission in Canvas")
         else:
+            file = _settled(file, known)
             by_user[file.is_anonymous, file.user].append(file)
     ignored.add_all(start, folder.children.refused)
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
     contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
     found = (_submission(files, start) for files in certain.values() if files)
-    is_anonymous = any(anonymous for anonymous, _ in by_user)
+    is_anonymous = all(anonymous for anonymous, _ in by_user)  # a student may be called anon_ab3xy
     return Submissions(found, contested=tuple(contested), is_anonymous=is_anonymous)
 
 
@@ -121,6 +123,20 @@ def _parsed(name: str) -> _CanvasFile | None:
         bool(found["late_anon"] or found["late"]),
         int(found["attachment"] or 0),
         found["file"] or f"{found['page']}_entry.html",
+    )
+
+
+def _settled(file: _CanvasFile, known: set[str]) -> _CanvasFile:
+    """Return a file as it must be read if only one of the numbers in its name is the user id of a student on the roster."""
+    fitting = [reading for reading in file.readings if reading[1] in known]
+    if not file.is_ambiguous or len(fitting) != 1:
+        return file
+    ((name, user),) = fitting
+    is_late = file.path.startswith(f"{name}_LATE_{user}_")
+    rest = file.path.removeprefix(f"{name}{'_LATE' if is_late else ''}_{user}_")
+    attachment, _, own = rest.partition("_")
+    return file._replace(
+        name=name, user=user, readings=((name, user),), is_late=is_late, attachment=int(attachment), file=own
     )
 
 
