@@ -40,9 +40,9 @@ def result(data: Any, name: str) -> Any:
     return next(row for row in data["results"] if row["id"] == name)
 
 
-def students(top: Path) -> dict[str, Any]:
+def students(top: Path, **variables: str) -> dict[str, Any]:
     """Return the current grades by student."""
-    done = grader("export", "json", "--gradebook", top / "book.db")
+    done = grader("export", "json", "--gradebook", top / "book.db", **variables)
     return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
@@ -306,3 +306,21 @@ def test_comments_are_in_reports_of_the_class(top: Path) -> None:
     data = json.loads((top / "reports" / "emil.json").read_text())
     assert result(data, "box")["comment"] == {"text": "see box", "by": "Kim"}
     assert result(data, "box")["points"] == 0
+
+
+def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
+    """Without the adjustment nobody has a final grade; with it the grader did not fail."""
+    write_submission(tmp_path / "class" / "anna")
+    (tmp_path / "class" / "anna" / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
+    text = lab_text(extra="1").replace(
+        'points = 1\npart = "robot"\ncheck = "urdf_loads"', 'points = 1\npart = "robot"\ncheck = "behaves"'
+    )
+    hostile = {"PYTHONPATH": str(ROOT / "tests" / "classroom" / "hostile")}
+    found = []
+    for chosen in (text, adjusted(text, "extra", "drop"), adjusted(text, "extra", "full")):
+        lab = rubric(tmp_path, chosen)
+        done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--rubric", lab, **hostile)
+        assert done.returncode == 0
+        one = students(tmp_path, **hostile)["anna"]
+        found.append((one["status"], one["score"], one["max_score"]))
+    assert found == [("errored", 6, 12), ("graded", 6, 11), ("graded", 7, 12)]
