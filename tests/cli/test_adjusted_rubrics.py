@@ -9,7 +9,8 @@ import pytest
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
 from tests.command_line import ROOT
 
-EVERYBODY, DROPPED = "Points given to everybody: odd handout.", "Not counted: odd handout."
+DROPPED = "Not counted: odd handout."
+HOSTILE = str(ROOT / "tests" / "classroom" / "hostile")
 
 
 def adjusted(text: str, name: str, action: str) -> str:
@@ -40,9 +41,9 @@ def result(data: Any, name: str) -> Any:
     return next(row for row in data["results"] if row["id"] == name)
 
 
-def students(top: Path, **variables: str) -> dict[str, Any]:
+def students(top: Path) -> dict[str, Any]:
     """Return the current grades by student."""
-    done = grader("export", "json", "--gradebook", top / "book.db", **variables)
+    done = grader("export", "json", "--gradebook", top / "book.db")
     return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
@@ -118,10 +119,9 @@ def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path
         'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "urdf_loads"',
         'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "behaves"',
     )
-    hostile = {"PYTHONPATH": str(Path(__file__).parent.parent / "classroom" / "hostile")}
     (wrong / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
     codes = [
-        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), **hostile).returncode
+        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), PYTHONPATH=HOSTILE).returncode
         for chosen in (text, adjusted(text, "extra", "drop"))
     ]
     assert codes == [3, 0]
@@ -309,18 +309,15 @@ def test_comments_are_in_reports_of_the_class(top: Path) -> None:
 
 
 def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
-    """Without the adjustment nobody has a final grade; with it the grader did not fail."""
+    """The grader did not fail on anybody: the grade is final but for manual grading."""
     write_submission(tmp_path / "class" / "anna")
     (tmp_path / "class" / "anna" / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
     text = lab_text(extra="1").replace(
         'points = 1\npart = "robot"\ncheck = "urdf_loads"', 'points = 1\npart = "robot"\ncheck = "behaves"'
     )
-    hostile = {"PYTHONPATH": str(ROOT / "tests" / "classroom" / "hostile")}
-    found = []
-    for chosen in (text, adjusted(text, "extra", "drop"), adjusted(text, "extra", "full")):
-        lab = rubric(tmp_path, chosen)
-        done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--rubric", lab, **hostile)
-        assert done.returncode == 0
-        one = students(tmp_path, **hostile)["anna"]
-        found.append((one["status"], one["score"], one["max_score"]))
-    assert found == [("errored", 6, 12), ("graded", 6, 11), ("graded", 7, 12)]
+    lab = rubric(tmp_path, adjusted(text, "extra", "drop"))
+    where = "--gradebook", tmp_path / "book.db", "--rubric", lab, "--jobs", 1, "--format", "json"
+    done = grader("batch", tmp_path / "class", *where, PYTHONPATH=HOSTILE)
+    data = json.loads(done.stdout)
+    (anna,) = data["students"]
+    assert (anna["status"], anna["score"], anna["max_score"], data["run"]["errored"]) == ("graded", 6, 11, 0)
