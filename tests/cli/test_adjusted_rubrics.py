@@ -110,7 +110,7 @@ def test_extra_credit_is_above_the_maximum(tmp_path: Path) -> None:
     assert report(tmp_path / "anna", free, "--fail-under", "41%")[0] == 0
     shown = grader("grade", tmp_path / "anna", "--rubric", free).stdout
     assert "box  0/2.5 bonus" in shown
-    assert "Extra credit: 0 of 2.5 points, which are not part of the maximum." in " ".join(shown.split())
+    assert "Extra credit: 0 of 2.5 points, in addition to the maximum." in " ".join(shown.split())
 
 
 def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path: Path) -> None:
