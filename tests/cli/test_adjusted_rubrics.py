@@ -8,6 +8,7 @@ import pytest
 
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
 from tests.command_line import ROOT
+from tests.report.class_pages import ClassPageReader
 
 DROPPED = "Not counted: odd handout."
 HOSTILE = str(ROOT / "tests" / "classroom" / "hostile")
@@ -199,6 +200,11 @@ def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
         "1 student is excused: not in these statistics"
     ) in shown
     assert "2 graded, 1 could not be graded, 1 without a submission" in shown
+    assert grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages").returncode == 0
+    page = ClassPageReader(top / "pages" / "index.html")
+    assert page.members("final") == ["Dora Fi", "Ben Oh"]
+    assert page.members("excused") == ["Anna Ek"]
+    assert [row["total"] for row in page.table("students")] == ["", "", "10", "", "0"]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------
