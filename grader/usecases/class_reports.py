@@ -15,7 +15,8 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError, RubricError
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
