@@ -11,7 +11,8 @@ from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.grading.criterion import Carried, Criterion
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
 from grader.grading.explanation import explained
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
 from grader.robot.shapes import UnknownShape

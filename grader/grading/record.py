@@ -7,7 +7,8 @@ from typing import Any
 from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
-from grader.grading.report import Exhibits, GradedPackage, GradedSubmission, Originals, Report, Result
+from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
+from grader.grading.report import Exhibits, Report, Result
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
 from grader.source import Location

@@ -1,36 +1,22 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
+from grader.grading.graded_submission import GradedSubmission
 from grader.grading.rubric import Evidence, Rubric
 from grader.problems import Problem
-from grader.robot.model import Robot
-from grader.robot.reader import Verdict
-from grader.source import Edit, Location, Source
-from grader.submission.submission import Submission
-from grader.submission.urdf import OtherCandidate, Read, Urdf
+from grader.source import Edit, Location
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _NOTHING = Decimal(0)
-
-
-class Originals(Protocol):
-    """The files of a submission, as far as they can still be read."""
-
-    @property
-    def urdf(self) -> Urdf:
-        """The URDF that was graded; absent if it has changed since."""
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one of the files; None where it cannot be read."""
 
 
 class ManualMark(NamedTuple):
@@ -117,67 +103,6 @@ class Exhibits(NamedTuple):
     evidence: Evidence
     files: "tuple[Exhibit, ...]"
     perhaps: "tuple[Exhibit, ...]" = ()
-
-
-class GradedPackage(NamedTuple):
-    """The graded package: its folder in the submission, empty for the submission itself, and its name."""
-
-    folder: str
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class GradedSubmission:
-    """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
-
-    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; with
-    `has_evidence_only` there are pictures or documents, but no URDF. `originals` are its files.
-    """
-
-    id: str
-    path: str | None = None
-    sha256: str | None = None
-    package: GradedPackage | None = None
-    other_candidates: tuple[OtherCandidate, ...] = ()
-    ignored: tuple[str, ...] = ()
-    has_urdf: bool = False
-    verdict: Verdict | None = None
-    is_single: bool = False
-    unread: str = ""
-    has_evidence_only: bool = False
-    originals: Originals | None = field(default=None, repr=False, compare=False)
-
-    @classmethod
-    def of(cls, submission: Submission) -> "GradedSubmission":
-        """Return what a report says of a submission."""
-        package = submission.package
-        return cls(
-            submission.id,
-            submission.path,
-            submission.sha256,
-            GradedPackage(package.folder, package.name) if package is not None else None,
-            submission.other_candidates,
-            submission.ignored,
-            submission.has_urdf,
-            submission.verdict,
-            submission.is_single,
-            submission.unread,
-            submission.has_evidence_only,
-            submission,
-        )
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one of the files; None where it cannot be read."""
-        return self.originals.source(path) if self.originals is not None else None
-
-    @property
-    def robot(self) -> Robot | None:
-        """The robot that was graded; None if there is none, or the URDF can no longer be read.
-
-        A submission in which no URDF was read is not opened again: it may be one that crashed the process that graded it.
-        """
-        urdf = self.originals.urdf if self.originals is not None and self.sha256 is not None else None
-        return urdf.reading.robot if isinstance(urdf, Read) else None
 
 
 @dataclass(frozen=True, slots=True)

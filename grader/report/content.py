@@ -79,7 +79,7 @@ def bonus_line(report: Report) -> str:
     bonus = worth(result.criterion for result in report.results).bonus
     if not bonus:
         return ""
-    return f"Extra credit: {format_points(report.bonus)} of {counted_points(bonus)}, which are not part of the maximum."
+    return f"Extra credit: {format_points(report.bonus)} of {counted_points(bonus)}, in addition to the maximum."
 
 
 def summaries(report: Report) -> list[str]:

@@ -15,7 +15,8 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError, RubricError
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
@@ -81,11 +82,16 @@ def render_reports(
     due: datetime | None,
     names: dict[str, str],
     show: Callable[[Progress], None],
+    *,
+    feedback: bool = False,
 ) -> dict[str, str]:
-    """Write the reports of students with a result into a folder, by their file names; return who has none, and why."""
+    """Write the reports of students with a result into a folder, by their file names; return who has none, and why.
+
+    `feedback` adds who graded.
+    """
 
     def write(some: dict[str, str]) -> "Future[None]":
-        return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some)
+        return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some, feedback)
 
     chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
     show(Progress(len(names)))
@@ -117,29 +123,32 @@ def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[st
 
 
 def _write_some(
-    book: str, folder: str, formats: tuple[Format, ...], due: datetime | None, names: dict[str, str]
+    book: str, folder: str, formats: tuple[Format, ...], due: datetime | None, names: dict[str, str], feedback: bool
 ) -> None:
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened, due)
         for grade in list(grades.between(min(names), max(names))):
             name = names.get(grade.student.key)
             if name is not None:
-                report = report_of(grades, grade)
+                report = report_of(grades, grade, feedback=feedback)
                 picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in formats else ""
                 for kind in formats:
                     save(Path(folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
 
 
-def report_of(grades: Grades, grade: StudentGrade) -> Report:
+def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
     """Return the report on a student's newest submission; final mark, excuse, comment and late penalty are notes of their own.
 
-    Of a student who has submitted nothing, it has no points, and the notes.
+    Of a student who has submitted nothing, it has no points, and the notes. A note says who graded if a person did, and in
+    `feedback` always: other reports are the same as those of `grader grade`.
     """
     report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason
     if grade.late.points:
         note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
-    return replace(report, notes=(*report.notes, *remarks_of(grades, grade).notes, *([note] if note else [])))
+    remarks = remarks_of(grades, grade)
+    graded = remarks.graded if feedback or remarks.graders.is_manual else []
+    return replace(report, notes=(*report.notes, *remarks.notes, *graded, *([note] if note else [])))
 
 
 def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:

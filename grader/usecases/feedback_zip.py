@@ -62,7 +62,7 @@ def feedback_zip(
         warn(printable(line))
     given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
     if count := sum(bool(grade.why_not_final) and not grade.is_excused for grade in given):
-        warn(f"{counted(count, 'report')} of grades that are not final yet")
+        warn(f"reports of grades that are not final yet: {count}")
     warn(f"feedback: {counted(len(files), 'file')} for {counted(len(given), 'student')}")
     return zip_of(files)
 
@@ -79,12 +79,14 @@ def _feedback(grades: Grades, kind: Format, due: datetime | None, progress: Prog
         Processes(processors(), REPORT_SECONDS) as executor,
         progress("writing reports") as show,
     ):
-        without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show)
+        without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show, feedback=True)
         written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
         reports = {key: path.read_bytes() for key, path in written.items()}
     for grade in found:
         if grade.result is None:
-            reports[grade.student.key] = render(report_of(grades, grade), kind).encode("utf-8", "backslashreplace")
+            reports[grade.student.key] = render(report_of(grades, grade, feedback=True), kind).encode(
+                "utf-8", "backslashreplace"
+            )
     (name,) = file_names([grades.newest_rubric().id]).values()
     listed = [(grade, reports[grade.student.key]) for grade in found if grade.student.key in reports]
     return Feedback(f"{name}-feedback.{kind.ending}", f".{kind.ending}", listed, without)

@@ -62,7 +62,7 @@ def graded_as(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: s
         if sign != NOT_GRADED
     )
     verdict: Verdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
-    from grader.grading.report import GradedSubmission
+    from grader.grading.graded_submission import GradedSubmission
 
     report = Report(GradedSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
     return result_of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")

@@ -8,8 +8,10 @@ import pytest
 
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
 from tests.command_line import ROOT
+from tests.report.class_pages import ClassPageReader
 
-EVERYBODY, DROPPED = "Points given to everybody: odd handout.", "Not counted: odd handout."
+DROPPED = "Not counted: odd handout."
+HOSTILE = str(ROOT / "tests" / "classroom" / "hostile")
 
 
 def adjusted(text: str, name: str, action: str) -> str:
@@ -109,7 +111,7 @@ def test_extra_credit_is_above_the_maximum(tmp_path: Path) -> None:
     assert report(tmp_path / "anna", free, "--fail-under", "41%")[0] == 0
     shown = grader("grade", tmp_path / "anna", "--rubric", free).stdout
     assert "box  0/2.5 bonus" in shown
-    assert "Extra credit: 0 of 2.5 points, which are not part of the maximum." in " ".join(shown.split())
+    assert "Extra credit: 0 of 2.5 points, in addition to the maximum." in " ".join(shown.split())
 
 
 def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path: Path) -> None:
@@ -118,10 +120,9 @@ def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path
         'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "urdf_loads"',
         'title = "About extra"\npoints = 1\npart = "robot"\ncheck = "behaves"',
     )
-    hostile = {"PYTHONPATH": str(Path(__file__).parent.parent / "classroom" / "hostile")}
     (wrong / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
     codes = [
-        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), **hostile).returncode
+        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), PYTHONPATH=HOSTILE).returncode
         for chosen in (text, adjusted(text, "extra", "drop"))
     ]
     assert codes == [3, 0]
@@ -199,6 +200,11 @@ def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
         "1 student is excused: not in these statistics"
     ) in shown
     assert "2 graded, 1 could not be graded, 1 without a submission" in shown
+    assert grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages").returncode == 0
+    page = ClassPageReader(top / "pages" / "index.html")
+    assert page.members("final") == ["Dora Fi", "Ben Oh"]
+    assert page.members("excused") == ["Anna Ek"]
+    assert [row["total"] for row in page.table("students")] == ["", "", "10", "", "0"]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------
@@ -306,3 +312,18 @@ def test_comments_are_in_reports_of_the_class(top: Path) -> None:
     data = json.loads((top / "reports" / "emil.json").read_text())
     assert result(data, "box")["comment"] == {"text": "see box", "by": "Kim"}
     assert result(data, "box")["points"] == 0
+
+
+def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
+    """The grader did not fail on anybody: the grade is final but for manual grading."""
+    write_submission(tmp_path / "class" / "anna")
+    (tmp_path / "class" / "anna" / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
+    text = lab_text(extra="1").replace(
+        'points = 1\npart = "robot"\ncheck = "urdf_loads"', 'points = 1\npart = "robot"\ncheck = "behaves"'
+    )
+    lab = rubric(tmp_path, adjusted(text, "extra", "drop"))
+    where = "--gradebook", tmp_path / "book.db", "--rubric", lab, "--jobs", 1, "--format", "json"
+    done = grader("batch", tmp_path / "class", *where, PYTHONPATH=HOSTILE)
+    data = json.loads(done.stdout)
+    (anna,) = data["students"]
+    assert (anna["status"], anna["score"], anna["max_score"], data["run"]["errored"]) == ("graded", 6, 11, 0)

@@ -15,7 +15,8 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Entry, add_mark
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.lms.feedback import FeedbackItem, feedback_html, is_own_feedback
-from tests.classroom.gradebooks import batch, grader, refusal
+from grader.grading.rubric import read_rubric
+from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, record_run, refusal
 
 FIRST_VERSION = (
     "<p>Graded automatically: 58.5 of 100 points.</p><ul><li>The base: 2 of 4. it is 0.1 m too low</li></ul>"
@@ -84,7 +85,8 @@ def test_reports_have_final_marks_excuses_and_comments(top: Path) -> None:
     def notes(key: str) -> list[str]:
         return list(json.loads((top / "reports" / f"{key}.json").read_text())["notes"])
 
-    assert notes("anna") == ["Final mark: 7.5 points, given by Kim instead of the sum of the criteria. an interview"]
+    final = "Final mark: 7.5 points, given by Kim instead of the sum of the criteria. an interview"
+    assert notes("anna") == [final, "Graded manually by Kim."]
     assert notes("ben") == ["Excused. ill"]
     assert notes("emil") == ["Comment by Lee: nice <b>colours</b>\x1b"]
     assert "Comment by Lee: nice &lt;b&gt;colours&lt;/b&gt;" in (top / "reports" / "emil.md").read_text()
@@ -119,6 +121,24 @@ def test_moodle_has_comments_without_points_and_final_marks(top: Path) -> None:
         "<p>Graded manually by Lee: 0 of 11 points.</p>"
         "<ul><li>Final mark: given instead of the sum of the criteria. never came</li></ul>"
     )
+
+
+def test_extra_credit_is_not_part_of_the_maximum_in_the_lms(tmp_path: Path) -> None:
+    """A bonus of 2 above 11 points: the maximum in the LMS is 11, and points above it are listed."""
+    text = lab_text(extra="2").replace('id = "extra"', 'id = "extra"\nbonus = true')
+    rubric = read_rubric(text.encode(), Path("small.toml"))
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, rubric, [graded_as(rubric, "anna", "pppppp")])
+    (tmp_path / "d2l.csv").write_text(
+        "Username,A small lab Points Grade <Numeric MaxPoints:11>,End-of-Line Indicator\n#anna,,#\n"
+    )
+    done = export(tmp_path, "brightspace", "--into", tmp_path / "d2l.csv")
+    assert done.stdout.endswith("#anna,13.00,#\n")
+    assert "row 2, anna: 13 points: Brightspace cuts it to the maximum" in done.stderr
+    head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
+    (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,11.00,-,\n")
+    done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv")
+    assert "without a grade, has 13.00 points, but the maximum in Moodle is 11: 1 (Anna)" in done.stderr
 
 
 # --- CSV --------------------------------------------------------------------------------------------------------------
@@ -181,11 +201,14 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
         ]
         anna, dora = (archive.read(name).decode() for name in archive.namelist())
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    assert "Note: Graded automatically." in anna
+    assert "Note: Graded manually by Lee." in dora
     assert "The roots." in anna  # the student's answer
     assert "Because of the roots" not in anna  # the model answer
     assert "Note: Final mark: 0 points, given by Lee instead of the sum of the criteria. never came" in dora
     assert "Not graded, because nothing was submitted: loads, box, tall, essay and picture (11 points)." in dora
     assert "no feedback for emil: has no row in the worksheet, or an ambiguous one" in done.stderr
+    assert "reports of grades that are not final yet: 1\n" in done.stderr  # of anna
     assert "2 files for 2 students" in done.stderr
 
 

@@ -7,7 +7,8 @@ import pytest
 from grader.drawing.picture import Picture, picture_of
 from grader.drawing.scene import scene_of
 from grader.grading.grade import grade
-from grader.grading.report import GradedSubmission, Report
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf

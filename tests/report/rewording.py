@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
-from grader.grading.report import GradedPackage, GradedSubmission, Hint, Report, Result
+from grader.grading.graded_submission import GradedPackage, GradedSubmission
+from grader.grading.report import Hint, Report, Result
 from grader.report.content import other_problems
 from grader.source import Location, Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Urdf

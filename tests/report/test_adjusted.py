@@ -70,7 +70,7 @@ def test_the_score_may_exceed_the_maximum() -> None:
     assert (REPORT.score, REPORT.max_score, REPORT.bonus) == (Decimal(55), Decimal(92), Decimal(3))
     text = shown(Format.TERMINAL)
     assert "55/92 IRP Lab 6" in text
-    assert "Extra credit: 3 of 8 points, which are not part of the maximum." in text
+    assert "Extra credit: 3 of 8 points, in addition to the maximum." in text
     assert "flat-base 0/5 bonus" in text
     assert "5 adjusted" in text
     full = report_of(*(result for result in REPORT.results if result.points >= result.criterion.points))

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.grading.graded_submission import GradedSubmission
 from grader.grading.record import submission_of
-from grader.grading.report import GradedSubmission
 from grader.grading.rubric import Rubric
 
 _COLUMNS = "id, key, result, digest, urdf, robot, statuses, source, files, is_gone, marks"

@@ -36,14 +36,19 @@ class Remarks(NamedTuple):
     @property
     def notes(self) -> list[str]:
         """The sentences that a report has on the whole submission."""
-        if self.whole is None:
-            return []
         mark = self.whole
+        if mark is None:
+            return []
         by, comment = _by(mark.by), f" {mark.comment}" if mark.comment else ""
         if mark.points is not None:
             head = f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria."
             return [head + comment]
         return [f"Excused{by}.{comment}" if mark.entry.kind == "excused" else f"Comment{by}:{comment}"]
+
+    @property
+    def graded(self) -> list[str]:
+        """Who graded, as a sentence; empty if nothing is graded yet."""
+        return [f"Graded {self.graders.words}."] if self.graders.is_automatic or self.graders.is_manual else []
 
     @property
     def comments(self) -> list[tuple[str, str]]:

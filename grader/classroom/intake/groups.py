@@ -1,6 +1,6 @@
 """Group submissions: which students on the roster the submission of a team counts for."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import Submissions
@@ -48,7 +48,7 @@ class CanvasGroups:
         """Return whether a file has the name of neither a student's own nor a group, although the student has none."""
         entry = self._entries[owner]
         own = set(canvas_names(entry.student.name))
-        return bool(own) and not entry.team and all(canvas_name(name) not in own for name, _ in student.readings)
+        return bool(own) and not entry.group and all(canvas_name(name) not in own for name, _ in student.readings)
 
     def _read(self, name: str, number: str, position: int | None) -> GroupClaim | None:
         """Return the claim of a name and a user id; None if no group has that name."""
@@ -121,11 +121,23 @@ def share(
     return shared
 
 
-def doubt_line(key: str, claim: GroupClaim, roster: Roster) -> str:
-    """Return what a claim with a doubt means for whom."""
-    others = [roster.entries[member].student.key for member in claim.members if member != claim.owner]
-    only = (
-        f"counts for {roster.entries[claim.owner].student.key} only" if claim.owner is not None else "left unassigned"
-    )
-    keep = f"; {enumerated(others, _MAX_NAMED)} {'keeps' if len(others) == 1 else 'keep'} an earlier submission"
-    return f"{key} {claim.doubt}: {only}{keep if others else ''}"
+def add_doubts(
+    doubts: Iterable[tuple[str, GroupClaim]],
+    claimants: Mapping[tuple[int, ...], list[int]],
+    roster: Roster,
+    contested: set[int],
+    notes: list[str],
+) -> None:
+    """Add the members of doubtful claims to `contested`, and what each of these claims means for whom to `notes`.
+
+    Members of a group with a clear claim keep that: a student who is called like a group cannot take its submission away.
+    """
+    clear = {member for members in claimants for member in members}
+    for key, claim in doubts:
+        members = [member for member in claim.members if member not in clear]
+        contested.update(members)
+        others = [roster.entries[member].student.key for member in members if member != claim.owner]
+        owner = roster.entries[claim.owner].student.key if claim.owner is not None else ""
+        only = f"counts for {owner} only" if owner else "left unassigned"
+        keep = f"; {enumerated(others, _MAX_NAMED)} {'keeps' if len(others) == 1 else 'keep'} an earlier submission"
+        notes.append(f"{key} {claim.doubt}: {only}{keep if others else ''}")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.intake.groups import CanvasGroups, doubt_line, share
+from grader.classroom.intake.groups import CanvasGroups, GroupClaim, add_doubts, share
 from grader.classroom.intake.layouts.layout import Submissions, path_key
 from grader.classroom.intake.names import is_course_folder
 from grader.classroom.intake.roster import Roster
@@ -169,6 +169,7 @@ class _Matches(NamedTuple):
 def _match(submissions: Submissions, roster: Roster) -> _Matches:
     matches = _Matches({}, [], set(), set(), [], {})
     groups = CanvasGroups(roster)
+    doubts: list[tuple[str, GroupClaim]] = []
     otherwise: list[str] = []
     claims: dict[int, list[tuple[Clue, int]]] = {}  # by owner, the submissions that may be theirs
     for index in range(0 if submissions.is_anonymous else len(submissions)):
@@ -176,8 +177,7 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
         match = roster.match(student)
         claim = groups.claim(student, match.position)
         if claim is not None and claim.doubt:
-            matches.notes.append(doubt_line(student.key, claim, roster))
-            matches.contested.update(claim.members)
+            doubts.append((student.key, claim))
         if claim is not None and claim.owner is None:
             if not claim.doubt:
                 matches.claimants.setdefault(claim.members, []).append(index)
@@ -190,6 +190,7 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
             matches.contested.update(match.several)
         else:
             matches.unmatched.append(index)
+    add_doubts(doubts, matches.claimants, roster, matches.contested, matches.notes)
     if otherwise:
         matches.notes.append(
             f"{enumerated(otherwise, _MAX_NAMED)}: not named like the student with this id on the roster; if this is a group"

@@ -17,7 +17,7 @@ from grader.classroom.intake.roster import Roster
 from grader.errors import InputError
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
-from grader.text import printable_path, shell_quoted
+from grader.text import counted, printable_path, shell_quoted
 
 LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
     "folders": FolderSubmissions,
@@ -27,6 +27,7 @@ LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
     "nbgrader": nbgrader.find_submissions,
 }
 _MAX_NAMES = 1_000  # in one folder
+_MAX_CHECKED = 20  # entries of a class folder
 _MAX_WRAPPERS = 3  # folders around a download
 
 
@@ -108,6 +109,20 @@ def find_download(path: Path, rubric_id: str) -> Download | None:
     return Download(layout, students) if is_class else None
 
 
+def _refuse_downloads(folder: ClassFolder, path: Path) -> None:
+    """Raise InputError if a small class folder contains a whole class: it must not count as the submission of one student."""
+    names = folder.children.folders + [name for name in folder.children.files if name.lower().endswith(".zip")]
+    for name in sorted(names) if len(names) <= _MAX_CHECKED else ():
+        inner = path / name
+        is_known = folder.roster is not None and folder.roster.knows(name.removesuffix(ending_of(name)))
+        found = find_download(inner, folder.rubric_id) if not is_known else None
+        if found is not None:
+            raise InputError(
+                f"{printable_path(inner)} is a download of a whole class ({counted(found.students, 'student')}), and not the"
+                f" submission of one student: grade it with `grader batch {shell_quoted(inner)}` (if it is one, add --layout folders)"
+            )
+
+
 def read_class(
     path: Path,
     roster: Roster | None = None,
@@ -144,6 +159,8 @@ def read_class(
         raise InputError(
             f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shell_quoted(path)}`)"
         )
+    if layout == "auto" and chosen == "folders" and isinstance(listing, FolderListing):
+        _refuse_downloads(folder, path)
     submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
     ignored = folder.ignored.lines()
     if not len(submissions):

@@ -8,7 +8,7 @@ Brightspace, "Importing grades" (community.d2l.com, article 3538): `OrgDefinedId
 grade item, `Lab 6 Points Grade <Numeric MaxPoints:100>`; the last column `End-of-Line Indicator` has `#` in each row, and an export
 has `#` before ids. Points above the maximum are cut to it, unless the item can exceed it.
 
-Neither says what an empty cell does, and both change nothing for a student without a row. So rows without a grade are removed.
+Neither says what an empty cell does, and a file may contain some students only. So rows without a grade are removed.
 """
 
 import re

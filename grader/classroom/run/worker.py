@@ -27,8 +27,9 @@ from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
+from grader.grading.graded_submission import GradedSubmission
 from grader.grading.record import Template, to_record
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.robot.normal_form import robot_hash
 from grader.submission.submission import Submission

@@ -241,3 +241,23 @@ def test_contradictions_are_reported(
     assert intake.notes == (note,)
     assert {student.key for student in intake.contested} | set(given) >= {"Ash", "Birch"}
     assert "Birch" not in {student.key for student in intake.absent}
+
+
+def test_a_student_who_is_called_like_a_group_takes_nothing_away(tmp_path: Path) -> None:
+    """The group's own submission counts for its members; the student has only their own."""
+    files = ("reds_104_1_lab6.zip", "reds_102_2_lab6.zip")
+    intake = read_class(lay_out(tmp_path, *files), in_groups("Reds", "Reds", "", ""))
+    assert assigned(intake) == {"Ash": files[1:], "Birch": files[1:], "Dogwood": files[:1]}
+    assert (intake.absent, intake.contested) == ((CEDAR,), ())
+    assert intake.notes[-1] == (
+        "reds_104 is named like the group 'Reds', but 104 is Dogwood, who has no group on the roster: counts for Dogwood only"
+    )
+
+
+def test_a_gradebook_of_canvas_has_sections_only(tmp_path: Path) -> None:
+    """A section is no group: the note still asks for the groups."""
+    roster = Roster([RosterEntry(ASH, "ROB-1"), RosterEntry(BIRCH, "ROB-1")])
+    intake = read_class(lay_out(tmp_path, "teama_101_1_lab6.zip"), roster)
+    assert assigned(intake) == {"Ash": ("teama_101_1_lab6.zip",)}
+    assert len(intake.notes) == 1
+    assert "add a column `group`" in intake.notes[0]

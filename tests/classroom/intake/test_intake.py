@@ -1,6 +1,7 @@
 """Reading a class in any layout: refused input, ignored files, a zip, a roster, and a very large class."""
 
 import os
+import re
 import sys
 import tempfile
 import tracemalloc
@@ -275,12 +276,30 @@ def test_a_download_in_a_wrapper_folder(
         ("ash/ashann_101_1_lab6.zip",),  # a student's own folder
         ("ash/submitted/old/work/a.urdf",),
         ("ash/lab6.zip", "ash/lab5.zip"),
-        ("ash/ashann_101_1_lab6.zip", "ash/birchbea_102_2_lab6.zip", "birch.zip"),
+        ("ash/ashann_101_1_lab6.zip", "ash/birchbea_102_2_answers.pdf", "birch.zip"),
     ],
 )
 def test_a_students_folder_is_no_wrapper(tmp_path: Path, files: tuple[str, ...]) -> None:
     """A course folder with the folder of one student, or with several entries, is the class."""
     assert "ash" in assigned(read_class(lay_out(tmp_path, *files)))
+
+
+def test_a_download_among_other_entries_is_no_submission(tmp_path: Path) -> None:
+    """It is refused with the command that grades it, unpacked or not, unless it has the name of a student."""
+    lay_out(tmp_path, *(f"submissions/{name}" for name in CANVAS), "reports/index.csv")
+    command = f"`grader batch {tmp_path}/"
+    with pytest.raises(
+        InputError, match=re.escape(f"(2 students), and not the submission of one student: grade it with {command}")
+    ):
+        read_class(tmp_path)
+    assert len(read_class(tmp_path, Roster([RosterEntry(Student("submissions"))]))) == 2
+    assert len(read_class(tmp_path, layout="folders")) == 2
+    sections = tmp_path / "sections"
+    sections.mkdir()
+    pack(sections / "a.zip", CANVAS)
+    pack(sections / "b.zip", MOODLE)
+    with pytest.raises(InputError, match=r"/sections/a\.zip is a download of a whole class"):
+        read_class(sections)
 
 
 def test_a_folder_of_a_student_on_the_roster_is_no_wrapper(tmp_path: Path) -> None:

@@ -222,6 +222,9 @@ def test_moodle_gives_each_student_the_report(kind: str, book: Path, tmp_path: P
         text = report.decode()
         assert set(re.findall(r"(?:blurred|agreed) for s\d+", text)) == {one.remark}
         assert ("Final mark: " in text) == (one.final is not None)
+        assert (
+            f"Note: Graded {'manually by Kim' if one.final is not None else 'automatically, and manually by '}" in text
+        )
         assert ("Excused by Kim" in text) == one.is_excused
         assert (" late, from the roster" in text) == (bool(one.days_late) and not one.is_missing)
         assert "Because of the roots" not in text  # the model answer
