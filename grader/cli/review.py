@@ -66,7 +66,7 @@ def review(
 
     scope = ReviewScope(criterion, by, section, mine, second, anonymous)
     if html:
-        from grader.usecases.review_page import review_in_browser
+        from grader.usecases.review_server import review_in_browser
 
         if pictures is not None:
             raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
-from grader.classroom.review.session import ReviewSession, item_pictures
+from grader.classroom.review.pictures import item_pictures
+from grader.classroom.review.session import ReviewSession
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.report.review import who

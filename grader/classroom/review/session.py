@@ -1,7 +1,6 @@
 """A review: one person grades the items that need manual grading. Each mark is saved immediately."""
 
 from decimal import Decimal
-from itertools import starmap
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -26,17 +25,12 @@ from grader.classroom.gradebook.marks import (
     criterion_of,
     restore_mark,
 )
-from grader.classroom.gradebook.student_grade import SubmissionSources
-from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
 _NOT_GRADED = "this criterion is no longer graded for this student"
-_HIDDEN = "not shown here: the review without --anonymous says why"
-_CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
 
 
 class _Given(NamedTuple):
@@ -216,19 +210,3 @@ def student_numbers(book: Gradebook) -> dict[str, int]:
     """Return a number for each student with a submission, in an order that says nothing about names."""
     keys = [str(key) for (key,) in book.rows("SELECT key FROM grade WHERE result IS NOT NULL")]
     return {key: number for number, key in enumerate(sorted(keys, key=lambda key: sha256_of(key.encode())), 1)}
-
-
-def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
-    """Return the pictures of an item, and files that are not shown. The submission is opened again and must be unchanged."""
-    if not may_have_pictures(item.result):
-        return ()
-    submission = SubmissionSources(item.grade.files, rubric).submission
-    found = (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
-    return found if item.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
-
-
-def _anonymous(number: int, found: Picture | NotShown) -> Picture | NotShown:
-    """Return a picture without the name of its file, which students choose."""
-    if isinstance(found, Picture):
-        return found._replace(where=f"picture {number}")
-    return NotShown(f"picture {number}", _CHANGED if found.reason == _CHANGED else _HIDDEN)
