@@ -71,8 +71,8 @@ def message_text(item: QueuedResult) -> str:
 
 
 def marked_text(item: QueuedResult) -> str:
-    """Return the mark that counts, and whether it gives all points, none or a part; empty without one."""
-    if item.result.manual_mark is None or item.mark is None:
+    """Return the mark or comment that counts, and whether a mark gives a part of the points; empty without one."""
+    if item.mark is None or (item.result.manual_mark is None and item.result.comment is None):
         return ""
     is_partial = status_of(item.result) == "partial"
     return f"{mark_text(item.mark)}{' (partial points)' if is_partial else ''}"

@@ -216,6 +216,17 @@ def test_earlier_comments_have_numbers(top: Path) -> None:
     assert comments == ["the roots are missing", "the roots are missing", "#1 again", "#1 again"]
 
 
+def test_a_comment_without_points_is_shown(top: Path) -> None:
+    """An item with a comment still needs points; the page has the comment in its field, so that it is not lost."""
+    command = ("mark", "u7701", "essay", "--comment", "read again", "--by", "Kim", "--gradebook", top / "book.db")
+    assert grader(*command).returncode == 0
+    done = review(top, "q\n", "--criterion", "essay")
+    assert re.search(r"\nMarked: comment by Kim at \S+: read again\n", done.stdout)
+    assert "1 of 3" in done.stdout
+    with running(top / "book.db", "essay") as served:
+        assert '"comment": "read again"' in served.get("1").text.replace('":"', '": "')
+
+
 @pytest.fixture
 def viewer(tmp_path: Path) -> Iterator[dict[str, str]]:
     """Yield the variables of a system whose viewer writes down what it opens; it fails for the second file."""

@@ -30,7 +30,7 @@ def item_page(
 ) -> str:
     """Return the page of an item. The addresses of its pictures are NUMBER/picture/1 and so on."""
     criterion, outcome = item.result.criterion, item.result.outcome
-    given = item.result.manual_mark
+    given, comment = item.result.manual_mark, item.result.comment
     answer = outcome.measured if isinstance(outcome.measured, str) else ""
     values = {
         "title": f"{place.number} of {place.total}: {who(item)}, {criterion.title}",
@@ -56,7 +56,7 @@ def item_page(
     data = {
         "shown": item.newest,
         "points": format_points(given.points) if given is not None else "",
-        "comment": given.comment if given is not None else "",
+        "comment": given.comment if given is not None else comment.text if comment is not None else "",
         "comments": [*comments],
     }
     return _page("review.html", values, data)
