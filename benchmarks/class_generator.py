@@ -15,6 +15,7 @@ import re
 import struct
 import tarfile
 import tomllib
+import unicodedata
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -756,8 +757,10 @@ def moodle_id(who: Person) -> int:
 
 
 def canvas_name(who: Person) -> str:
-    """Return the sortable name as Canvas writes it into file names: lower-case letters and digits only."""
-    return re.sub(r"\W", "", re.sub(r"_(\d+)_", r"\1", f"{who.last}, {who.first}")).lower()
+    """Return the sortable name as Canvas writes it into file names: lower-case letters with their accents, and digits only."""
+    name = re.sub(r"_(\d+)_", r"\1", f"{who.last}, {who.first}")
+    kept = (letter for letter in name if letter.isalnum() or letter == "_" or unicodedata.category(letter)[0] == "M")
+    return "".join(kept).lower()
 
 
 def moodle_name(who: Person) -> str:

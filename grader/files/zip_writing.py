@@ -1,6 +1,8 @@
-"""Write a zip whose bytes depend on the files in it only."""
+"""Write archives whose bytes depend on the files in them only."""
 
+import gzip
 import io
+import tarfile
 import zipfile
 from collections.abc import Collection, Mapping
 
@@ -21,3 +23,14 @@ def zip_of(files: Mapping[str, bytes], executables: Collection[str] = ()) -> byt
             entry.external_attr = (0o100755 if path in executables else 0o100644) << 16
             archive.writestr(entry, data)
     return buffer.getvalue()
+
+
+def tar_gz_of(files: Mapping[str, bytes]) -> bytes:
+    """Return a tar.gz of files by their paths, as reproducible as a zip from `zip_of`."""
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w", format=tarfile.USTAR_FORMAT) as archive:
+        for path, data in sorted(files.items()):
+            entry = tarfile.TarInfo(path)
+            entry.size = len(data)
+            archive.addfile(entry, io.BytesIO(data))
+    return gzip.compress(buffer.getvalue(), compresslevel=0, mtime=0)

@@ -223,5 +223,6 @@ class Validation:
         for where, owner, name, rows in declared:
             actual = sum((row["points"] for row in rows if not row.get("bonus")), Decimal(0))
             if owner.get("points", actual) != actual:
-                message = f"{name} declares {owner['points']} points, but its criteria add up to {actual}"
+                without = " without extra credit" if any(row.get("bonus") for row in rows) else ""
+                message = f"{name} declares {owner['points']} points, but its criteria add up to {actual}{without}"
                 self._complain((*where, "points"), message)

@@ -9,13 +9,13 @@ from pathlib import Path, PurePosixPath
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.lms.feedback_names import ZIP, canvas_name, moodle_folder
+from grader.classroom.lms.feedback_names import ARCHIVES, canvas_name, moodle_folder
 from grader.classroom.lms.filling import FillOptions, Preflight, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
-from grader.files.zip_writing import zip_of
+from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.report.formats import Format, render
 from grader.text import counted, first_lines, printable
 from grader.usecases import Warn
@@ -134,7 +134,15 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
             report = members[0][1]
-            named[name] = zip_of({feedback.name: report}) if name.lower().endswith(ZIP) else report
+            named[name] = _packed(name, {feedback.name: report})
         else:
             feedback.without.update((student.key, why) for student in students)
     return named
+
+
+def _packed(name: str, report: dict[str, bytes]) -> bytes:
+    """Return a report as the kind of file that its name promises: an archive, or the report itself."""
+    if not name.lower().endswith(ARCHIVES):
+        (data,) = report.values()
+        return data
+    return zip_of(report) if name.lower().endswith(".zip") else tar_gz_of(report)

@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tarfile
 from decimal import Decimal
 from pathlib import Path
 from zipfile import ZipFile
@@ -72,11 +73,16 @@ def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str,
 
 @pytest.mark.slow
 def test_each_graded_student_gets_a_report(folder: Path, followed: tuple[str, list[Step]]) -> None:
-    """The zip for Canvas has a file for each student with a submission that Canvas can take, with the grader's name."""
+    """The zip for Canvas has a file for each student with a submission that Canvas can take, under a name that fits."""
     del followed
     with ZipFile(folder / "feedback.zip") as feedback:
         names = feedback.namelist()
         texts = [feedback.read(name) for name in names if name.endswith(".urdf")]
+        packed = [name for name in names if name.endswith(".tar.gz")]
+        assert packed
+        for name in packed:
+            with feedback.open(name) as file, tarfile.open(fileobj=file) as archive:
+                assert archive.getnames() == ["lab6-feedback.md"]
     numbers = [re.search(r"_(\d+)_\d+_", name) for name in names]
     assert len({number[1] for number in numbers if number}) == len(names) > 100
     assert any(b"Kim" in text for text in texts)

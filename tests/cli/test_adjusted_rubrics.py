@@ -238,7 +238,10 @@ def test_rubric_commands(tmp_path: Path) -> None:
     assert "box (2.5 bonus points, part robot of small)" in grader("explain", "box", "--rubric", lab).stdout
     assert DROPPED in grader("explain", "picture", "--rubric", lab).stdout
     wrong = rubric(tmp_path, text.replace("points = 8.5", "points = 11"))
-    assert "the rubric declares 11 points, but its criteria add up to 8.5" in grader("rubric", "check", wrong).stderr
+    assert (
+        "the rubric declares 11 points, but its criteria add up to 8.5 without extra credit"
+        in grader("rubric", "check", wrong).stderr
+    )
 
 
 def test_the_reference_needs_no_extra_credit(tmp_path: Path) -> None:

@@ -6,8 +6,8 @@ same name replaces an earlier one.
 
 Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the words of a name are between
 underscores; LATE does not count; the first two numbers are the user and an attachment of the newest submission, or after `anon` the
-next two words. The file is shown under the attachment's name, so that a report must be a file of the same kind: a zip with
-the report in it for a zip. In a group that is graded together, each member gets the comment (generate_comments_from_files).
+next two words. The file is shown under the attachment's name, so that a report must be a file of the same kind: an archive
+with the report in it for an archive. In a group that is graded together, each member gets the comment (generate_comments_from_files).
 """
 
 import re
@@ -22,7 +22,7 @@ _PLAIN = re.compile(
     r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL
 )  # can be read in one way
 _TEXT = frozenset({".txt", ".urdf", ".xacro", ".xml", ".py", ".yaml", ".yml", ".rst"})
-ZIP = ".zip"
+ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
 def moodle_folder(student: Student, participant: str) -> str:
@@ -67,6 +67,8 @@ def _is_certain(name: str, users: Collection[str]) -> bool:
 def _rank(name: str, ending: str) -> int | None:
     """Return how well a report with an ending can be opened under a name, 0 for best; None if it cannot."""
     own = PurePosixPath(name).suffix.lower()
-    if own in (ending, ZIP):
-        return int(own == ZIP)
+    if own == ending:
+        return 0
+    if name.lower().endswith(ARCHIVES):
+        return 1
     return 2 if ending == ".md" and own in _TEXT else None

@@ -49,6 +49,7 @@ def test_whose_file_canvas_takes_it_for(name: str, target: tuple[str, str] | Non
         (["a_101_2001_lab6.zip", "a_101_2002_answers.md"], ANYBODY, ".md", "a_101_2002_answers.md"),
         (["a_101_2001_lab6.urdf", "a_101_2002_lab6.zip"], ANYBODY, ".md", "a_101_2002_lab6.zip"),
         (["a_101_2001_lab6.urdf", "a_101_2002_photo.png"], ANYBODY, ".md", "a_101_2001_lab6.urdf"),
+        (["a_101_2001_lab6.tar.gz", "a_101_2002_photo.png"], ANYBODY, ".md", "a_101_2001_lab6.tar.gz"),
         (["a_101_2001_LAB6.ZIP"], ANYBODY, ".html", "a_101_2001_LAB6.ZIP"),
         (["mallory_77_101_2001_lab6.zip"], USER_101, ".md", ""),  # Canvas would read 77
         (["mallory_77_101_2001_lab6.zip"], ANYBODY, ".md", ""),
