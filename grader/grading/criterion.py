@@ -25,7 +25,7 @@ class Adjustment(NamedTuple):
     @property
     def message(self) -> str:
         """What is adjusted, and why."""
-        return f"{'Points given to everybody' if self.action == 'full' else 'Not counted'}: {self.reason}"
+        return f"{'Points given to all students' if self.action == 'full' else 'Not counted'}: {self.reason}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -229,7 +229,7 @@ RUBRIC = KeyTable(
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
         "adjust": described(
             _table({"type": "object", "additionalProperties": ADJUSTMENT.schema}),
-            "Corrections after grading: for each criterion that is dropped or given to everybody a table.",
+            "Corrections after grading: a table for each criterion that is dropped, or whose points all students get.",
         ),
         "test": described(_table(TEST.schema), "Settings for `grader rubric test`."),
     },

@@ -180,7 +180,7 @@ def test_statistics(top: Path) -> None:
     assert rows["essay"]["adjustment"] == {"action": "full", "reason": "odd handout"}
     assert (rows["essay"]["share"], rows["picture"]["share"]) == (None, None)
     shown = grader("stats", "--gradebook", top / "book.db").stdout
-    assert "essay: Points given to everybody: odd handout." in shown
+    assert "essay: Points given to all students: odd handout." in shown
     assert "picture: Not counted: odd handout." in shown
     assert "box (bonus)" in shown
     assert "box: 'base' shows" not in shown  # extra credit that was not earned is no common mistake

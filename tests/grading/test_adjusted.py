@@ -74,7 +74,7 @@ def test_errors_are_carried_from_an_adjusted_criterion() -> None:
     assert [report.score, report.max_score, report.has_failures] == [1, 1, False]
     report = report_on(ask("one", fails_), full(carried_from("two", ["one"], fails_)))
     assert [result.carried for result in report.results] == ["", ""]
-    assert report.results[1].why_given == "Points given to everybody: why"
+    assert report.results[1].why_given == "Points given to all students: why"
 
 
 @pytest.mark.parametrize(("check", "score"), [(passes_, 3), (fails_, 1), (pends, 1)])
