@@ -1,6 +1,6 @@
 """Find the student whom a person types: by id, login, address, number, full name, or some words of a name.
 
-Never one of several: a manual mark must not go to the wrong student.
+It never chooses between several students: a manual mark must not go to the wrong one.
 """
 
 import re
@@ -25,7 +25,7 @@ _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": 
 def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     """Return the only student whom a typed name may mean.
 
-    Raises InputError with those who fit if these are several, else with similar names, else with `advice`, which ends the sentence.
+    Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
     people = People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
     found = [students[index] for index in _named(people, name)]

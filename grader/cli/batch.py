@@ -76,7 +76,7 @@ def batch(
 
       Late submissions: [late] in the rubric, --due, and columns due and extension in the roster.
 
-      Submissions without a student: add their login, email address or LMS number to the roster, and rerun with --roster.
+      Unmatched submissions: add the student's login, email address or LMS number to the roster, and rerun with --roster.
 
       A student without a submission, or with a wrong result: grader mark.
 

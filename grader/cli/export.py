@@ -12,10 +12,10 @@ from grader.usecases.writing import write_stdout
 Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder."
-_STRICT = "Write nothing if a row or a grade is unmatched."
+_STRICT = "Write nothing if a row or a student is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
-_ONLY = "Leave out the columns of other assignments."
+_ONLY = "Omit the columns of other assignments."
 _EXCEL = "Write CSV that Excel opens with a double click."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
@@ -40,10 +40,10 @@ def export(
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
-    A grade is the sum of automatic points and manual marks, minus the late penalty, or the final mark. For Canvas, Moodle,
-    Blackboard and Brightspace, give the file that the LMS exported: only the cells of the grade (and Moodle's feedback) change. Rows
-    without a grade are omitted, so that the import overwrites no other grade. The maximum in the file must be the rubric's. Exits 1
-    if --strict finds an unmatched row.
+    A grade is the final mark, else the sum of automatic points and manual marks minus the late penalty. For Canvas, Moodle,
+    Blackboard and Brightspace, give the file that the LMS exported with --into. Only the grade cells (and Moodle's feedback)
+    change. Rows without a grade are omitted, so that the import overwrites no other grade. The maximum in the file must be the
+    rubric's. Exits 1 if --strict finds an unmatched row or student.
 
     With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
 
@@ -63,11 +63,12 @@ def export(
 
       Publish in Canvas: --into and --only, then import the file. Upload the zip of --comments with "Upload Submissions".
 
-      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple feedback files".
+      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple feedback
+      files".
 
       A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
 
-      Grades that still need manual grading are left out: grade them with `grader review`, or pass --pending-as-zero.
+      Grades that still need manual grading are omitted: grade them with `grader review`, or pass --pending-as-zero.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.export import ExportRequest

@@ -35,18 +35,20 @@ def _group() -> None:
 @gradebook.command("merge")
 def merge(
     first: Annotated[Path, typer.Argument(metavar="A", help="The gradebook that gets the marks.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="The gradebook with more marks; it does not change.")],
+    second: Annotated[
+        Path, typer.Argument(metavar="B", help="The gradebook whose marks are added; it does not change.")
+    ],
     keep: Annotated[
         Keep | None, typer.Option("--keep", help="Whose marks count in every conflict: those of A or B.")
     ] = None,
 ) -> int:
     """Add the manual marks of gradebook B to gradebook A.
 
-    Use it if two people have graded in copies of one gradebook. Marks that only B has are added. If both have marked the same
-    criterion of a student differently since the copy, it is a conflict: the command lists both marks and asks. All marks are kept
-    in A; the chosen one counts. Students are matched by their key, else by their ids.
+    Use it if two people have graded in copies of one gradebook. Marks that only B has are added. It is a conflict if both
+    gradebooks have new, different marks of the same criterion and student. The command then lists both marks and asks which one
+    counts; A keeps both. Students are matched by their key, else by their ids.
 
-    Exit codes: 0 everything is merged; 1 a conflict is left, or a student of B is not in A; 2 wrong usage.
+    Exit codes: 0 everything is merged; 1 a conflict is not decided, or a student of B is not in A; 2 wrong usage.
 
     Examples:
 

@@ -21,7 +21,7 @@ def mark(
         str | None, typer.Argument(metavar="[POINTS]", help="The points, or - to withdraw a mark.")
     ] = None,
     comment: Annotated[
-        str, typer.Option(metavar="TEXT", help="For the student; #2 repeats the second comment of --comments.")
+        str, typer.Option(metavar="TEXT", help="For the student; #2 repeats comment 2 of --comments.")
     ] = "",
     excused: Annotated[bool, typer.Option("--excused", help="With total: the student needs no grade.")] = False,
     undo: Annotated[bool, typer.Option("--undo", help="Restore the mark before the newest one.")] = False,
@@ -33,9 +33,8 @@ def mark(
 ) -> str:
     """Give a manual mark for a criterion or the whole submission.
 
-    Use it for criteria that need manual grading, or to override a check. `total` is the final mark of a student, also without a
-    submission. A comment without POINTS changes no points. Later runs keep the mark. A later mark replaces it; the gradebook
-    keeps both.
+    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, also without a submission.
+    A comment without POINTS changes no points. Later runs keep the mark. A later mark replaces it; the gradebook keeps both.
 
     Examples:
 

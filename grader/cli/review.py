@@ -17,11 +17,13 @@ def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
     section: Annotated[str, typer.Option(metavar="NAME", help="Only this section of the roster.")] = "",
-    mine: Annotated[bool, typer.Option("--mine", help="Only students whose marker in the roster is --by.")] = False,
+    mine: Annotated[
+        bool, typer.Option("--mine", help="Only students whose marker in the roster is the name of --by.")
+    ] = False,
     second: Annotated[
         bool, typer.Option("--second", help="Give second opinions, which change no grade; needs --by.")
     ] = False,
-    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, keys and paths of students.")] = False,
+    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, keys or paths of students.")] = False,
     by: ByOption = "",
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
@@ -41,7 +43,7 @@ def review(
     the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next review continues with
     the rest.
 
-    With --second, you do not see the marks of others, and yours change no grade: `grader stats` shows the agreement.
+    With --second, you see no marks of others, and your marks change no grade. `grader stats` shows the agreement.
 
     With --html, you review on a page in the browser that shows the pictures. The command prints the address of the page, which works
     on this machine only. Ctrl-C ends the review.

@@ -24,8 +24,8 @@ def stats(
     a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
     rest of the grade. An edit is shown with the number of students who need it: it was tried on one of their robots.
 
-    With --by section, only the sections are shown side by side: students, grades, lateness, and the criteria that differ most. The
-    roster gives each student a section and a marker. JSON has both.
+    With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions, and the
+    criteria that differ most. JSON has both.
 
     Examples:
 
@@ -43,7 +43,7 @@ def stats(
 
       A criterion that is wrong: "Regrade after a rubric fix" in docs/grade-a-class.md.
 
-      The next lecture: the edits that would fix the most.
+      Prepare the next lecture: see the edits that would fix the most.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.class_summary import class_statistics

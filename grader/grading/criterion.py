@@ -17,7 +17,10 @@ class Carried(NamedTuple):
 
 
 class Adjustment(NamedTuple):
-    """A correction of a criterion after grading: it does not count ("drop"), or every graded submission gets its points ("full")."""
+    """A correction of a criterion after grading.
+
+    With the action "drop" it does not count. With "full", every graded submission gets its points.
+    """
 
     action: str
     reason: str

@@ -52,7 +52,7 @@ class Result(NamedTuple):
     """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
 
     `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given. Criteria that
-    one edit makes pass have the same hint. `comment` is that of a person who has given no points.
+    one edit makes pass have the same hint. `comment` is a grader's comment without points.
     """
 
     criterion: Criterion
@@ -66,7 +66,10 @@ class Result(NamedTuple):
 
     @property
     def points(self) -> Decimal:
-        """The points earned: all, also where an error is carried forward or the rubric gives them, or none, or a manual mark's."""
+        """The points earned: those of the manual mark, else all or none.
+
+        All points are earned if the check passed, an error is carried forward, or an adjustment gives them.
+        """
         if self.manual_mark is not None:
             return self.manual_mark.points
         is_given = self.outcome.status == "passed" or self.carried or self.criterion.is_given
@@ -83,7 +86,7 @@ class Result(NamedTuple):
 
     @property
     def is_adjusted(self) -> bool:
-        """Return whether the rubric decides the points for everybody: the outcome and manual marks do not count."""
+        """Return whether the rubric adjusts the criterion: the outcome and manual marks do not count."""
         return self.criterion.adjustment is not None
 
     @property

@@ -23,8 +23,8 @@ _KEYS_OF_CRITERION: Mapping[str, _Values] = {
 class RubricChange(NamedTuple):
     """A key with another value: of a criterion, or of the rubric itself where `criterion` is empty.
 
-    The key `criterion` means that a criterion was added or removed, and any other that is no key of criteria is an argument of the
-    check. A value that is not there is None.
+    The key `criterion` means that a criterion was added or removed. A key that criteria do not have is an argument of the check.
+    A missing value is None.
     """
 
     criterion: str
@@ -45,7 +45,10 @@ def rubric_changes(before: Rubric, after: Rubric) -> Mapping[str, tuple[RubricCh
 def concerning(
     names: Iterable[str], changes: Mapping[str, tuple[RubricChange, ...]], *rubrics: Rubric
 ) -> Iterator[RubricChange]:
-    """Yield the changes that concern some criteria: their own, else those of the criteria that they depend on, else the rubric's."""
+    """Yield the changes that concern some criteria.
+
+    These are their own changes, else those of the criteria that they depend on, else those of the rubric itself.
+    """
     needs: dict[str, set[str]] = {}
     for row in (row for rubric in rubrics for row in rubric.criteria):
         needs.setdefault(row.id, set()).update(row.requires, row.carried.causes if row.carried is not None else ())

@@ -20,7 +20,10 @@ _OF_ROBOT = (".urdf", ".xacro")
 
 
 class Trial:
-    """The reference of a rubric, and what its criteria say of changed copies. Manual checks and adjusted criteria do not count."""
+    """The reference of a rubric, and the results of its criteria for changed copies.
+
+    Manual checks and adjusted criteria do not count.
+    """
 
     def __init__(self, report: Report, reference: Submission) -> None:
         self.rubric, self.reference = report.rubric, reference

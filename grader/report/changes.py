@@ -22,7 +22,10 @@ Steps = tuple[PointsChange, ...]
 
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
-    """Print the two runs, whose grade changed, by how much, in which criteria, and why: students with the same reason together."""
+    """Print the two runs, and whose grade changed, by how much, in which criteria, and why.
+
+    Students with the same reason are listed together.
+    """
     before, after = (f"run {run.id} of {run.started}" for run in runs)
     wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
@@ -42,7 +45,7 @@ def _reason(change: Change) -> tuple[str, ...]:
 
 
 def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple[K, list[Change]]]:
-    """Return the changes with the same key together, the largest group first, else in the order of the first students."""
+    """Return the changes grouped by key, the largest group first; groups of one size are in the order of their first students."""
     found: dict[K, list[Change]] = {}
     for change in changes:
         found.setdefault(key(change), []).append(change)
@@ -50,7 +53,7 @@ def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple
 
 
 def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
-    """Print students with the same changes: of one first the name, of several first the changes."""
+    """Print students with the same changes: for one student the name first, for several the changes first."""
     lines = [Text(printable(line)) for line in _lines(steps)]
     students = [Text(printable(f"{_who(change)}: {_total(change)}"), style="bold") for change in changes]
     first, then = (students, lines) if len(changes) == 1 or not steps else (lines, students)

@@ -1,8 +1,8 @@
 """A report as Classroom 50's result.json, schema classroom50/result/v1. Its scores are whole numbers.
 
 If points are fractions, all are multiplied by 10, 100 and so on, so that none is rounded. Classroom 50 refuses scores above their
-maximum (schemas/result-v1.schema.json, validate_result of its runner.py), so the score with extra credit ends there: the test of a bonus shows
-its points, and is not part of the maximum.
+maximum (schemas/result-v1.schema.json, validate_result of its runner.py). So the score is at most the maximum, even with extra
+credit. The test of a bonus shows its points, and is not part of the maximum.
 https://github.com/foundation50/classroom50
 """
 

@@ -24,9 +24,9 @@ _MAX_NAMED = 2
 class Details(NamedTuple):
     """The sentences of a report on a criterion, besides its id and points.
 
-    `comment` is that of a person who has given no points. `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
-    with its answers. `location` is where to look and `expected` what should be, if the criterion failed; `hints` are changes that
-    make it pass, in printable sentences.
+    `comment` is a grader's comment without points. `answer` is the student's answer to a question, line by line, and
+    `model_answer` the instructor's, if the rubric was loaded with its answers. `location` is where to look and `expected` what
+    should be, if the criterion failed; `hints` are changes that make it pass, in printable sentences.
     """
 
     sentences: tuple[str, ...]
@@ -104,9 +104,9 @@ def _lines(text: object) -> tuple[str, ...]:
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion: `adjusted` if the rubric decides its points, `partial` if a manual mark gives a part of them.
+    """Return the status of a criterion: `adjusted` if the rubric adjusts it, else that of the manual mark or of the check.
 
-    A manual mark passes if it gives all points.
+    A manual mark is `passed` if it gives all points, and `partial` if it gives a part of them.
     """
     if result.is_adjusted:
         return "adjusted"

@@ -1,8 +1,8 @@
 """A report as Gradescope's results.json: a test for each criterion, with the points that it earns.
 
-What needs manual grading has no points here, because Gradescope would show them as lost; give them in Gradescope. Extra credit has
-points, but no maximum (`max_score` is optional): the maxima add up to the autograder points of the assignment, and the score, which
-is given as a whole, may exceed them.
+What needs manual grading has no points here, because Gradescope would show them as lost; give them in Gradescope. Extra credit
+has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the assignment; the score,
+which is given as a whole, may exceed them.
 https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 """
 

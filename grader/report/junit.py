@@ -1,7 +1,7 @@
 """A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
 
-A failure is the student's, an error the grader's; what needs manual grading and extra credit that was not earned are skipped. There are no times: the same submission
-gives the same report.
+A failure is the student's, an error the grader's. What needs manual grading and extra credit that was not earned are skipped.
+There are no times: the same submission gives the same report.
 """
 
 from itertools import groupby

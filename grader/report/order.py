@@ -24,11 +24,11 @@ class Failure(NamedTuple):
 
 
 class Order(NamedTuple):
-    """All criteria of a report, each once, but those that are skipped and have a comment twice.
+    """All criteria of a report, each once, except that skipped criteria with a comment are in two groups.
 
-    `failures` has the costliest first, those whose error is carried forward last. `skipped` are those whose cause is no failure, because
-    a manual mark overrides it, or it is adjusted. `marked` have all their points by a manual mark. `commented` are the others with a
-    person's comment.
+    `failures` has the costliest first, and those whose error is carried forward last. `skipped` are those whose cause is not a
+    failure: a manual mark overrides it, or it is adjusted. `marked` have all their points by a manual mark. `commented` are the
+    others with a grader's comment.
     """
 
     failures: tuple[Failure, ...]
@@ -41,7 +41,7 @@ class Order(NamedTuple):
 
     @property
     def remarks(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
-        """The criteria of which a person or the rubric says something that is no failure, each group with its heading."""
+        """The criteria with a mark, an adjustment or a comment that are not failures, each group with its heading."""
         found = (("Marked manually", self.marked), ("Adjusted", self.adjusted), ("Comments", self.commented))
         return tuple((title, results) for title, results in found if results)
 
@@ -92,7 +92,7 @@ def is_failure(result: Result) -> bool:
 
 
 def has_passed(result: Result) -> bool:
-    """Return whether a check passed, and nobody has said more."""
+    """Return whether a check passed, without a mark, a comment or an adjustment."""
     is_silent = result.manual_mark is None and result.comment is None and not result.is_adjusted
     return is_silent and result.outcome.status == "passed"
 

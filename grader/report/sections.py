@@ -9,12 +9,14 @@ from grader.report.class_words import percent
 from grader.report.console import wrapped
 from grader.text import format_points, printable
 
-_NOTE = "Means and medians are over decided points, without late penalties. Late penalties are subtracted when grades are exported."
+_NOTE = (
+    "Means and medians are over decided points, without late penalties, which are subtracted when grades are exported."
+)
 
 
 def render_sections(comparison: Comparison, console: Console) -> None:
     """Print a row for each section, and the criteria that differ most with the share of each section."""
-    table = _table(comparison.by, "students", "graded", "mean", "median", "late", "lost by lateness")
+    table = _table(comparison.by, "students", "graded", "mean", "median", "late", "late penalty")
     for section in comparison.sections:
         table.add_row(
             _name(section, comparison),
@@ -33,9 +35,7 @@ def render_sections(comparison: Comparison, console: Console) -> None:
 
 def _print_criteria(comparison: Comparison, console: Console) -> None:
     console.print()
-    wrapped(
-        console, Text("The criteria that differ most: the mean share of the points that was earned", style="bold"), 0
-    )
+    wrapped(console, Text("Criteria that differ most: mean share of the points earned", style="bold"), 0)
     for position in comparison.differing:
         criterion = comparison.criteria[position]
         shares = ((_name(section, comparison), section.shares[position]) for section in comparison.sections)

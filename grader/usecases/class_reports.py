@@ -32,7 +32,7 @@ _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
-    """Raise InputError for a folder that reports or pictures cannot be written to, or that the next run would read as a submission."""
+    """Raise InputError if reports or pictures cannot be written to a folder, or the next run would read it as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
@@ -137,10 +137,10 @@ def _write_some(
 
 
 def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
-    """Return the report on a student's newest submission; final mark, excuse, comment and late penalty are notes of their own.
+    """Return the report on a student's newest submission, with a note for a final mark, an excuse, a comment and a late penalty.
 
-    Of a student who has submitted nothing, it has no points, and the notes. A note says who graded if a person did, and in
-    `feedback` always: other reports are the same as those of `grader grade`.
+    Without a submission, the report has the notes, but no points. A note says who graded if a person did, and always in
+    `feedback`. Without notes, the report is the same as that of `grader grade`.
     """
     report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason

@@ -29,7 +29,7 @@ def warn_of_due(due: str | None, rubric: "Rubric", warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and rubric.late is None:
         warn(
-            f"--due has no effect on grades: the rubric {rubric.id} has no [late]. The days late are shown nevertheless"
+            f"--due has no effect on grades, because the rubric {rubric.id} has no [late]: only the days late are shown"
         )
 
 

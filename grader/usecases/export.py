@@ -24,7 +24,7 @@ from grader.usecases.lms_files import FILLERS, fill_lms_file, preflight_lines
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
-# The targets that take an option which not all take.
+# The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FILLERS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
 _TARGETS["--only"] = tuple(name for name in FILLERS if name != "moodle")  # whose worksheet has one assignment
 
@@ -71,7 +71,7 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
             warn_of_due(request.due, grades.newest_rubric(), warn)
         data = _data(request, grades, warn)
         if data is None:
-            warn("nothing was written, because of --strict: some rows or grades are unmatched")
+            warn("nothing was written, because of --strict: some rows or students are unmatched")
             return b"", ExitCode.FAILED
         if request.feedback is not None:
             save_bytes(request.feedback, _feedback(request, grades, deadline, progress, warn), classes)

@@ -48,16 +48,16 @@ def feedback_zip(
     progress: ProgressDisplay,
     warn: Warn,
 ) -> bytes:
-    """Return the zip for Moodle or Canvas; standard error lists who gets no report. Raises InputError if nobody does.
+    """Return the zip for Moodle or Canvas; standard error lists who gets none. Raises InputError if no student gets a report.
 
-    `worksheet` is Moodle's, if it is given: its participants get the reports.
+    `worksheet` is Moodle's, or None; its participants get the reports.
     """
     search_class_hints(grades.book, HintOptions(), progress, warn, reports=True, statistics=False)
     feedback = _feedback(grades, kind, due, progress)
     files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, worksheet)
     if not files:
         why = next(iter(feedback.without.values()), "no student has a result or a final mark")
-        raise InputError(f"no report can be given to a student in {lms.title()}: {why}")
+        raise InputError(f"no student would get a report in {lms.title()}: {why}")
     for line in first_lines([f"no feedback for {key}: {why}" for key, why in feedback.without.items()], _MAX_LISTED):
         warn(printable(line))
     given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
@@ -98,7 +98,7 @@ def _for_moodle(feedback: Feedback, worksheet: tuple[bytes, FillOptions] | None)
     why = "the gradebook has no participant number: pass the grading worksheet with --into"
     if worksheet is not None:
         numbers = _participants([grade for grade, _ in feedback.reports], *worksheet)
-        why = "has no row in the worksheet, or an ambiguous one"
+        why = "matches no row of the worksheet, or several"
     counts, files = Counter(numbers.values()), dict[str, bytes]()
     for grade, report in feedback.reports:
         number = numbers.get(grade.student.key, "")
@@ -106,7 +106,7 @@ def _for_moodle(feedback: Feedback, worksheet: tuple[bytes, FillOptions] | None)
             files[f"{moodle_folder(grade.student, number)}/{feedback.name}"] = report
         else:
             feedback.without[grade.student.key] = (
-                f"another student has participant number {number} too" if number else why
+                f"another student has the same participant number, {number}" if number else why
             )
     return files
 

@@ -11,12 +11,12 @@ from grader.grading.criterion import Criterion
 _STUDENT_COLUMNS = (
     "id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points",
 )  # fmt: skip
-# Behind the criteria, so that the columns before them keep their places.
+# After the criteria, so that the columns before them keep their positions.
 _MORE_COLUMNS = ("carried", "section", "marker", "submitted", "final_mark", "excused", "comments", "graded_by")
 
 
 def grades_csv(grades: Grades) -> str:
-    """Return a row for each student: the grade, the late penalty, the points of each criterion that is decided, and who graded."""
+    """Return a row for each student: the grade, the late penalty, the points of each decided criterion, and who graded."""
     criteria = grades.criteria
     header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in criteria)]
     return write_table([*header, *_MORE_COLUMNS], (_row(grades, grade, criteria) for grade in grades.all()))
@@ -35,7 +35,7 @@ def _row(grades: Grades, grade: StudentGrade, criteria: Sequence[Criterion]) -> 
 
 
 def _more(grades: Grades, grade: StudentGrade) -> list[CellValue]:
-    """Return the cells behind the criteria."""
+    """Return the cells after the criteria."""
     remarks = remarks_of(grades, grade)
     comments = "; ".join(f"{name}: {' '.join(comment.split())}" for name, comment in remarks.comments)
     graders = remarks.graders

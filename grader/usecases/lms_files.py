@@ -42,7 +42,7 @@ def fill_lms_file(lms: str, file: Path, grades: Grades, options: FillOptions, *,
 def lms_grades(grades: Grades, *, feedback: bool, excuses: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
     """Yield each student's grade for an LMS. One that is not final has no total, unless pending points count as zero.
 
-    `excuses` says whether the LMS knows excuses.
+    `excuses` says whether the LMS supports excuses.
     """
     for grade in grades.all():
         reason, is_on_roster = grade.why_not_final, grade.is_on_roster is not False
@@ -70,7 +70,7 @@ def _feedback(grades: Grades, grade: StudentGrade) -> str:
 
 
 def _whole(remarks: Remarks) -> Iterator[FeedbackItem]:
-    """Yield what a person says of the whole submission: that the mark is final, and the comment."""
+    """Yield the final mark or the comment on the whole submission."""
     if remarks.whole is not None and remarks.whole.points is not None:
         yield FeedbackItem(
             "Final mark", None, Decimal(0), f"given instead of the sum of the criteria. {remarks.whole.comment}"

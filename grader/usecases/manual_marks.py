@@ -59,7 +59,7 @@ class MarkRequest(NamedTuple):
             (self.excused and not self.is_total, f"--excused is for the whole submission: use `{TOTAL}` as CRITERION"),
             (self.second and self.is_total, "--second is for one criterion, not for the whole submission"),
             (self.second and not has_points, "--second needs POINTS"),
-            (self.second and not self.by, "--second needs --by: agreement is between two named graders"),
+            (self.second and not self.by, "--second needs --by, your name"),
             (not (has_entry or self.undo or self.comments), "give POINTS, --comment, --excused or --undo"),
         )
         for is_broken, message in rules:
@@ -126,7 +126,9 @@ def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
 
 def _refuse_own_opinion(first: Mark | None, request: MarkRequest) -> None:
     if first is not None and first.points is not None and first.by == request.by:
-        raise InputError(f"the mark of {request.criterion} is by {request.by}: a second opinion is of somebody else")
+        raise InputError(
+            f"the mark of {request.criterion} is by {request.by}: a second opinion must be given by another person"
+        )
 
 
 def _report_replaced(before: Mark | None, criterion: Criterion | None, request: MarkRequest, warn: Warn) -> None:

@@ -29,7 +29,7 @@ def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
 
 
 def _may_be_class(path: str) -> bool:
-    """Return whether a path is a zip, or a folder with names as an LMS gives them: a glance that costs nothing."""
+    """Return whether a path is a zip, or a folder with names as an LMS gives them. Reads only names, so that it is fast."""
     try:
         names = os.listdir(path) if os.path.isdir(path) else []  # noqa: PTH112, PTH208
         for _ in range(_MAX_WRAPPERS):

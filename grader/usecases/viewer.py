@@ -12,7 +12,7 @@ _SECONDS = 2.0  # after which a viewer that is still running counts as opened
 
 
 class Viewer:
-    """Opens pictures and pages. A failure is one line, and then nothing is opened any more."""
+    """Opens pictures and pages. After a failure, which is reported in one line, it opens nothing more."""
 
     def __init__(self, warn: Warn) -> None:
         self._warn, self._works = warn, True
@@ -23,7 +23,7 @@ class Viewer:
         for target in targets:
             if self._works and (problem := self._problem(target)):
                 self._works = False
-                self._warn(f"nothing is opened: {problem}; open it yourself: {target}")
+                self._warn(f"cannot open the viewer: {problem}; open it yourself: {target}")
 
     def _problem(self, target: str) -> str:
         """Open a target; return why that failed, or an empty string."""
@@ -43,7 +43,7 @@ class Viewer:
             return f"{command}: {error.strerror}"
         with suppress(subprocess.TimeoutExpired):
             code = viewer.wait(_SECONDS)
-            return f"{command} has failed with exit code {code}" if code else ""
+            return f"{command} failed with exit code {code}" if code else ""
         self._running.append(viewer)
         return ""
 
@@ -54,7 +54,7 @@ def _start_file(target: str) -> str:
 
     start = getattr(os, "startfile", None)
     if start is None:
-        return f"the platform {sys.platform} has no viewer that is known"
+        return f"no viewer is known for the platform {sys.platform}"
     try:
         start(target)
     except OSError as error:

@@ -255,7 +255,7 @@ def test_strict_writes_nothing(top: Path) -> None:
     assert "in the file, but not in the gradebook: row 4, Zoe, X: no student of the gradebook" in strict.stderr
     assert "in the gradebook, but not in the file: Ben Oh: has a grade, but no row in the file" in strict.stderr
     assert strict.stderr.endswith(
-        "grader: nothing was written, because of --strict: some rows or grades are unmatched\n"
+        "grader: nothing was written, because of --strict: some rows or students are unmatched\n"
     )
     assert export(top, *arguments).returncode == 0
     assert (top / "out.csv").read_text().endswith("anna,S1,10.50\n")
@@ -361,7 +361,7 @@ def test_another_maximum_is_refused(top: Path) -> None:
     assert not (top / "out.csv").exists()
     done = export(top, *arguments, "--any-maximum")
     assert done.returncode == 0
-    assert "has 100 points possible in Canvas, and 11 here" in done.stderr
+    assert "has 100 points possible in Canvas, but the rubric has 11" in done.stderr
     assert (top / "out.csv").read_text().endswith("ben,S1,6.00\n")
 
 

@@ -134,7 +134,7 @@ def test_extra_credit_is_not_part_of_the_maximum_in_the_lms(tmp_path: Path) -> N
     )
     done = export(tmp_path, "brightspace", "--into", tmp_path / "d2l.csv")
     assert done.stdout.endswith("#anna,13.00,#\n")
-    assert "row 2, anna: 13 points: Brightspace cuts it to the maximum" in done.stderr
+    assert "row 2, anna: 13 points: Brightspace reduces them to the maximum" in done.stderr
     head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
     (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,11.00,-,\n")
     done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv")
@@ -207,7 +207,7 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
     assert "Because of the roots" not in anna  # the model answer
     assert "Note: Final mark: 0 points, given by Lee instead of the sum of the criteria. never came" in dora
     assert "Not graded, because nothing was submitted: loads, box, tall, essay and picture (11 points)." in dora
-    assert "no feedback for emil: has no row in the worksheet, or an ambiguous one" in done.stderr
+    assert "no feedback for emil: matches no row of the worksheet, or several" in done.stderr
     assert "reports of grades that are not final yet: 1\n" in done.stderr  # of anna
     assert "2 files for 2 students" in done.stderr
 
@@ -244,10 +244,10 @@ def test_strict_writes_no_feedback(top: Path) -> None:
             ("moodle", "--feedback", "{top}/roster.csv", "--into", "{top}/roster.csv", "--output", "{top}/o.csv"),
             "cannot write {top}/roster.csv: it is also the file of --into or --output",
         ),
-        (("canvas", "--comments", "{top}/f.zip"), "no report can be given to a student in Canvas: "),
+        (("canvas", "--comments", "{top}/f.zip"), "no student would get a report in Canvas: "),
         (
             ("moodle", "--feedback", "{top}/f.zip"),
-            "no report can be given to a student in Moodle: the gradebook has no ",
+            "no student would get a report in Moodle: the gradebook has no ",
         ),
     ],
 )

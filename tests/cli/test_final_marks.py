@@ -122,7 +122,7 @@ def test_a_second_opinion_changes_no_grade(top: Path) -> None:
     assert mark(top, "anna", "essay", "2", "--second", "--by", "Lee").stderr == ""
     assert total(top, "anna") == before
     own = refusal(mark(top, "anna", "essay", "2", "--second", "--by", "Kim"))
-    assert own == "the mark of essay is by Kim: a second opinion is of somebody else"
+    assert own == "the mark of essay is by Kim: a second opinion must be given by another person"
     assert mark(top, "anna", "essay", "--undo").stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"
 
 
@@ -151,7 +151,7 @@ def test_comments_are_numbered(top: Path) -> None:
         (("essay", "1", "--undo"), "--undo takes no POINTS and no other option but --by"),
         (("essay", "--undo", "--comment", "x"), "--undo takes no POINTS and no other option but --by"),
         (("total", "--undo", "--excused"), "--undo takes no POINTS and no other option but --by"),
-        (("essay", "1", "--second"), "--second needs --by: agreement is between two named graders"),
+        (("essay", "1", "--second"), "--second needs --by, your name"),
         (("essay", "--second", "--by", "Lee"), "--second needs POINTS"),
         (("total", "1", "--second", "--by", "Lee"), "--second is for one criterion, not for the whole submission"),
         (("total", "--excused", "--second", "--by", "Lee"), "--second cannot be used with --excused"),

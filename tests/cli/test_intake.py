@@ -15,7 +15,7 @@ from tests.classroom.gradebooks import grader, lab_text, urdf
 
 LATE = "percent_per_day = 10\n"
 NO_EFFECT = (
-    "grader: --due has no effect on grades: the rubric small has no [late]. The days late are shown nevertheless"
+    "grader: --due has no effect on grades, because the rubric small has no [late]: only the days late are shown"
 )
 STATUS = "Submitted for grading"
 

@@ -245,7 +245,7 @@ def test_pictures_are_opened_in_a_viewer(top: Path, viewer: dict[str, str]) -> N
     assert [path.rpartition("/")[2] for path in opened] == ["u7701.2.png", "u7702.1.gif"]
     assert not any(Path(path).exists() for path in opened)
     (line,) = done.stderr.splitlines()
-    assert line.startswith("grader: nothing is opened: xdg-open has failed with exit code 1; open it yourself: /")
+    assert line.startswith("grader: cannot open the viewer: xdg-open failed with exit code 1; open it yourself: /")
     assert done.stdout.endswith("3 marked, 3 left\n")
 
 
@@ -256,7 +256,9 @@ def test_pictures_of_a_folder_are_opened(top: Path, viewer: dict[str, str]) -> N
     assert (top / "out" / "picture" / "u7701.2.png").read_bytes() == PNG
     done = review(top, "s\n" * 6, "--open", PATH=str(top))
     assert (done.returncode, len(done.stderr.splitlines())) == (0, 1)
-    assert done.stderr.startswith("grader: nothing is opened: xdg-open: No such file or directory; open it yourself: /")
+    assert done.stderr.startswith(
+        "grader: cannot open the viewer: xdg-open: No such file or directory; open it yourself: /"
+    )
 
 
 def test_the_page_is_opened(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -276,7 +278,7 @@ def test_the_page_is_opened(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done = review(top, "", "--html", "--open")
     address = done.stdout.splitlines()[0]
     assert (done.returncode, opened) == (0, [address])
-    assert done.stderr.splitlines()[1] == f"grader: nothing is opened: no display; open it yourself: {address}"
+    assert done.stderr.splitlines()[1] == f"grader: cannot open the viewer: no display; open it yourself: {address}"
     assert refusal(review(top, "", "--port", "8000")) == "--port needs --html"
 
 

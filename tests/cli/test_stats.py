@@ -157,13 +157,13 @@ def test_sections_side_by_side(tmp_path: Path) -> None:
     lines = stats(tmp_path / "book.db", "--by", "section").splitlines()
     assert lines[:5] == [
         "Grades on decided points, out of 11",
-        "section       students  graded  mean  median  late  lost by lateness",
-        "(no section)         1       1   0.0     0.0     0                 0",
-        "A                    2       2   9.5     9.5     1               2.2",
-        "B                    2       1   6.0     6.0     0                 0",
+        "section       students  graded  mean  median  late  late penalty",
+        "(no section)         1       1   0.0     0.0     0             0",
+        "A                    2       2   9.5     9.5     1           2.2",
+        "B                    2       1   6.0     6.0     0             0",
     ]
     assert lines[8:] == [
-        "The criteria that differ most: the mean share of the points that was earned",
+        "Criteria that differ most: mean share of the points earned",
         "  essay (4): (no section) 0%, A 100%, B 0%",
         "  picture (1): A 100%, B 0%",
         "  box (2.5): (no section) 0%, A 50%, B 100%",

@@ -31,7 +31,10 @@ History = tuple[StoredMark, ...]
 
 @dataclass(frozen=True, slots=True)
 class MergeItem:
-    """A criterion of a student, or the whole submission, with its entries in both gradebooks. `student` is the id in the first one."""
+    """A criterion of a student, or the whole submission, with its entries in both gradebooks.
+
+    `student` is the id in the first gradebook.
+    """
 
     student: int
     key: str
@@ -108,7 +111,7 @@ def is_newest(entry: StoredMark, history: History) -> bool:
 def _matched(students: dict[int, Student], others: dict[int, Student]) -> dict[int, int]:
     """Return the ids of the students in the first gradebook, by those in the second: the same key, else the same ids.
 
-    A student who may be several, or whose LMS number differs, is not in it.
+    A student who matches several, or whose LMS number differs, is not included.
     """
     numbers = list(students)
     people = People(map(clues_of, students.values()))
@@ -139,7 +142,7 @@ def _histories(book: Gradebook) -> "defaultdict[tuple[int, str], History]":
 
 
 def _missing(entries: Iterable[StoredMark], others: Iterable[StoredMark]) -> History:
-    """Return the entries that are not among others; of equal entries those that are more."""
+    """Return the entries that others lack. Equal entries are counted: two are not the same as one."""
     known = Counter(entry.identity for entry in others)
     missing = []
     for entry in entries:
@@ -151,10 +154,10 @@ def _missing(entries: Iterable[StoredMark], others: Iterable[StoredMark]) -> His
 
 
 def _newest(history: Sequence[StoredMark]) -> StoredMark | None:
-    """Return the newest mark; second opinions are none."""
+    """Return the newest mark; second opinions are not marks."""
     return next((entry for entry in reversed(history) if entry.mark.entry.kind != "second"), None)
 
 
 def _state(entry: StoredMark | None) -> Entry | None:
-    """Return what counts: nothing if the mark is withdrawn, for whatever reason."""
+    """Return what counts: None if there is no mark, or it is withdrawn."""
     return None if entry is None or entry.mark.entry.kind == "withdrawn" else entry.mark.entry

@@ -1,4 +1,4 @@
-"""How many submissions are late, and what that costs."""
+"""How many submissions are late, and how many points they lose."""
 
 from decimal import Decimal
 from typing import NamedTuple

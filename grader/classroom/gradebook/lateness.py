@@ -86,7 +86,10 @@ def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime |
 
 
 def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, str]:
-    """Return the days and the reason where an LMS says only that a submission is late: it does not know the roster's extensions."""
+    """Return the days late and the reason if the LMS says only that a submission is late.
+
+    The LMS does not know the extensions in the roster.
+    """
     own = read_time(times.deadline) if times.deadline else None
     if own is not None and of_class is not None:
         own = own.replace(tzinfo=own.tzinfo or of_class.tzinfo)

@@ -27,10 +27,10 @@ class QueuedCriterion(NamedTuple):
 
 
 class ReviewScope(NamedTuple):
-    """What a review shows: one criterion, one section, the students whose marker `by` is. `by` is the name that reports show.
+    """What a review shows: one criterion, one section, or with `mine` the students whose marker is `by`.
 
-    With `second`, a second opinion is given on what others have marked or have to mark, without their marks. With `anonymous`,
-    students have numbers instead of names.
+    `by` is the name that reports show. With `second`, second opinions are given on items that others have marked or that need
+    manual grading; the marks of others are hidden. With `anonymous`, students have numbers instead of names.
     """
 
     criterion: str = ""
@@ -46,7 +46,7 @@ EVERYTHING = ReviewScope()
 
 @dataclass(frozen=True, slots=True)
 class QueuedResult:
-    """A queued criterion in its current state, with its newest mark, which may take an earlier one back.
+    """A queued criterion in its current state, with its newest mark, which may withdraw an earlier one.
 
     With `is_second`, both are those of a second opinion. An anonymous student has a `number`.
     """
@@ -73,7 +73,7 @@ _QUEUED = (
 )
 _MARKED = "EXISTS (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?3"
 _OPEN = f"substr(statuses, ?2, 1) = '?' AND NOT {_MARKED}) AND ?4 = ?4 ORDER BY key"
-# What somebody else has marked or has to mark, and this grader has given no opinion on.
+# Items that another person has marked or that need manual grading, without a second opinion of this grader.
 _OPEN_FOR_SECOND = f"""(substr(statuses, ?2, 1) = '?' OR {_MARKED})) AND NOT {_MARKED} AND grader_name = ?4) AND NOT EXISTS (
     SELECT 1 FROM second_mark WHERE student = grade.id AND criterion = ?3 AND grader_name = ?4 AND points IS NOT NULL
     AND second_mark.digest = grade.digest
@@ -83,8 +83,8 @@ _OPEN_FOR_SECOND = f"""(substr(statuses, ?2, 1) = '?' OR {_MARKED})) AND NOT {_M
 def manual_grading_queue(grades: Grades, scope: ReviewScope = EVERYTHING) -> list[QueuedCriterion]:
     """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
 
-    Unreadable submissions are not in it: they need a fix, not points. Students with a final mark or an excuse need no other marks.
-    Raises InputError for a section or marker that no student has.
+    Unreadable submissions are omitted: they need a fix, not points. So are students with a final mark or an excuse. Raises
+    InputError for a section or marker that no student has.
     """
     rubric, students = grades.newest_rubric(), _students_of(grades.book, scope)
     query = _QUEUED + (_OPEN_FOR_SECOND if scope.second else _OPEN)

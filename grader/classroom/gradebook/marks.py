@@ -1,4 +1,4 @@
-"""Manual marks: what a person says of a criterion or of the whole submission, stored in addition to the automatic points."""
+"""Manual marks of criteria and of whole submissions, stored in addition to the automatic points."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,7 +25,7 @@ Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
 
 class Entry(NamedTuple):
-    """What a person says: points and a comment, a comment alone, that a mark is withdrawn, or that a submission is excused.
+    """An entry of a grader: points and a comment, a comment alone, a withdrawn mark, or an excuse.
 
     A comment alone keeps the points that count. A second opinion has points that never count, or none if it is withdrawn.
     """
@@ -40,7 +40,10 @@ WITHDRAWN_SECOND = Entry("second")
 
 
 class Mark(NamedTuple):
-    """An entry in the gradebook: its id, the name of the grader (empty without `--by`), when it was made, the result it was made for."""
+    """An entry in the gradebook.
+
+    `by` is the name of the grader, empty without `--by`. `at` is the time, and `result` the result that it was given for.
+    """
 
     id: int
     entry: Entry
@@ -102,9 +105,9 @@ def add_mark(
 ) -> AddedMark:
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
-    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none: if there is a
-    newer one, nothing is written and NewerMarkError holds it. A comment for a mark keeps its points, and the result that they were
-    given for. Raises InputError for a criterion of a student who has submitted nothing.
+    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If there is a
+    newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, and the result that they
+    were given for. Raises InputError for a criterion of a student without a submission.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key
@@ -133,7 +136,10 @@ def restore_mark(
 
 
 def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Mark:
-    """Add an entry that repeats the one before the newest, or withdraws the only one; return the newest. Raises InputError without one."""
+    """Undo the newest mark, and return it: add an entry that repeats the mark before it, or withdraws the only one.
+
+    Raises InputError if there is no mark.
+    """
     marks = marks_of(book, grade.id, criterion, 2)
     if not marks:
         raise InputError(f"there is no mark of {criterion} to undo for {grade.student.key}")
@@ -143,7 +149,7 @@ def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = ""
 
 @contextmanager
 def _writing(book: Gradebook) -> Iterator[None]:
-    """Commit what is written inside, so that it survives a power cut."""
+    """Commit what is written inside, so that it survives a power failure."""
     with book.input_errors():
         book.connection.execute("PRAGMA synchronous = FULL")
     with book.transaction():

@@ -17,10 +17,11 @@ COLUMNS = "statuses, score, out_of, pending, final"
 class Pattern(NamedTuple):
     """A combination of results, and how many students have it.
 
-    `marks` are manual points in ten-thousandths, `earned` those of each criterion, None where it is not decided or adjusted; a
-    criterion without points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the sum over the
-    others. `undecided` are the automatic points that need manual grading, of `automatic`. `decided` are the points of the maximum
-    that need no manual grading any more, `bonus` the extra credit in the score. `final` is a final mark, which replaces the grade.
+    `marks` are manual points in ten-thousandths. `earned` are the points of each criterion, None if it is undecided or
+    adjusted; a criterion without points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the
+    sum over the others. `undecided` are the automatic points that need manual grading, of `automatic`. `decided` are the points
+    of the maximum that are decided. `bonus` is the extra credit in the score. `final` is a final mark, which replaces the
+    grade.
     """
 
     statuses: str

@@ -1,4 +1,4 @@
-"""What persons say of a student's work: a final mark, an excuse, comments; and who graded it, the checks or a person."""
+"""The final mark, excuse and comments of a student, and who graded: the checks or a person."""
 
 from typing import NamedTuple
 
@@ -35,7 +35,7 @@ class Remarks(NamedTuple):
 
     @property
     def notes(self) -> list[str]:
-        """The sentences that a report has on the whole submission."""
+        """The sentences of a report about the whole submission."""
         mark = self.whole
         if mark is None:
             return []
@@ -58,7 +58,7 @@ class Remarks(NamedTuple):
 
 
 def remarks_of(grades: Grades, grade: StudentGrade) -> Remarks:
-    """Return what persons say of a student's work, as far as it counts under the rubric of the result."""
+    """Return the remarks that count under the rubric of the student's result."""
     marks = current_marks(grades.book, grade.id)
     rubric = grades.rubric(grade.rubric) if grade.rubric else None
     rows = [row for row in rubric.criteria if row.adjustment is None] if rubric is not None else []

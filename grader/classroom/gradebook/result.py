@@ -11,7 +11,7 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 STATUS_LETTERS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
-SETTLED = "c"  # did not pass, and costs no points: failed because of an earlier mistake alone, or adjusted
+SETTLED = "c"  # not passed, but no points lost: failed because of an earlier mistake alone, or adjusted
 EARNED = {"p": 1, SETTLED: 1, "f": 0, "s": 0}  # the share of the points, by the letter of a decided criterion
 
 
@@ -46,7 +46,10 @@ def graded_on(rubric: Rubric, statuses: str) -> tuple[str, ...]:
 
 
 def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
-    """Return the points of each criterion: the manual mark, else the automatic points, else None. Marks of adjusted ones do not count."""
+    """Return the points of each criterion: the manual mark, else the automatic points, else None.
+
+    Manual marks of adjusted criteria do not count.
+    """
     automatic = (
         criterion.points * EARNED[status] if status in EARNED else None
         for criterion, status in zip(rubric.criteria, statuses, strict=True)

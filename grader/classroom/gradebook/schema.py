@@ -25,7 +25,7 @@ CREATE TABLE mark (
     id INTEGER PRIMARY KEY,
     student INTEGER NOT NULL REFERENCES student,
     criterion TEXT NOT NULL,       -- `total` for the whole submission: a final mark, an excuse, a comment
-    points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),  -- NULL withdraws a second opinion
+    points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),  -- NULL: second opinion withdrawn
     comment TEXT NOT NULL,
     author TEXT NOT NULL,          -- for the audit
     at TEXT NOT NULL,
@@ -61,8 +61,9 @@ SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WH
 -- The manual marks of criteria.
 CREATE VIEW manual_mark AS SELECT * FROM current_mark WHERE kind = 'points' AND criterion <> 'total';
 
--- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names the
--- criteria whose mark was given for another submission, `revalued` those that had another maximum then, `over` those with too many points.
+-- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names
+-- the criteria whose mark was given for another submission, `revalued` those that had another maximum then, and `over` those
+-- whose mark exceeds the maximum.
 CREATE VIEW override AS
 SELECT student,
     count(*) AS marks,

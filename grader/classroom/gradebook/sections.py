@@ -21,8 +21,9 @@ _MIN_DIFFERENCE = 0.005  # of a share: what is shown as one percent
 class Section(NamedTuple):
     """The students of one section. `name` is empty for those without one.
 
-    `mean` and `median` are of the `graded` students' grades on decided points, without late penalties; None without any. `late_points`
-    is what `late` students lost by that. `shares` are the mean shares of the criteria's points, None where nothing is decided.
+    `mean` and `median` are those of the `graded` students' grades over decided points, without late penalties; None without any.
+    `late_points` are the late penalties of `late` students. `shares` are the mean shares of each criterion's points that were
+    earned, None if nothing is decided.
     """
 
     name: str
@@ -83,7 +84,7 @@ def _section(
 
 
 def _share(criterion: Criterion, patterns: Sequence[Pattern]) -> float | None:
-    """Return the mean share of a criterion's points that was earned, where it is decided."""
+    """Return the mean share of a criterion's points that was earned; None if it is decided for no student."""
     earned = [units for pattern in patterns if (units := pattern.earned[criterion.position]) is not None]
     return fmean(earned) / (units_of(criterion) or 1) if earned else None
 

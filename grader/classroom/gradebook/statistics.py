@@ -69,10 +69,10 @@ class PointTotals(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ClassStatistics:
-    """A class at a glance: the scores of graded submissions without late penalties; `verdicts` counts all students but the `excused`.
+    """The statistics of a class: the scores of graded submissions without late penalties.
 
-    `final` students have a final mark, which replaces the score; only `final_graded` of them have a graded submission, so that they
-    are in the statistics.
+    `verdicts` counts all students but the `excused`. `final` students have a final mark, which replaces the score; only those
+    with a graded submission, `final_graded`, are in the statistics.
 
     `mean` and the figures below it are over decided points: the grade of a student is the share that was earned of the points that
     are decided, times the maximum of a submission, `out_of`. Students most of whose automatic points are undecided, `undecided`,

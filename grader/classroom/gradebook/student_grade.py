@@ -31,7 +31,7 @@ class Reason(StrEnum):
     OUTDATED = "graded with an earlier version of the rubric"
     OVER = "a manual mark exceeds the maximum of its criterion"
     NOT_ON_ROSTER = "not on the roster"
-    OLDER_FINAL = "the final mark or excuse is from before the newest submission"
+    OLDER_FINAL = "final mark or excuse given before the submission changed"
     OLDER_MARKS = "marked before the submission changed"
     REVALUED_MARKS = "marked before the points of the criterion changed"
     MARKED = "could not be graded, and was marked manually"
@@ -85,11 +85,11 @@ class StudentGrade:
     """One student's current grade. Without a submission `verdict` is `missing`, and there are no points.
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed. `older_marks`
-    are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then, `over_marks`
-    those whose mark exceeds the current maximum. `is_gone` means
-    that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
-    the parts have that a submission is graded on. `final` is a final mark for the whole submission, which an excuse has none of;
-    `final_is_older` means that either was given for an earlier submission. `section` and `marker` come from the roster.
+    are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then,
+    and `over_marks` those whose mark exceeds the current maximum. `is_gone` means that the newest run did not find the
+    submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that the parts have that a
+    submission is graded on. `final` is the final mark; None if there is none, or the student is excused. `final_is_older` means
+    that the final mark or excuse was given for an earlier submission. `section` and `marker` come from the roster.
     """
 
     id: int

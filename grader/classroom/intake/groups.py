@@ -45,7 +45,7 @@ class CanvasGroups:
         return claims[0] if claims else None
 
     def is_named_otherwise(self, student: Student, owner: int) -> bool:
-        """Return whether a file has the name of neither a student's own nor a group, although the student has none."""
+        """Return whether a file has another name than its student, who has no group."""
         entry = self._entries[owner]
         own = set(canvas_names(entry.student.name))
         return bool(own) and not entry.group and all(canvas_name(name) not in own for name, _ in student.readings)
@@ -91,26 +91,28 @@ def share(
 ) -> dict[int, list[int]]:
     """Return the members that each group's submission counts for: those without another submission.
 
-    `claimants` are the submissions that are named like each group, by its members; `own` is each student's own submission. Students
-    who are found to have several possible submissions are added to `contested`, and what a person should know to `notes`.
+    `claimants` are the submissions with the name of each group, by its members. `own` is each student's own submission. Students
+    with several possible submissions are added to `contested`, and messages for the user to `notes`.
     """
     shared: dict[int, list[int]] = {}
     for members, named in claimants.items():
         alone = [index for index in named if not any(map(holds_students, submissions.submission(index).paths))]
         keys = {index: submissions.student(index).key for index in named}
         notes.extend(
-            f"{keys[index]} is named like a group, but holds submissions of several students"
+            f"{keys[index]} has the name of a group, but contains submissions of several students"
             for index in named
             if index not in alone
         )
         without = [member for member in members if member not in own and member not in contested]
         if len(alone) > 1:
-            notes.append(f"{', '.join(keys[index] for index in alone)} are each named like one group: left unassigned")
+            notes.append(
+                f"{', '.join(keys[index] for index in alone)} have the name of the same group: left unassigned"
+            )
             contested.update(without)
         elif alone:
             notes.extend(
-                f"{roster.entries[member].student.key} has submitted {submissions.student(own[member]).key}, which counts for them,"
-                f" not {keys[alone[0]]} of their group"
+                f"{roster.entries[member].student.key} has submitted {submissions.student(own[member]).key},"
+                f" which counts instead of the group's {keys[alone[0]]}"
                 for member in members
                 if member in own
             )
@@ -128,9 +130,9 @@ def add_doubts(
     contested: set[int],
     notes: list[str],
 ) -> None:
-    """Add the members of doubtful claims to `contested`, and what each of these claims means for whom to `notes`.
+    """Add the members of doubtful claims to `contested`, and a message for each of these claims to `notes`.
 
-    Members of a group with a clear claim keep that: a student who is called like a group cannot take its submission away.
+    Members of a group with a clear claim keep it: a student with the name of a group cannot take its submission away.
     """
     clear = {member for members in claimants for member in members}
     for key, claim in doubts:

@@ -17,8 +17,8 @@ _MAX_NOTES = 200
 _MAX_NAMED = 10
 # canvas-lms, app/models/abstract_assignment.rb, anonymize_students: names come back when all grades are posted or published.
 _ANONYMOUS = (
-    "this is an anonymous download: its submissions (anon_...) match no student. Canvas gives the names when the grades are posted:"
-    " download again then"
+    "this is an anonymous download: its submissions (anon_...) match no student. Canvas shows the names when the grades are"
+    " posted: download again then"
 )
 
 

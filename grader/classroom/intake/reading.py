@@ -118,8 +118,8 @@ def _refuse_downloads(folder: ClassFolder, path: Path) -> None:
         found = find_download(inner, folder.rubric_id) if not is_known else None
         if found is not None:
             raise InputError(
-                f"{printable_path(inner)} is a download of a whole class ({counted(found.students, 'student')}), and not the"
-                f" submission of one student: grade it with `grader batch {shell_quoted(inner)}` (if it is one, add --layout folders)"
+                f"{printable_path(inner)} is a download of a whole class ({counted(found.students, 'student')}): grade it with"
+                f" `grader batch {shell_quoted(inner)}`; if it is the submission of one student, add --layout folders"
             )
 
 

@@ -14,7 +14,7 @@ class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
     Without a `group`, the `section` may be a team that submits together: only a submission shows which of the two it is. `marker`
-    is the person who grades the student manually. `aliases` are other logins, such as the one at GitHub in addition to the one at the university.
+    is the person who grades the student manually. `aliases` are additional logins, such as the one at GitHub.
     Gradebooks store entries as JSON with these field names.
     """
 

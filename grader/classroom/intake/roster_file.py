@@ -13,7 +13,7 @@ from grader.classroom.intake.roster_values import RowReader
 from grader.classroom.matching import plain_word
 from grader.errors import InputError
 from grader.files.reading import read_capped
-from grader.text import first_lines, printable_path
+from grader.text import counted, first_lines, printable_path
 
 _ALIASES = {
     "id": "id userid key",
@@ -94,7 +94,7 @@ def _by_field(
     """Yield the line of each row, and its first cell of each field that is not empty."""
     for line, cells in rows:
         if len(cells) < len(fields) or any(cells[len(fields) :]):
-            mistakes.append((line, f"has {len(cells)} cells where the first line has {len(fields)}"))
+            mistakes.append((line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"))
             continue
         filled = {field: cell for field, cell in reversed(list(zip(fields, cells, strict=False))) if cell}
         yield line, dict.fromkeys(_ALIASES, "") | filled
@@ -105,7 +105,7 @@ def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
 
 
 def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> Iterator[str]:
-    """Yield the ids and addresses that two students have: the first of each student."""
+    """Yield a message for each student with an id or address that another student has."""
     lines: dict[tuple[str, str], int] = {}
     for line, entry in entries:
         found = ""
@@ -126,8 +126,8 @@ def _notes(reader: RowReader, shown: str) -> Iterator[str]:
         line, status = reader.unread[0]
         count = f" ({len(reader.unread)} lines)" if len(reader.unread) > 1 else ""
         yield (
-            f"line {line} of {shown}: it is not clear from the status {status!r} how late the submission is{count}: add a column"
-            " `late` with no or the number of days"
+            f"line {line} of {shown}: the status {status!r} does not say clearly how late the submission is{count}: add a column"
+            " `late` with `no` or a number of days"
         )
 
 

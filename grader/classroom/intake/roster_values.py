@@ -81,7 +81,7 @@ class RowReader:
     def _submitted(self, line: int, text: str, complain: Complain) -> str:
         time = iso_time(text)
         if text and not time and _DATE.match(text):
-            complain(f"has {text!r} for submitted, which does not exist: write it as 2026-09-01T10:00")
+            complain(f"has the time {text!r} for submitted, which does not exist: write it as 2026-09-01T10:00")
         elif text and not time:
             self.ignored.append((line, text))
         return time
@@ -94,7 +94,7 @@ def _is_of_moodle(row: dict[str, str]) -> bool:
 
 def _canvas(text: str, complain: Complain) -> str:
     if text and not re.fullmatch("[0-9]+", text):
-        complain(f"has {text!r} for the canvas id, which is a number")
+        complain(f"has {text!r} for the canvas id, which must be a number")
         return ""
     return text
 
@@ -102,7 +102,7 @@ def _canvas(text: str, complain: Complain) -> str:
 def _moodle(text: str, complain: Complain) -> str:
     found = _WORD_AND_NUMBER.fullmatch(text)
     if text and not found:
-        complain(f"has {text!r} for the participant id, which is a number (other ids are in a column `id`)")
+        complain(f"has {text!r} for the participant id, which must be a number (put other ids in a column `id`)")
     return found[1] if found else ""
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from grader.classroom.lms.filling import FillOptions
 from grader.errors import InputError
-from grader.text import enumerated
+from grader.text import counted, enumerated
 
 _MAX_LISTED = 20
 
@@ -23,7 +23,7 @@ class GradeColumn:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """By what it can be named besides its header."""
+        """The names that can be given for it, besides its header."""
         return tuple(filter(None, (self.title, self.number)))
 
 
@@ -43,8 +43,8 @@ def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, opt
     others = sum(column != chosen and bool(column.title) for column in columns)
     if others and not options.only:
         yield (
-            f"the file has {others} more assignments: importing it resets them to their values at the time of the export,"
-            " unless you pass --only"
+            f"the file has {counted(others, 'other assignment')}: importing it resets {'its' if others == 1 else 'their'} grades to"
+            " those at the time of the export, unless you pass --only"
         )
 
 
@@ -60,7 +60,10 @@ def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
 
 
 def _detected(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
-    """Return the one assignment whose title is a name of the rubric, else contains or is part of one, else the only assignment."""
+    """Return the only assignment whose title is a name of the rubric, contains or is part of one; else the only assignment.
+
+    Raises InputError if there is none, or several.
+    """
     assignments = [column for column in columns if column.title]
     joined = {"".join(_words(name)) for name in options.rubric_names} - {""}
     same = [column for column in assignments if "".join(_words(column.title)) in joined]

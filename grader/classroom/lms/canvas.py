@@ -2,8 +2,8 @@
 
 How Canvas imports it is in lib/gradebook_importer.rb: it finds the student by ID, SIS User ID, SIS Login ID, then name; a cell that
 differs from the gradebook is a change, an empty one too, and EX is an excuse; the row of points possible sets the assignment's
-points. A column that is not in the file is not changed. So rows without a new grade are removed, and the rest of the file stays as it
-was exported. The columns are detected as Canvas does: it does not translate these headers; a new export may have LastName and
+points. A column that is not in the file does not change. So rows without a new grade are removed, and the rest of the file does
+not change. The columns are detected as Canvas does: it does not translate these headers. A new export may have LastName and
 FirstName instead of Student (lib/gradebook_exporter.rb).
 """
 
@@ -113,7 +113,7 @@ def _warnings(table: Table, columns: _Columns, options: FillOptions) -> Iterator
     if points is None:
         yield "the file has no row Points Possible: the maximum in Canvas is unknown"
     elif read_points(possible := points.value(grade.index)) != options.out_of:
-        yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, and {format_points(options.out_of)} here"
+        yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, but the rubric has {format_points(options.out_of)}"
     if columns.titles.count("Section") > 1 and not options.only:
         yield "the file has more than one column Section: Canvas reads the first one's place"
     yield from assignment_warnings(columns.writable, grade, options)

@@ -27,7 +27,7 @@ _TAG = re.compile(r"<[^>]*+>")
 
 @dataclass(frozen=True, slots=True)
 class FeedbackItem:
-    """One line of a comment: a criterion, or several that share a cause; without points a remark on the whole submission."""
+    """One line of a comment: a criterion, or several that share a cause; without points, a remark on the whole submission."""
 
     title: str
     points: Decimal | None
@@ -74,7 +74,10 @@ def _comment(result: Result) -> str:
 
 
 def _cause(result: Result) -> tuple[str, str] | None:
-    """Return why a criterion is skipped or pending, if others may have the same cause, and neither a person nor the rubric says more."""
+    """Return why a criterion is skipped or pending, if others may have the same cause.
+
+    None with a manual mark, a comment or an adjustment: these criteria are listed on their own.
+    """
     if result.manual_mark is not None or result.comment is not None or result.is_adjusted:
         return None
     if result.because is not None:

@@ -1,13 +1,14 @@
 """The names under which an LMS gives uploaded feedback files to students.
 
-Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): a folder `name_participant_type_plugin`
-says whose files are in it; the name must have no underscore, and files that begin with a dot or `~` are ignored. A file of the
-same name replaces an earlier one.
+Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): a folder named
+`name_participant_type_plugin` contains the files of one student. The name must have no underscore. Files that begin with a dot
+or `~` are ignored. A file of the same name replaces an earlier one.
 
-Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the words of a name are between
-underscores; LATE does not count; the first two numbers are the user and an attachment of the newest submission, or after `anon` the
-next two words. The file is shown under the attachment's name, so that a report must be a file of the same kind: an archive
-with the report in it for an archive. In a group that is graded together, each member gets the comment (generate_comments_from_files).
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): underscores separate the
+words of a file name, and LATE is ignored. The first two numbers, or after `anon` the next two words, are the user and an
+attachment of the newest submission. The file is shown under the attachment's name, so a report must have the same file type:
+for an archive, it is an archive that contains the report. In a group that is graded together, each member gets the comment
+(generate_comments_from_files).
 """
 
 import re
@@ -42,7 +43,7 @@ def canvas_target(name: str) -> tuple[str, str] | None:
 
 
 def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
-    """Return the name under which Canvas gives a report to the students of one submission, or an empty name and why there is none.
+    """Return the name under which Canvas gives a report to the students of a submission; else an empty name and the reason.
 
     `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the report.
     """

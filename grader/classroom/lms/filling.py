@@ -24,9 +24,10 @@ FillExcuse = Callable[[TableRow, str], TableRow | str]
 
 @dataclass(frozen=True, slots=True)
 class FillOptions:
-    """How an LMS file is filled: the rubric's maximum and names, the columns that the user names, the name of the file in messages.
+    """How an LMS file is filled: the rubric's maximum and names, the columns that the user names.
 
-    `any_maximum` allows another maximum in the file; `only` leaves the columns of other assignments out.
+    `any_maximum` allows another maximum in the file. `only` omits the columns of other assignments. `shown` is the name of the
+    file in messages.
     """
 
     out_of: Decimal
@@ -69,10 +70,11 @@ class Conflict(NamedTuple):
 class Preflight:
     """The effects of importing the filled file.
 
-    `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
-    nothing of theirs can change. `excused` are the students whose excuse the file contains. `ungraded` are rows of students without a grade, `unknown` rows that match no student, `missing`
-    students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
-    unassigned. `kept_feedback` are rows with a comment that a person wrote.
+    `filled` rows are changed and `unchanged` ones have the grade already. All other rows are removed from the file, so that the
+    import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows of students
+    without a grade, `unknown` rows that match no student, `missing` students with a grade but without a row, `ambiguous` rows
+    and students with several possible matches, which are left unassigned. `kept_feedback` are rows with a comment that a person
+    wrote.
     """
 
     column: str
@@ -113,7 +115,7 @@ def fill_rows(
     """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
 
     `fill_row` gets a row, the grade, its total and the student's name; it returns the new row, the same row if nothing changes, or the
-    reason why the grade cannot be written. So does `fill_excuse`, for an LMS that knows excuses, of a row and the name.
+    reason why the grade cannot be written. `fill_excuse` does the same for an excuse, in an LMS that supports excuses.
     """
     by_row = {student.row: student for student in students}
     matched = match_rows(list(by_row.values()), grades, preflight)

@@ -1,14 +1,14 @@
 """Fill the grade files of Blackboard Learn and Brightspace (D2L), which differ only in how they name columns and students.
 
-Blackboard, "Work offline with grade data" (help.blackboard.com): the file is tab-separated in UTF-16, or comma-separated; `Username`
-finds the student, and the number behind the last `|` of a header the column. `Lab 6 [Total Pts: 100 Score] |123456`; totals have
-`up to 100`. It may contain comments (`Grading Notes`, `Feedback to Learner`), which stay as they are.
+Blackboard, "Work offline with grade data" (help.blackboard.com): the file is tab-separated in UTF-16, or comma-separated.
+`Username` identifies the student. The number after the last `|` of a header identifies the column, as in
+`Lab 6 [Total Pts: 100 Score] |123456`; totals have `up to 100`. Comments (`Grading Notes`, `Feedback to Learner`) do not change.
 
-Brightspace, "Importing grades" (community.d2l.com, article 3538): `OrgDefinedId` or `Username` finds the student, the header the
-grade item, `Lab 6 Points Grade <Numeric MaxPoints:100>`; the last column `End-of-Line Indicator` has `#` in each row, and an export
-has `#` before ids. Points above the maximum are cut to it, unless the item can exceed it.
+Brightspace, "Importing grades" (community.d2l.com, article 3538): `OrgDefinedId` or `Username` identifies the student, and the
+header the grade item: `Lab 6 Points Grade <Numeric MaxPoints:100>`. The last column `End-of-Line Indicator` has `#` in each row,
+and an export has `#` before ids. Points above the maximum are reduced to it, unless the item can exceed it.
 
-Neither says what an empty cell does, and a file may contain some students only. So rows without a grade are removed.
+Neither documents what an empty cell does, and a file may contain some students only. So rows without a grade are removed.
 """
 
 import re
@@ -36,7 +36,7 @@ from grader.text import enumerated, format_points
 
 @dataclass(frozen=True, slots=True)
 class OfflineFormat:
-    """The columns of a file: those of students by field, the first of which finds them, and the pattern of an assignment's header.
+    """The columns of a file: those that identify students, and the pattern of an assignment's header.
 
     The pattern has the groups `title` and `maximum`, and perhaps `number`. Headers in `kept` are not another assignment's.
     """
@@ -71,17 +71,17 @@ BRIGHTSPACE = OfflineFormat(
     sis="OrgDefinedId",
     email="Email",
     kept=frozenset({"End-of-Line Indicator"}),
-    above='Brightspace cuts it to the maximum, unless "Can Exceed" is ticked for the grade item',
+    above='Brightspace reduces them to the maximum, unless "Can Exceed" is ticked for the grade item',
 )
 _NAMES = ("First Name", "Last Name")
 _PREVIEW_USER = re.compile(r".*_previewuser\d*")  # the instructor's own test student in Blackboard
 
 
 def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, form: OfflineFormat) -> Filled:
-    """Return a file that Blackboard or Brightspace exported with the totals in one assignment's column, and what importing it changes.
+    """Return a file of Blackboard or Brightspace with the totals in the column of an assignment, and what importing it changes.
 
-    With `options.only` it has no other assignment. Raises InputError if the file is of another kind, if the column is ambiguous, and,
-    unless any maximum is allowed, if its maximum is not that of the rubric.
+    With `options.only` it has no other assignment. Raises InputError if the file is of another kind, or the column is ambiguous.
+    Unless any maximum is allowed, its maximum must be that of the rubric.
     """
     table = read_table(data, options.shown)
     titles = table.titles
@@ -135,7 +135,7 @@ def _warnings(
 ) -> Iterator[str]:
     maximum = read_points(grade.maximum)
     if maximum is None:
-        yield f"the file does not say the maximum of {grade.title!r} in {form.lms}"
+        yield f"the file does not state the maximum of {grade.title!r} in {form.lms}"
     elif maximum != options.out_of:
-        yield f"{grade.title!r} has {grade.maximum} points in {form.lms}, and {format_points(options.out_of)} here"
+        yield f"{grade.title!r} has {grade.maximum} points in {form.lms}, but the rubric has {format_points(options.out_of)}"
     yield from assignment_warnings(columns, grade, options)

@@ -62,8 +62,8 @@ def test_a_members_own_submission_takes_precedence(tmp_path: Path) -> None:
     assert intake.unmatched == ("team-blue",)
     assert intake.absent == (DAN,)
     assert intake.notes == (
-        "200 has submitted bbirch, which counts for them, not team-blue of their group",
-        "300 has submitted ccedar, which counts for them, not team-red of their group",
+        "200 has submitted bbirch, which counts instead of the group's team-blue",
+        "300 has submitted ccedar, which counts instead of the group's team-red",
         SHARED.format(1),
     )
 
@@ -72,7 +72,7 @@ def test_two_submissions_of_a_group_are_ambiguous(tmp_path: Path) -> None:
     """It is unknown which is the group's, so its members are contested."""
     intake = read_class(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
     assert assigned(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
-    assert intake.notes == ("Team Red, team_red are each named like one group: left unassigned",)
+    assert intake.notes == ("Team Red, team_red have the name of the same group: left unassigned",)
     assert (intake.contested, intake.absent) == ((CAL, ANN), (BEA, DAN))
 
 
@@ -93,7 +93,7 @@ def test_a_section_is_no_group(tmp_path: Path) -> None:
     path = lay_out(tmp_path, *files)
     intake = read_class(path, roster("Section 1", "Section 2"))
     assert assigned(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
-    assert "Section 1 is named like a group, but holds submissions of several students" in intake.notes
+    assert "Section 1 has the name of a group, but contains submissions of several students" in intake.notes
 
 
 def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
@@ -182,7 +182,7 @@ def test_a_member_who_also_submitted(tmp_path: Path) -> None:
     files = ("ashann_101_554_lab6.zip", "teama_102_555_lab6.zip")
     intake = read_class(lay_out(tmp_path, *files), in_groups("Team A", "Team A", "Team A", ""))
     assert assigned(intake) == {"Ash": files[:1], "Birch": files[1:], "Cedar": files[1:]}
-    assert intake.notes[0] == "Ash has submitted ashann_101, which counts for them, not teama_102 of their group"
+    assert intake.notes[0] == "Ash has submitted ashann_101, which counts instead of the group's teama_102"
 
 
 @pytest.mark.parametrize(

@@ -79,8 +79,8 @@ def test_a_status_that_is_not_understood(tmp_path: Path) -> None:
     assert [(entry.is_late, entry.days_late) for entry in roster.entries] == [(None, None)] * 2
     assert roster.notes == (
         (
-            f"line 2 of {worksheet}: it is not clear from the status 'Przesłane - 1 dzień spóźnienia' how late the submission is"
-            " (2 lines): add a column `late` with no or the number of days"
+            f"line 2 of {worksheet}: the status 'Przesłane - 1 dzień spóźnienia' does not say clearly how late the submission is"
+            " (2 lines): add a column `late` with `no` or a number of days"
         ),
     )
     worksheet.write_text("id,status\nash,enrolled 2 days late\n")

@@ -127,8 +127,8 @@ def test_an_invalid_time_is_noted(tmp_path: Path) -> None:
         ("id,name\n1,Ann\n2,Bea\n1,Cal\n", "has the id 1 twice, in lines 2 and 4"),
         ("id,canvas id\n1,7\n2,7\n", "has the canvas id 7 twice, in lines 2 and 3"),
         ('id,name\n1,"An\nn"\n1,Bea\n', "has the id 1 twice, in lines 2 and 4"),
-        ("id,name\n1\n", "line 2 of .* has 1 cells where the first line has 2"),
-        ("id,name\n1,Ann,extra\n", "line 2 of .* has 3 cells where the first line has 2"),
+        ("id,name\n1\n", "line 2 of .* has 1 cell, but the first line has 2"),
+        ("id,name\n1,Ann,extra\n", "line 2 of .* has 3 cells, but the first line has 2"),
         ("id,name,points\n,,7\n", "line 2 of .* has no id, login, name or email address: add one of them"),
         ("id,name\n1,Ann\n2,'Bea\n3,\"Cal\n", "line 4 of .* cannot be read as CSV"),
         ("id,due\n1,12/7/26\n", "line 2 of .* has the date '12/7/26': write it as"),
@@ -186,15 +186,15 @@ def test_any_bytes_give_a_roster_or_lines(tmp_path_factory: pytest.TempPathFacto
         (
             "id,submitted",
             "1,2026-02-30 10:00",
-            "line 2 of FILE has '2026-02-30 10:00' for submitted, which does not exist",
+            "line 2 of FILE has the time '2026-02-30 10:00' for submitted, which does not exist",
         ),
         (
             "id,due,extension",
             "1,2026-09-01,2026-09-02",
             "line 2 of FILE has both '2026-09-01' for due and '2026-09-02'",
         ),
-        ("id,canvas id", "1,ash", "line 2 of FILE has 'ash' for the canvas id, which is a number"),
-        ("id,participant id", "1,s12345", "line 2 of FILE has 's12345' for the participant id, which is a number"),
+        ("id,canvas id", "1,ash", "line 2 of FILE has 'ash' for the canvas id, which must be a number"),
+        ("id,participant id", "1,s12345", "line 2 of FILE has 's12345' for the participant id, which must be a number"),
         ("id,email", "1,ash", "line 2 of FILE has 'ash' for the email address, which needs an @"),
         ("id,group", "1,-", "line 2 of FILE has '-' for the group: leave the cell empty for a student without a group"),
         ("id,group", "1,\N{ZERO WIDTH SPACE}", "line 2 of FILE has '\\u200b' for the group"),
@@ -223,7 +223,7 @@ def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
         "2 roster.csv has the date ",
         "2 roster.csv has 'maybe' f",
         "2 roster.csv has '-' for t",
-        "3 roster.csv has 1 cells w",
+        "3 roster.csv has 1 cell, b",
         f"{tmp_path}/roster.csv has the id 1"[:26],
     ]
     with pytest.raises(InputError) as caught:

@@ -273,7 +273,7 @@ def test_semicolons_and_decimal_commas() -> None:
 def test_warnings() -> None:
     """Other points, no points, a column by elimination, other assignments and another encoding are reported."""
     filled = fill(gradebook(), out_of="70", any_maximum=True)
-    assert "has 100.00 points possible in Canvas, and 70 here" in filled.preflight.warnings[0]
+    assert "has 100.00 points possible in Canvas, but the rubric has 70" in filled.preflight.warnings[0]
     assert "has no points possible" in fill(gradebook(points="Points Possible,,,,,")).preflight.warnings[0]
     assert "no row Points Possible" in fill(gradebook(points="")).preflight.warnings[0]
     filled = fill(gradebook(header=HEADER.replace("Lab 6", "Quiz")))
@@ -281,7 +281,7 @@ def test_warnings() -> None:
         "'Quiz (98765)' is the only assignment in the file, but its title does not contain 'A wheeled base'",
     ]
     filled = fill(gradebook(header=HEADER + ",Lab 7 (3)", points=POINTS + ",10"))
-    assert "1 more assignments" in filled.preflight.warnings[0]
+    assert "1 other assignment" in filled.preflight.warnings[0]
     filled = fill(gradebook(header=HEADER.replace("Section", "Section,Section"), points="Points Possible,,,,,,100"))
     assert "more than one column Section" in filled.preflight.warnings[0]
     assert "another format" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]

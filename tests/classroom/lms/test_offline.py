@@ -68,7 +68,7 @@ def test_brightspace_cuts_points_above_the_maximum() -> None:
     filled = fill(BRIGHTSPACE, f"{D2L}\n#S11,#ja1,Ash,Jane,,#\n", graded("105", login="ja1"))
     assert "105.00" in filled.data.decode()
     assert filled.preflight.warnings == [
-        'row 2, Ash, Jane: 105 points: Brightspace cuts it to the maximum, unless "Can Exceed" is ticked for the grade item'
+        'row 2, Ash, Jane: 105 points: Brightspace reduces them to the maximum, unless "Can Exceed" is ticked for the grade item'
     ]
 
 
@@ -105,7 +105,7 @@ def test_the_column(column: str) -> None:
     filled = fill(BLACKBOARD, f"{header}\nja1,1,,mine\n", graded(login="ja1"), column=column, any_maximum=True)
     assert filled.data.decode().endswith("\nja1,1,58.50,mine\n")
     assert re.search(
-        "has 5 points in Blackboard, and 100 here.*1 more assignments", " ".join(filled.preflight.warnings)
+        "has 5 points in Blackboard, but the rubric has 100.*1 other assignment", " ".join(filled.preflight.warnings)
     )
     filled = fill(
         BLACKBOARD, f"{header}\nja1,1,,mine\n", graded(login="ja1"), column=column, any_maximum=True, only=True

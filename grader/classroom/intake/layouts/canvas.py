@@ -61,12 +61,12 @@ def is_layout(children: Children) -> bool:
 
 
 def is_class(children: Children, name: str) -> bool:
-    """Return whether this is a download of several users, or of one in a folder that is named like a download."""
+    """Return whether this is a download of several users, or of one user in a folder with the name of a download."""
     return is_layout(children) and ("submissions" in name.casefold() or count_certain(children) > 1)
 
 
 def count_certain(children: Children) -> int:
-    """Return of how many users there are archives, URDFs or folders: other files may be one student's pictures."""
+    """Return how many users have archives, URDFs or folders: other files may be the pictures of one student."""
     names = children.folders + [name for name in children.files if ending_of(name)]
     return len({(file.is_anonymous, file.user) for name in names if (file := _parsed(name))})
 

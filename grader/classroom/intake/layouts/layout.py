@@ -19,7 +19,7 @@ class Submissions:
     """Submissions, sorted by their students' keys. A key that is not printable or not unique is replaced by a path key.
 
     `assignments` is what an LMS calls the assignment; of `contested` students a file was ignored that may be another student's.
-    Where the LMS hides all names, `is_anonymous`, a submission may be anybody's.
+    If the LMS hides all names (`is_anonymous`), a submission may belong to any student.
     """
 
     def __init__(
