@@ -10,7 +10,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.report.schemas import CLASS_SCHEMA
+from grader.report.class_schemas import CLASS_SCHEMA
 from tests.classroom.gradebooks import grader, lab_text, urdf
 
 LATE = "percent_per_day = 10\n"
