@@ -133,7 +133,7 @@ class Report:
 
     @property
     def unearned(self) -> tuple[Result, ...]:
-        """The criteria that did not pass and count, without extra credit and what needs manual grading."""
+        """The criteria that did not pass, except adjusted ones, extra credit and those that need manual grading."""
         counting = (result for result in self.results if not (result.is_adjusted or result.criterion.bonus))
         return tuple(result for result in counting if result.outcome.status not in ("passed", "pending"))
 
@@ -159,7 +159,7 @@ class Report:
 
     @property
     def fault(self) -> str:
-        """The message of the first criterion that counts on which a check or the grader failed; empty if there is none."""
+        """The message of the first failure of a check or the grader, except on adjusted criteria; empty if there is none."""
         errored = (one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted)
         return next((one.outcome.message for one in errored), "")
 

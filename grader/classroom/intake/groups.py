@@ -13,7 +13,7 @@ _MAX_NAMED = 10
 
 
 class GroupClaim(NamedTuple):
-    """The members of the group that a file of Canvas is named like.
+    """The members of the group that a Canvas file is named like.
 
     With a `doubt` the submission counts for `owner`, the student with its number, and for no other member.
     """
@@ -34,7 +34,10 @@ class CanvasGroups:
             self._groups.setdefault(canvas_name(roster.entries[members[0]].team), []).append(tuple(members))
 
     def claim(self, student: Student, position: int | None) -> GroupClaim | None:
-        """Return which group a submission is named like, if any; `position` is whose it is by all other clues."""
+        """Return the claim of the group that a submission is named like; None if there is no such group.
+
+        `position` is the student that all other clues identify.
+        """
         claims = [claim for reading in student.readings if (claim := self._read(*reading, position))]
         numbers = {number for _, number in student.readings}
         if claims and len(numbers) < len(student.readings):  # files of two names, which no download of Canvas has
@@ -76,7 +79,7 @@ class CanvasGroups:
         if len(groups) > 1:
             return GroupClaim(every, "is named like several groups")
         if all(self._entries[member].student.canvas for member in every):
-            return GroupClaim(every, f"is named like the group {shown!r}, but {number} is none of its members")
+            return GroupClaim(every, f"is named like the group {shown!r}, but {number} is not the id of a member")
         return GroupClaim(every)
 
 
@@ -99,15 +102,13 @@ def share(
         alone = [index for index in named if not any(map(holds_students, submissions.submission(index).paths))]
         keys = {index: submissions.student(index).key for index in named}
         notes.extend(
-            f"{keys[index]} has the name of a group, but contains submissions of several students"
+            f"{keys[index]} is named like a group, but contains submissions of several students"
             for index in named
             if index not in alone
         )
         without = [member for member in members if member not in own and member not in contested]
         if len(alone) > 1:
-            notes.append(
-                f"{', '.join(keys[index] for index in alone)} have the name of the same group: left unassigned"
-            )
+            notes.append(f"{', '.join(keys[index] for index in alone)} are named like the same group: left unassigned")
             contested.update(without)
         elif alone:
             notes.extend(

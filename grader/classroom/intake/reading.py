@@ -43,9 +43,10 @@ def _detected(folder: ClassFolder) -> str:
 
 
 def _unwrapped(folder: ClassFolder) -> ClassFolder:
-    """Return the folder that holds the submissions: that of an unpacked download may be within others that hold nothing else.
+    """Return the folder that contains the submissions.
 
-    In a zip it can be any folder that holds everything, unless it is itself a submission.
+    An unpacked download may be in folders that contain nothing else. In a zip, it can be any folder that contains all files,
+    unless it is itself a submission.
     """
     wrappers, inner = list[ClassFolder](), _only_folder(folder)
     while inner is not None and len(wrappers) < _MAX_WRAPPERS and not is_download(inner):
@@ -61,7 +62,7 @@ def _unwrapped(folder: ClassFolder) -> ClassFolder:
 
 
 def _only_folder(folder: ClassFolder) -> ClassFolder | None:
-    """Return the one folder in a folder without other submissions; None if there is none, or if it is a student's."""
+    """Return the only folder in a folder without other submissions; None if there is none, or it is a student's."""
     folders, files, _ = folder.children
     if len(folders) != 1 or folders[0] == "submitted" or any(map(ending_of, files)) or _detected(folder) != "folders":
         return None

@@ -68,7 +68,7 @@ class RowReader:
         )
 
     def _of_status(self, line: int, status: str, due: str, extension: float) -> tuple[bool | None, float | None]:
-        """Return the lateness by Moodle, which knows neither the roster's extension nor the student's own deadline there."""
+        """Return the lateness that Moodle states. Moodle does not know the extension and the deadline in the roster."""
         days = days_late(status)
         if days is None:
             self.unread.append((line, status))

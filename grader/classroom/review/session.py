@@ -148,8 +148,8 @@ class ReviewSession:
     def undo(self) -> Mark | None:
         """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
 
-        A new entry brings the mark before it back, or takes the mark back. Raises NewerMarkError if somebody has marked the item
-        since, and InputError, also if it is no longer graded; IndexError if there is nothing to undo.
+        Adds an entry that restores the mark before it, or withdraws the mark. Raises NewerMarkError if there is a newer mark,
+        InputError, also if the item is no longer graded, and IndexError if there is nothing to undo.
         """
         here = self.position
         own = [index for index, given in enumerate(self._given) if given.position == here]

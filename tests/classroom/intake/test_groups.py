@@ -72,7 +72,7 @@ def test_two_submissions_of_a_group_are_ambiguous(tmp_path: Path) -> None:
     """It is unknown which is the group's, so its members are contested."""
     intake = read_class(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
     assert assigned(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
-    assert intake.notes == ("Team Red, team_red have the name of the same group: left unassigned",)
+    assert intake.notes == ("Team Red, team_red are named like the same group: left unassigned",)
     assert (intake.contested, intake.absent) == ((CAL, ANN), (BEA, DAN))
 
 
@@ -93,7 +93,7 @@ def test_a_section_is_no_group(tmp_path: Path) -> None:
     path = lay_out(tmp_path, *files)
     intake = read_class(path, roster("Section 1", "Section 2"))
     assert assigned(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
-    assert "Section 1 has the name of a group, but contains submissions of several students" in intake.notes
+    assert "Section 1 is named like a group, but contains submissions of several students" in intake.notes
 
 
 def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
@@ -211,7 +211,7 @@ def test_a_member_who_also_submitted(tmp_path: Path) -> None:
             ("Reds", "Reds", "", ""),
             [],
             (
-                "reds_999 is named like the group 'Reds', but 999 is none of its members: left unassigned; Ash and Birch keep"
+                "reds_999 is named like the group 'Reds', but 999 is not the id of a member: left unassigned; Ash and Birch keep"
                 " an earlier submission"
             ),
         ),

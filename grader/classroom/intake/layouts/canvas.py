@@ -4,8 +4,8 @@ canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{fil
 id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is submitted
 again under the same name is saved with `-1`, `-2` after its stem (attachment.rb, make_unique_filename).
 
-Of an assignment that a group is graded on as a whole there is one submission for each group: its name is the group's, its user id
-that of one member (app/models/abstract_assignment.rb, representatives).
+If groups are graded as a whole, there is one submission for each group, with the group's name and the user id of one member
+(app/models/abstract_assignment.rb, representatives).
 """
 
 import re
