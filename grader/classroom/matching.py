@@ -8,6 +8,7 @@ import re
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.classroom.students import Student
@@ -165,6 +166,7 @@ def is_word(letter: str) -> bool:
     return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD_CATEGORIES
 
 
+@lru_cache(maxsize=1024)
 def canvas_name(sortable: str) -> str:
     """Normalise a sortable name as Canvas writes it into file names (canvas-lms, content_zipper.rb)."""
     plain = unicodedata.normalize("NFC", re.sub(r"_(\d+)_", r"\1", sortable))

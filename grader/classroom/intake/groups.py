@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import Submissions
 from grader.classroom.intake.roster import Roster
-from grader.classroom.matching import canvas_name, canvas_names
+from grader.classroom.matching import Clue, canvas_name, canvas_names
 from grader.classroom.students import Student
 from grader.text import enumerated
 
@@ -27,7 +27,7 @@ class CanvasGroups:
     """The groups of a roster as Canvas names their files: the group's name, and the user id of one member."""
 
     def __init__(self, roster: Roster) -> None:
-        self._entries = roster.entries
+        self._entries, self._names = roster.entries, roster.clues
         self._by_number = {entry.student.canvas: index for index, entry in enumerate(roster.entries)}
         self._groups: dict[str, list[tuple[int, ...]]] = {}
         for members in roster.groups.values():
@@ -50,7 +50,7 @@ class CanvasGroups:
     def is_named_otherwise(self, student: Student, owner: int) -> bool:
         """Return whether a file has another name than its student, who has no group."""
         entry = self._entries[owner]
-        own = set(canvas_names(entry.student.name))
+        own = self._names[owner].get(Clue.CANVAS_NAME, ())
         return bool(own) and not entry.group and all(canvas_name(name) not in own for name, _ in student.readings)
 
     def _read(self, name: str, number: str, position: int | None) -> GroupClaim | None:

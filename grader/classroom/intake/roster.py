@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, People, claims_of, clues_of, plain_group
+from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, Clues, People, claims_of, clues_of, plain_group
 from grader.classroom.students import ClassSubmission, Student
 
 
@@ -75,6 +75,11 @@ class Roster:
             for entry in self.entries
         )
         return Roster(entries, self.notes, self.assignments)
+
+    @property
+    def clues(self) -> Sequence[Clues]:
+        """The clues of each student, in the order of the entries."""
+        return self._people.clues
 
     @property
     def students(self) -> tuple[Student, ...]:

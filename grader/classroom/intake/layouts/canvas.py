@@ -11,7 +11,6 @@ If groups are graded as a whole, there is one submission for each group, with th
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
@@ -85,7 +84,9 @@ def find_submissions(folder: ClassFolder) -> Submissions:
             by_user[file.is_anonymous, file.user].append(file)
     ignored.add_all(start, folder.children.refused)
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
-    contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
+    contested = dict.fromkeys(
+        _student(file, file.readings) for user, files in by_user.items() if not certain[user] for file in files
+    )
     found = (_submission(files, start) for files in certain.values() if files)
     is_anonymous = all(anonymous for anonymous, _ in by_user)  # a student may be called anon_ab3xy
     return Submissions(found, contested=tuple(contested), is_anonymous=is_anonymous)
@@ -153,7 +154,7 @@ def _submission(files: Sequence[_CanvasFile], start: str) -> ClassSubmission:
         reading for file in files if file.is_ambiguous == first.is_ambiguous for reading in file.readings
     )
     return ClassSubmission(
-        replace(_student(first), readings=tuple(readings)),
+        _student(first, tuple(readings)),
         tuple(start + file.path for file in last),
         is_late=any(file.is_late for file in last),
         attempt=max(map(len, by_file)),
@@ -162,10 +163,10 @@ def _submission(files: Sequence[_CanvasFile], start: str) -> ClassSubmission:
     )
 
 
-def _student(file: _CanvasFile) -> Student:
+def _student(file: _CanvasFile, readings: tuple[tuple[str, str], ...]) -> Student:
     """Return whose a file is; if its name is ambiguous, without a user id."""
     canvas = "" if file.is_anonymous or file.is_ambiguous else file.user
-    return Student(f"{file.name}_{file.user}", canvas=canvas, readings=file.readings)
+    return Student(f"{file.name}_{file.user}", canvas=canvas, readings=readings)
 
 
 def _attempts_by_file(files: Iterable[_CanvasFile]) -> list[list[_CanvasFile]]:
