@@ -12,17 +12,17 @@ from grader.cli.options import (
     GradebookOption,
     MaxSizeOption,
     PartOption,
-    RubricOption,
+    rubric_ids,
 )
 from grader.cli.output import screen, warn
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
-from grader.usecases import DEFAULT_RUBRIC
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
 _ADD = "Add to the gradebook even if it has another class, assignment or rubric."
+_RUBRIC = "The rubric: an id or a .toml file; default: that of the last run into the gradebook, else lab6."
 _IGNORE = "A robot that the course handed out: not identical work; repeatable."
 _TIMEOUT = "Time limit for each submission."
 
@@ -30,7 +30,9 @@ _TIMEOUT = "Time limit for each submission."
 def batch(
     path: Annotated[Path, typer.Argument(metavar="PATH", help=_PATH)],
     gradebook: GradebookOption,
-    rubric: RubricOption = DEFAULT_RUBRIC,
+    rubric: Annotated[
+        str | None, typer.Option(metavar="ID|FILE", help=_RUBRIC, show_default=False, autocompletion=rubric_ids)
+    ] = None,
     part: PartOption = None,
     jobs: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor.")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.report.formats import Format, OutputFormat
+from grader.usecases import DEFAULT_RUBRIC
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
@@ -44,8 +45,8 @@ def explainable(context: typer.Context) -> Iterator[tuple[str, str]]:
 def _rubric(context: typer.Context) -> "Rubric":
     from grader.grading.rubric import load_rubric
 
-    default = next(str(param.default) for param in context.command.params if param.name == "rubric")
-    return load_rubric(context.params.get("rubric") or default)
+    default = next(param.default for param in context.command.params if param.name == "rubric")
+    return load_rubric(context.params.get("rubric") or str(default or DEFAULT_RUBRIC))
 
 
 PartOption = Annotated[

@@ -24,8 +24,8 @@ from grader.grading.rubric import Rubric
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import Screen
 from grader.submission.opening import open_submission
-from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases import Warn
+from grader.text import counted, first_lines, printable, printable_path, shell_quoted
+from grader.usecases import DEFAULT_RUBRIC, Warn
 from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
@@ -39,12 +39,12 @@ _MAX_LINES = 10
 class ClassRequest:
     """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
 
-    `ignore_files` are robots that the course handed out.
+    Without a `rubric` it is that of the last run into the gradebook. `ignore_files` are robots that the course handed out.
     """
 
     path: Path
     gradebook: Path
-    rubric: str
+    rubric: str | None
     jobs: int | None
     timeout: float
     roster: Path | None
@@ -75,7 +75,7 @@ def grade_class(
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    rubric = load_with_answers(request.rubric)  # for the gradebook, so that `review` has the answers on any machine
+    rubric = _rubric(request.rubric, request.gradebook, warn)
     for name in request.parts:
         rubric.part(name)
     deadline = read_deadline(request.due)
@@ -86,6 +86,7 @@ def grade_class(
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
     _warn_of_intake(intake, warn)
     with Gradebook(request.gradebook, create=True) as book:
+        _warn_of_parts(book, request.parts, rubric, warn)
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
@@ -130,6 +131,33 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
         if not any(hashes):
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from filter(None, hashes)
+
+
+def _rubric(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
+    """Return the rubric with its answers, so that `review` has them on any machine; without a name that of the last run.
+
+    If the file of the last run no longer exists, its text in the gradebook counts.
+    """
+    if name is None and gradebook.exists():
+        with Gradebook(gradebook) as book:
+            run = book.newest_run()
+            last = book.rubric(run.rubric, answers=True) if run is not None else None
+        if last is not None:
+            rubric = load_with_answers(str(last.path)) if last.path.exists() else last
+            if not rubric.is_shipped:
+                warn(f"rubric of the last run: {printable_path(rubric.path)}")
+            return rubric
+    return load_with_answers(name or DEFAULT_RUBRIC)
+
+
+def _warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn: Warn) -> None:
+    """Say that the last run graded fewer parts than this one, which grades all."""
+    last = Grades(book).parts if not wanted and book.newest_run() is not None else ()
+    if last and set(last) < {criterion.part for criterion in rubric.criteria}:
+        options = " ".join(f"--part {shell_quoted(part)}" for part in last)
+        warn(
+            f"the last run graded {', '.join(last)} only, and this one grades all parts: pass {options} to grade the same"
+        )
 
 
 def _roster(file: Path | None, gradebook: Path) -> Roster | None:

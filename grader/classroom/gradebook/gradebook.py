@@ -9,7 +9,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
-from grader.classroom.gradebook.stored import STORED_SUBMISSIONS, STUDENT_COLUMNS, StoredSubmission
+from grader.classroom.gradebook.stored import (
+    STORED_SUBMISSIONS,
+    STUDENT_COLUMNS,
+    WITHOUT_SUBMISSION,
+    StoredSubmission,
+)
 from grader.classroom.students import Student
 from grader.errors import GraderError, InputError
 from grader.grading.answers import with_answers
@@ -118,8 +123,15 @@ class Gradebook(AbstractContextManager["Gradebook"]):
 
     def stored_submissions(self) -> Iterator[StoredSubmission]:
         """Yield the newest submission of each student, in the order of the keys, unaffected by later writes."""
+        return self._stored(STORED_SUBMISSIONS)
+
+    def without_submission(self) -> Iterator[StoredSubmission]:
+        """Yield the students who have submitted nothing, in the order of the keys, unaffected by later writes."""
+        return self._stored(WITHOUT_SUBMISSION)
+
+    def _stored(self, query: str) -> Iterator[StoredSubmission]:
         with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
-            for row in snapshot.execute(STORED_SUBMISSIONS):
+            for row in snapshot.execute(query):
                 yield StoredSubmission._make((*row[:13], row[13:]))
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:

@@ -36,8 +36,17 @@ ORDER BY student.key
 """
 
 
+WITHOUT_SUBMISSION = f"""
+SELECT id, 0, '', '', '', 'missing', '', '', '[[], [], 0, []]', 0, '', 1, '', {", ".join(PROFILE_COLUMNS)}
+FROM student WHERE NOT EXISTS (SELECT 1 FROM submission WHERE submission.student = student.id) ORDER BY key
+"""
+
+
 class StoredSubmission(NamedTuple):
-    """The newest submission of a student in the gradebook, with its result and the student's profile."""
+    """The newest submission of a student in the gradebook, with its result and the student's profile.
+
+    For a student without a submission the result is 0, and there are no files.
+    """
 
     student_id: int
     result: int

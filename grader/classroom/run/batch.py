@@ -128,6 +128,8 @@ class Batch:
                 self._collect(writer, all_in=False)
         while len(self._queue):
             self._collect(writer, all_in=True)
+        for student in intake.absent:
+            students.recognise(student)
         with book.transaction():
             for stored in students.gone():
                 if stored.key not in contested:

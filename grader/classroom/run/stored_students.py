@@ -31,8 +31,17 @@ class Identities:
     @cached_property
     def _stored(self) -> list[StoredSubmission]:
         """The students whose key is neither in the class nor on the roster; most runs need none of them."""
-        kept = set(self._keys()).union(student.key for student in (self.roster.students if self.roster else ()))
-        return [stored for stored in self.book.stored_submissions() if stored.key not in kept]
+        return [stored for stored in self.book.stored_submissions() if stored.key not in self._kept]
+
+    @cached_property
+    def _kept(self) -> set[str]:
+        return set(self._keys()).union(student.key for student in (self.roster.students if self.roster else ()))
+
+    @cached_property
+    def _without(self) -> tuple[list[StoredSubmission], People]:
+        """The same of students who have submitted nothing so far."""
+        stored = [stored for stored in self.book.without_submission() if stored.key not in self._kept]
+        return stored, People(_clues(one, self.root) for one in stored)
 
     @cached_property
     def _people(self) -> People:
@@ -42,19 +51,32 @@ class Identities:
     def _not_on_roster(self) -> set[int]:
         return {index for index, stored in enumerate(self._stored) if not stored.enrolment.is_on_roster}
 
+    def knows(self, key: str) -> bool:
+        """Return whether the gradebook has a student with this key."""
+        return self.book.first("SELECT 1 FROM student WHERE key = ?", key) is not None
+
     def of(self, submission: ClassSubmission) -> StoredSubmission | None:
         """Return the stored submission of the student who is certainly the same."""
         student = submission.student
         entry = self.roster.entry(student.key) if self.roster is not None else None
-        from_roster = clues_of(entry.student, entry.aliases) if entry is not None else {}
-        match = self._people.find({**from_roster, **numbers_of(student)}, (*NUMBERS, Clue.WORD))
+        match = self._people.find(self._known(student), (*NUMBERS, Clue.WORD))
         if not (match.people or match.contradicted) and (self.roster is None or entry is not None):
             # The login may be the name of a folder that another team has as well, or that could not be a key.
             login = "" if student.team or is_path_key(student.key) else student.login
             words = clues_of(Student(student.key, login=login, canvas=student.canvas, moodle=student.moodle))
             claims = {**words, Clue.PATH: (dumps(submission.paths),)}
             match = self._people.find(claims, (*NUMBERS, Clue.WORD, Clue.PATH), self._not_on_roster)
-        return self._stored[match.only] if match.only is not None else None
+        if match.only is not None:
+            return self._stored[match.only]
+        stored, people = self._without
+        match = people.find(self._known(student), (*NUMBERS, Clue.WORD)) if stored else match
+        return stored[match.only] if match.only is not None else None
+
+    def _known(self, student: Student) -> Clues:
+        """Return the LMS ids of a student, and the data of the roster."""
+        entry = self.roster.entry(student.key) if self.roster is not None else None
+        from_roster = clues_of(entry.student, entry.aliases) if entry is not None else {}
+        return {**from_roster, **numbers_of(student)}
 
 
 def _clues(stored: StoredSubmission, root: str) -> Clues:
@@ -97,6 +119,12 @@ class StoredStudents:
         """Return whether an uncertain submission replaces another one of the student in the same class."""
         return not (submission.is_certain or stored.source != self._root or self._is_same_path(submission, stored))
 
+    def recognise(self, absent: Student) -> None:
+        """Give a student of the roster without a submission in this class the key of the roster, with earlier results and marks."""
+        stored = self._identities.of(ClassSubmission(absent, ())) if not self._identities.knows(absent.key) else None
+        if stored is not None and stored.student_id not in self._renamed:
+            self._rename(stored, absent.key)
+
     def gone(self) -> list[StoredSubmission]:
         """Return the stored submissions of this class folder that were not asked for."""
         self._skip_to(None)
@@ -114,12 +142,19 @@ class StoredStudents:
         stored, key = self._identities.of(submission), submission.student.key
         if stored is None or stored.student_id in self._renamed or stored.key == key:
             return None
-        if not self._writer.rename(stored.student_id, key):
-            self._notes.append(f"{stored.key} and {key} seem to be the same student, but both have results: not merged")
+        if not self._rename(stored, key):
             return None
         self._renamed.add(stored.student_id)
-        self._notes.append(f"{stored.key} is {key} now, with all manual marks")
         return stored
+
+    def _rename(self, stored: StoredSubmission, key: str) -> bool:
+        """Give a stored student another key, and return whether that was possible."""
+        is_renamed = self._writer.rename(stored.student_id, key)
+        if is_renamed:
+            self._notes.append(f"{stored.key} is {key} now, with all manual marks")
+        else:
+            self._notes.append(f"{stored.key} and {key} seem to be the same student, but both have results: not merged")
+        return is_renamed
 
     def _gives_way(self, stored: StoredSubmission, submission: ClassSubmission) -> bool:
         """Return whether a key was that of a folder until the roster gave it to another student, who is in the gradebook too.
