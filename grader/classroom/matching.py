@@ -16,6 +16,7 @@ from grader.text import printable_path
 
 _SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
 _IGNORED_CHARACTERS = str.maketrans("", "", "&<>\"`|':\\/")
+_ASCII_OTHERS = re.compile(r"[^0-9A-Za-z_]+")
 _WORD_CATEGORIES = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Mn", "Mc", "Me", "Nd", "Pc"})
 _MAX_WORDS = 8
 
@@ -140,6 +141,8 @@ def _contradict(left: Clues, right: Clues) -> bool:
 
 def plain_word(word: str) -> str:
     """Normalise a login, id or address: case, spaces and the encoding of accents are ignored."""
+    if word.isalnum() and word.isascii():
+        return word.lower()
     return " ".join(_composed(word).casefold().split())
 
 
@@ -161,16 +164,18 @@ def plain_group(name: str) -> str:
     return " ".join(plain_word(name).replace("_", " ").replace("-", " ").split())
 
 
-def is_word(letter: str) -> bool:
-    """Return whether a character is part of a word in Ruby, in which Canvas is written: a letter, mark, digit or connector."""
-    return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD_CATEGORIES
+def word_characters(text: str) -> str:
+    """Return the characters that are part of a word in Ruby, in which Canvas is written: letters, marks, digits, connectors."""
+    if text.isascii():
+        return _ASCII_OTHERS.sub("", text)
+    return "".join(letter for letter in text if unicodedata.category(letter) in _WORD_CATEGORIES)
 
 
 @lru_cache(maxsize=1024)
 def canvas_name(sortable: str) -> str:
     """Normalise a sortable name as Canvas writes it into file names (canvas-lms, content_zipper.rb)."""
     plain = unicodedata.normalize("NFC", re.sub(r"_(\d+)_", r"\1", sortable))
-    return "".join(letter for letter in plain if is_word(letter)).casefold()
+    return word_characters(plain).casefold()
 
 
 def canvas_names(name: str) -> Iterator[str]:

@@ -5,7 +5,7 @@ import io
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from pathlib import Path
 
 from grader.classroom.intake.roster import Roster, RosterEntry
@@ -104,19 +104,18 @@ def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
     return {"student", "id"} <= set(map(_plain, header)) and not {"sis", "login"}.isdisjoint(fields)
 
 
-def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> Iterator[str]:
-    """Yield a message for each student with an id or address that another student has."""
-    lines: dict[tuple[str, str], int] = {}
-    for line, entry in entries:
-        found = ""
-        for field, title in _UNIQUE.items():
-            value = getattr(entry.student, field)
-            same = value if field == "key" else plain_word(value)
-            first = lines.setdefault((field, same), line) if same else line
-            if first != line and not found:
-                found = f"{shown} has the {title} {value} twice, in lines {first} and {line}"
-        if found:
-            yield found
+def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> list[str]:
+    """Return a message for each student with an id or address that another student has."""
+    entries, found = tuple(entries), dict[int, str]()
+    for field, title in _UNIQUE.items():
+        value_of, first = attrgetter(field), dict[str, int]()
+        for line, entry in entries:
+            if value := value_of(entry.student):
+                same = value if field == "key" else plain_word(value)
+                if first.setdefault(same, line) != line:
+                    message = f"{shown} has the {title} {value} twice, in lines {first[same]} and {line}"
+                    found.setdefault(line, message)
+    return [found[line] for line in sorted(found)]
 
 
 def _notes(reader: RowReader, shown: str) -> Iterator[str]:

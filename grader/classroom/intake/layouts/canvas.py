@@ -16,7 +16,7 @@ from typing import NamedTuple
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
-from grader.classroom.matching import is_word
+from grader.classroom.matching import word_characters
 from grader.classroom.students import ClassSubmission, Student
 
 _NAME = re.compile(
@@ -112,7 +112,8 @@ def _parsed(name: str) -> _CanvasFile | None:
     if name.count("_") < 2:
         return None
     found = _NAME.fullmatch(name)
-    if found is None or not all(is_word(letter) or letter == "-" for letter in found["name"] or ""):
+    plain = (found["name"] or "").replace("-", "") if found is not None else ""
+    if found is None or word_characters(plain) != plain:
         return None
     anonymous = found["anon"]
     return _CanvasFile(
