@@ -3,6 +3,8 @@
 import csv
 import io
 import json
+import os
+import shutil
 import zipfile
 from decimal import Decimal
 from pathlib import Path
@@ -16,7 +18,7 @@ from grader.classroom.gradebook.marks import Entry, add_mark
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.lms.feedback import FeedbackItem, feedback_html, is_own_feedback
 from grader.grading.rubric import read_rubric
-from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, record_run, refusal
+from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, make_class, record_run, refusal, urdf
 
 FIRST_VERSION = (
     "<p>Graded automatically: 58.5 of 100 points.</p><ul><li>The base: 2 of 4. it is 0.1 m too low</li></ul>"
@@ -210,6 +212,22 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
     assert "no feedback for emil: has no row in the worksheet, or an ambiguous one" in done.stderr
     assert "reports of grades that are not final yet: 1\n" in done.stderr  # of anna
     assert "2 files for 2 students" in done.stderr
+
+
+def test_a_file_name_that_is_not_utf_8(tmp_path: Path) -> None:
+    """Its student gets no report, and the others get theirs."""
+    make_class(tmp_path)
+    shutil.rmtree(tmp_path / "class")
+    (tmp_path / "class").mkdir()
+    for name in (b"anna_101_555_robot.urdf", b"bob_102_556_ro\xffbot.urdf"):
+        Path(os.fsdecode(os.path.join(os.fsencode(tmp_path), b"class", name))).write_text(urdf())
+    assert batch(tmp_path).returncode == 0
+    done = export(tmp_path, "canvas", "--comments", tmp_path / "feedback.zip")
+    assert done.returncode == 0, done.stderr
+    why = "Canvas would find another student, or none, by the name 'bob_102_556_ro\\udcffbot.urdf'"
+    assert f"no feedback for ben: {why}\n" in done.stderr
+    with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
+        assert archive.namelist() == ["anna_101_555_robot.urdf"]
 
 
 def test_strict_writes_no_feedback(top: Path) -> None:
