@@ -99,6 +99,8 @@ SELECT student.*, submission.run, submission.result, result.rubric, result.versi
     length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
     coalesce(override.marks, 0) AS marks, coalesce(override.older, '') AS older_marks,
     coalesce(override.revalued, '') AS revalued_marks, coalesce(override.over, '') AS over_marks,
+    coalesce((SELECT group_concat(criterion, ' ') FROM manual_mark AS mark WHERE mark.student = student.id AND NOT EXISTS
+        (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '') AS removed_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
     whole.kind IN ('points', 'excused') AND whole.result IS NOT submission.result
         AND (SELECT digest FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,

@@ -29,6 +29,7 @@ class Reason(StrEnum):
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with an earlier version of the rubric"
+    REMOVED = "a manual mark is of a criterion that the rubric no longer has"
     OVER = "a manual mark exceeds the maximum of its criterion"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_FINAL = "the final mark or excuse is from before the newest submission"
@@ -86,7 +87,7 @@ class StudentGrade:
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed. `older_marks`
     are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then, `over_marks`
-    those whose mark exceeds the current maximum. `is_gone` means
+    those whose mark exceeds the current maximum, `removed_marks` those with a mark that the rubric does not have. `is_gone` means
     that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
     the parts have that a submission is graded on. `final` is a final mark for the whole submission, which an excuse has none of;
     `final_is_older` means that either was given for an earlier submission. `section` and `marker` come from the roster.
@@ -100,6 +101,7 @@ class StudentGrade:
     older_marks: tuple[str, ...]
     revalued_marks: tuple[str, ...]
     over_marks: tuple[str, ...]
+    removed_marks: tuple[str, ...]
     score: Decimal
     out_of: Decimal
     pending: Decimal
@@ -157,6 +159,7 @@ class StudentGrade:
         has_final = self.final is not None or self.is_excused
         is_errored = self.verdict == "errored" or self.faults
         is_open = not has_final and (self.faults or self.pending)
+        is_current = not has_final and self.rubric and not self.is_outdated
         is_ungraded = not has_final and self.verdict in ("errored", "unreadable")
         reasons = (
             (
@@ -169,6 +172,7 @@ class StudentGrade:
             (not has_final and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
             (not has_final and self.is_outdated, Reason.OUTDATED, ""),
+            (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
             (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
             (self.final_is_older, Reason.OLDER_FINAL, ""),
