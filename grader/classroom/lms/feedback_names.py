@@ -36,7 +36,7 @@ def moodle_folder(student: Student, participant: str) -> str:
 def canvas_target(name: str) -> tuple[str, str] | None:
     """Return whose submission and which attachment Canvas finds by the name of an uploaded file; None if it ignores the file."""
     words = [word for word in name.split("_") if word != "LATE"]
-    if words[-1].startswith("link") or name.startswith("._") or _NOT_UTF8.search(name):
+    if not words or words[-1].startswith("link") or name.startswith("._") or _NOT_UTF8.search(name):
         return None
     found = words[1:3] if words[0] == "anon" else [word for word in words if re.fullmatch("[0-9]+", word)][:2]
     return (found[0], found[1]) if len(found) == 2 and found[1].isdecimal() else None
