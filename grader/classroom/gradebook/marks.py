@@ -184,7 +184,7 @@ def newest_second(book: Gradebook, grade: StudentGrade, criterion: str, by: str)
     query = (
         f"SELECT {MARK_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
     )
-    row = book.first(f"{query} ORDER BY id DESC", grade.id, criterion, storable(by), grade.files.digest)
+    row = book.first(query, grade.id, criterion, storable(by), grade.files.digest)
     return mark_of_row(*row) if row is not None else None
 
 

@@ -51,11 +51,11 @@ SELECT * FROM mark WHERE kind IN ('points', 'comment', 'excused') AND id = (
     WHERE newer.student = mark.student AND newer.criterion = mark.criterion AND newer.kind <> 'second'
 );
 
--- The newest second opinion of each grader on a student's criterion, also one that withdraws it.
+-- The newest second opinion of each grader on a student's criterion, also one that withdraws it. A merge appends older ones.
 CREATE VIEW second_mark AS
 SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WHERE kind = 'second' AND mark.id = (
-    SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
-        AND newer.kind = 'second' AND newer.grader_name = mark.grader_name
+    SELECT id FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
+        AND newer.kind = 'second' AND newer.grader_name = mark.grader_name ORDER BY at DESC, id DESC LIMIT 1
 );
 
 -- The manual marks of criteria.
