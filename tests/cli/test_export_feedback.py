@@ -139,8 +139,11 @@ def test_extra_credit_is_not_part_of_the_maximum_in_the_lms(tmp_path: Path) -> N
     assert "row 2, anna: 13 points: Brightspace cuts it to the maximum" in done.stderr
     head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
     (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,11.00,-,\n")
-    done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv")
-    assert "without a grade, has 13.00 points, but the maximum in Moodle is 11: 1 (Anna)" in done.stderr
+    why = "13.00 points are above the maximum of 11: raise the maximum there, or give a final mark"
+    for more, code in (((), 0), (("--strict",), 1)):
+        done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv", *more)
+        assert done.returncode == code
+        assert f"the LMS would refuse the grade: row 2, Anna: {why}\n" in done.stderr
 
 
 # --- CSV --------------------------------------------------------------------------------------------------------------
