@@ -103,8 +103,8 @@ def add_mark(
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
     `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none: if there is a
-    newer one, nothing is written and NewerMarkError holds it. A comment for a mark keeps its points, and the result that they were
-    given for. Raises InputError for a criterion of a student who has submitted nothing.
+    newer one, nothing is written and NewerMarkError holds it. A comment for a mark keeps its points, their grader, and the result that they
+    were given for; the audit names who commented. Raises InputError for a criterion of a student who has submitted nothing.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key
@@ -115,7 +115,7 @@ def add_mark(
         before = _seen(book, grade, criterion, entry, by, shown)
         mark = Mark(0, entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            mark = before._replace(entry=before.entry._replace(comment=entry.comment), by=by or before.by)
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment))
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
 
 
