@@ -127,6 +127,11 @@ class StudentGrade:
     marker: str = ""
 
     @property
+    def is_decided(self) -> bool:
+        """Whether a person has decided the whole grade: with a final mark or an excuse, there is no late penalty."""
+        return self.final is not None or self.is_excused
+
+    @property
     def total(self) -> Decimal:
         """The final mark, else the points after the late penalty."""
         return self.final if self.final is not None else self.score + self.late.points
@@ -156,11 +161,10 @@ class StudentGrade:
     @property
     def concerns(self) -> Iterator[tuple[Reason, str]]:
         """Yield why an instructor should look at this grade, each reason with its details."""
-        has_final = self.final is not None or self.is_excused
         is_errored = self.verdict == "errored" or self.faults
-        is_open = not has_final and (self.faults or self.pending)
-        is_current = not has_final and self.rubric and not self.is_outdated
-        is_ungraded = not has_final and self.verdict in ("errored", "unreadable")
+        is_open = not self.is_decided and (self.faults or self.pending)
+        is_current = not self.is_decided and self.rubric and not self.is_outdated
+        is_ungraded = not self.is_decided and self.verdict in ("errored", "unreadable")
         reasons = (
             (
                 is_open and is_errored,
@@ -169,9 +173,9 @@ class StudentGrade:
             ),
             (is_open and self.verdict == "unreadable", Reason.UNREADABLE, self.reason),
             (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not has_final and self.verdict == "missing", Reason.MISSING, ""),
+            (not self.is_decided and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
-            (not has_final and self.is_outdated, Reason.OUTDATED, ""),
+            (not self.is_decided and self.is_outdated, Reason.OUTDATED, ""),
             (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
             (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
