@@ -103,7 +103,7 @@ SELECT student.*, submission.run, submission.result, result.rubric, result.versi
         (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '') AS removed_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
     whole.kind IN ('points', 'excused') AND whole.result IS NOT submission.result
-        AND (SELECT digest FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,
+        AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,
     coalesce(submission.is_gone, 0) AS is_gone,
     result.statuses, coalesce(result.failures, '[]') AS failures,
     result.undecided, result.urdf, result.robot,

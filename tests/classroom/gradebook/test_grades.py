@@ -176,6 +176,18 @@ def test_a_mark_on_an_unreadable_submission_is_listed(tmp_path: Path) -> None:
         assert "marked before" in notices(book)["anna"]
 
 
+@pytest.mark.parametrize("entry", [Entry("points", Decimal(3)), Entry("excused")])
+def test_a_final_mark_on_an_unreadable_submission_is_listed(entry: Entry, tmp_path: Path) -> None:
+    """Two results without a digest may be about different submissions."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        for signs in ("?????", "?ff??"):
+            record_run(book, LAB, [graded_as(LAB, "anna", signs, reason="no zip")._replace(digest="")])
+            if signs == "?????":
+                add_mark(book, Grades(book).find("anna"), "total", entry)
+                assert notices(book) == {}
+        assert notices(book) == {"anna": "the final mark or excuse is from before the newest submission"}
+
+
 def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:
     """A grade by an earlier rubric still counts, and is listed."""
     newer = lab(loads="1")
