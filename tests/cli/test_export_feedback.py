@@ -78,7 +78,7 @@ def test_who_graded(top: Path) -> None:
 
 def test_reports_have_final_marks_excuses_and_comments(top: Path) -> None:
     """As notes, in every format that a batch writes for students."""
-    mark(top, "anna", "total", points("7.5", "an interview"), "Kim")
+    mark(top, "anna", "total", points("7.5", "an\n interview\n"), "Kim")
     mark(top, "ben", "total", Entry("excused", None, "ill"))
     mark(top, "emil", "total", Entry("comment", None, "nice <b>colours</b>\x1b"), "Lee")
     formats = ("--report-format", "json", "--report-format", "markdown", "--report-format", "html")

@@ -39,7 +39,8 @@ class Remarks(NamedTuple):
         mark = self.whole
         if mark is None:
             return []
-        by, comment = _by(mark.by), f" {mark.comment}" if mark.comment else ""
+        words = " ".join(mark.comment.split())
+        by, comment = _by(mark.by), f" {words}" if words else ""
         if mark.points is not None:
             head = f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria."
             return [head + comment]
