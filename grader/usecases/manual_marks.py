@@ -124,7 +124,7 @@ def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
             f"{request.criterion} has no comment {number[0]}: "
             f"`grader mark STUDENT {request.criterion} --comments` lists the earlier comments"
         )
-    warn(f"comment {number[0]}: {' '.join(comment.split())}")
+    warn(printable(f"comment {number[0]}: {' '.join(comment.split())}"))
     return comment
 
 

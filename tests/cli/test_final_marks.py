@@ -162,6 +162,14 @@ def test_comments_are_numbered(top: Path) -> None:
     assert mark(top, "emil", "essay", "2", "--comment", "#3 is wrong").returncode == 0
 
 
+def test_a_repeated_comment_is_printable(top: Path) -> None:
+    """Control characters of a stored comment are escaped on the terminal, and kept in the gradebook."""
+    mark(top, "anna", "essay", "1", "--comment", "\x1b[31mred\u202e")
+    used = mark(top, "emil", "essay", "2", "--comment", "#1")
+    assert used.stderr == "grader: comment #1: \\x1b[31mred\\u202e\n"
+    assert entries(top)[-1][2] == "\x1b[31mred\u202e"
+
+
 @pytest.mark.parametrize(
     ("options", "why"),
     [
