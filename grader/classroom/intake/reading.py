@@ -17,6 +17,7 @@ from grader.classroom.intake.roster import Roster
 from grader.errors import InputError
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
+from grader.submission.labs import MAX_WRAPPERS
 from grader.text import counted, printable_path, shell_quoted
 
 LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
@@ -28,7 +29,6 @@ LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
 }
 _MAX_NAMES = 1_000  # in one folder
 _MAX_CHECKED = 20  # entries of a class folder
-_MAX_WRAPPERS = 3  # folders around a download
 
 
 def _detected(folder: ClassFolder) -> str:
@@ -48,7 +48,7 @@ def _unwrapped(folder: ClassFolder) -> ClassFolder:
     In a zip it can be any folder that holds everything, unless it is itself a submission.
     """
     wrappers, inner = list[ClassFolder](), _only_folder(folder)
-    while inner is not None and len(wrappers) < _MAX_WRAPPERS and not is_download(inner):
+    while inner is not None and len(wrappers) < MAX_WRAPPERS and not is_download(inner):
         wrappers.append(inner)
         inner = _only_folder(inner)
     if inner is not None and is_download(inner):
