@@ -84,6 +84,11 @@ def counted_points(points: Decimal) -> str:
     return f"{format_points(points)} point{'' if points == 1 else 's'}"
 
 
+def by_name(name: str) -> str:
+    """Return who did something, for the end of a sentence: " by Kim"; empty without a name."""
+    return f" by {name}" if name else ""
+
+
 def signed_points(points: Decimal) -> str:
     """Return a change of points with its sign: +6, -0.5."""
     return f"{'+' if points >= 0 else '-'}{format_points(abs(points))}"

@@ -12,7 +12,7 @@ from grader.usecases.writing import write_stdout
 Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder."
-_STRICT = "Write nothing if a row or a student is unmatched."
+_STRICT = "Write nothing if a row or a student is unmatched, or the LMS would refuse a grade."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
@@ -43,7 +43,7 @@ def export(
     A grade is the final mark, else the sum of automatic points and manual marks minus the late penalty. For Canvas, Moodle,
     Blackboard and Brightspace, give the file that the LMS exported with --into. Only the grade cells (and Moodle's feedback)
     change. Rows without a grade are omitted, so that the import overwrites no other grade. The maximum in the file must be the
-    rubric's. Exits 1 if --strict finds an unmatched row or student.
+    rubric's. Exits 1 if --strict finds an unmatched row or student, or a grade that the LMS would refuse.
 
     With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
 

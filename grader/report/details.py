@@ -7,7 +7,7 @@ from grader.grading.report import Hint, Report, Result
 from grader.report.locations import calls_text
 from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
-from grader.text import enumerated, printable, signed_points
+from grader.text import by_name, enumerated, printable, signed_points
 
 SYMBOLS = {
     "passed": "\u2713",
@@ -51,7 +51,9 @@ class Details(NamedTuple):
 
 def result_details(result: Result, report: Report) -> Details:
     """Return the details of one criterion, whatever its status."""
-    comment = f"Comment{_by(result.comment.by)}: {_one_line(result.comment.text)}" if result.comment is not None else ""
+    comment = (
+        f"Comment{by_name(result.comment.by)}: {_one_line(result.comment.text)}" if result.comment is not None else ""
+    )
     return _details(result, report)._replace(comment=sentence(comment) if comment else "")
 
 
@@ -62,7 +64,7 @@ def _details(result: Result, report: Report) -> Details:
     answers = (_lines(outcome.measured), _lines(result.criterion.answer)) if outcome.status == "pending" else ()
     if result.manual_mark is not None:
         comment = f": {_one_line(result.manual_mark.comment)}" if result.manual_mark.comment else ""
-        mark = sentence(f"Marked{_by(result.manual_mark.by) or ' manually'}{comment}")
+        mark = sentence(f"Marked{by_name(result.manual_mark.by) or ' manually'}{comment}")
         if outcome.status == "pending":
             return Details((mark,), *answers)
         expected = _expected(result) if status_of(result) in ("failed", "partial") else ""
@@ -82,10 +84,6 @@ def _details(result: Result, report: Report) -> Details:
     feedback = _one_line(result.criterion.feedback) if has_subject else ""
     hints = tuple(hint._replace(message=sentence(hint.message)) for hint in hints_of(result, report))
     return Details(sentences, location=outcome.location, feedback=feedback, expected=_expected(result), hints=hints)
-
-
-def _by(name: str) -> str:
-    return f" by {name}" if name else ""
 
 
 def _expected(result: Result) -> str:

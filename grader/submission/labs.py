@@ -7,6 +7,7 @@ from enum import IntEnum
 from grader.files.opening import ARCHIVES
 from grader.files.tree import parents
 
+MAX_WRAPPERS = 3  # folders around a download
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NUMBER = re.compile(r"\d+")
 _NUMBER_BORDER = re.compile(r"(?<=\d) (?=\d)")

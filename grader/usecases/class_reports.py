@@ -57,7 +57,7 @@ def write_reports(
     warn: Warn,
     show: Callable[[Progress], None],
 ) -> None:
-    """Write a report for every student with a result; with the format HTML, also the class's page. Raises InputError."""
+    """Write a report for every student in `report_names`; with the format HTML, also the class's page. Raises InputError."""
     make_folder(folder)
     with Gradebook(book) as opened:
         names = report_names(opened)
@@ -85,7 +85,7 @@ def render_reports(
     *,
     feedback: bool = False,
 ) -> dict[str, str]:
-    """Write the reports of students with a result into a folder, by their file names; return who has none, and why.
+    """Write the reports of students into a folder, by their file names; return who has none, and why.
 
     `feedback` adds who graded.
     """

@@ -16,12 +16,12 @@ from grader.classroom.lms.moodle import read_worksheet, students_of
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of
-from grader.report.formats import Format, render
+from grader.report.formats import Format
 from grader.text import counted, first_lines, printable
 from grader.usecases import Warn
 from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
-from grader.usecases.class_reports import REPORT_SECONDS, render_reports, report_of
-from grader.usecases.report_names import file_names
+from grader.usecases.class_reports import REPORT_SECONDS, render_reports
+from grader.usecases.report_names import file_names, report_names
 
 _MAX_LISTED = 50  # students without a file
 
@@ -56,7 +56,7 @@ def feedback_zip(
     feedback = _feedback(grades, kind, due, progress)
     files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, worksheet)
     if not files:
-        why = next(iter(feedback.without.values()), "no student has a result or a final mark")
+        why = next(iter(feedback.without.values()), "no student has a result, a final mark or an excuse")
         raise InputError(f"no student would get a report in {lms.title()}: {why}")
     for line in first_lines([f"no feedback for {key}: {why}" for key, why in feedback.without.items()], _MAX_LISTED):
         warn(printable(line))
@@ -68,12 +68,8 @@ def feedback_zip(
 
 
 def _feedback(grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay) -> Feedback:
-    """Return the reports of the students who have a result or a final mark.
-
-    Those with a submission come from other processes, which a submission may crash.
-    """
-    found = [grade for grade in grades.all() if grade.result is not None or grade.final is not None]
-    names = {grade.student.key: str(number) for number, grade in enumerate(found) if grade.result is not None}
+    """Return the reports of the students in `report_names`. They come from other processes, which a submission may crash."""
+    names = report_names(grades.book)
     with (
         tempfile.TemporaryDirectory() as folder,
         Processes(processors(), REPORT_SECONDS) as executor,
@@ -82,13 +78,8 @@ def _feedback(grades: Grades, kind: Format, due: datetime | None, progress: Prog
         without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show, feedback=True)
         written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
         reports = {key: path.read_bytes() for key, path in written.items()}
-    for grade in found:
-        if grade.result is None:
-            reports[grade.student.key] = render(report_of(grades, grade, feedback=True), kind).encode(
-                "utf-8", "backslashreplace"
-            )
     (name,) = file_names([grades.newest_rubric().id]).values()
-    listed = [(grade, reports[grade.student.key]) for grade in found if grade.student.key in reports]
+    listed = [(grade, reports[grade.student.key]) for grade in grades.all() if grade.student.key in reports]
     return Feedback(f"{name}-feedback.{kind.ending}", f".{kind.ending}", listed, without)
 
 

@@ -91,6 +91,7 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
     )
     yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
     for kind, rows in (
+        ("the LMS would refuse the grade", found.refused),
         ("in the file, but not in the gradebook", found.unknown),
         ("in the gradebook, but not in the file", found.missing),
         ("ambiguous", found.ambiguous),

@@ -14,6 +14,7 @@ from grader.classroom.gradebook.marks import (
     WITHDRAWN_SECOND,
     Entry,
     Mark,
+    NewerMarkError,
     add_mark,
     criterion_of,
     newest_mark,
@@ -90,7 +91,10 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
     """Write what is requested, and return the mark that was the newest before."""
     if request.undo:
-        return undo_mark(book, grade, request.criterion, request.by)
+        try:
+            return undo_mark(book, grade, request.criterion, request.by)
+        except NewerMarkError as error:
+            raise InputError(f"not undone: somebody has marked this since: {mark_text(error.mark)}") from None
     if request.second:
         _refuse_own_opinion(newest_mark(book, grade.id, request.criterion), request)
     comment = _comment(book, request, warn)
@@ -120,7 +124,7 @@ def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
             f"{request.criterion} has no comment {number[0]}: "
             f"`grader mark STUDENT {request.criterion} --comments` lists the earlier comments"
         )
-    warn(f"comment {number[0]}: {' '.join(comment.split())}")
+    warn(printable(f"comment {number[0]}: {' '.join(comment.split())}"))
     return comment
 
 

@@ -14,6 +14,7 @@ from grader.usecases.writing import save
 
 INDEX = "index.csv"  # the student of each report
 CLASS_PAGE = "index.html"
+_WITH_REPORT = "SELECT key FROM grade WHERE result IS NOT NULL OR final IS NOT NULL OR is_excused ORDER BY key"
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
 # Device names of Windows, and the name of the class's page, in upper and lower case.
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?|index")
@@ -22,8 +23,8 @@ _MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it 
 
 
 def report_names(book: Gradebook) -> dict[str, str]:
-    """Return the file name without ending of each student who has a result, by key."""
-    return file_names([str(row[0]) for row in book.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")])
+    """Return the file name without ending of each student who has a result, a final mark or an excuse, by key."""
+    return file_names([str(key) for (key,) in book.rows(_WITH_REPORT)])
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:

@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.submission.labs import LabFolders
+from grader.submission.labs import MAX_WRAPPERS, LabFolders
 from grader.text import counted, first_lines, printable_path, shell_quoted
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
 
 _MAX_LISTED = 20
-_MAX_WRAPPERS = 3  # folders around a download
 _LMS = {"canvas": "Canvas", "moodle": "Moodle", "nbgrader": "nbgrader"}
 
 
@@ -32,7 +31,7 @@ def _may_be_class(path: str) -> bool:
     """Return whether a path is a zip, or a folder with names as an LMS gives them. Reads only names, so that it is fast."""
     try:
         names = os.listdir(path) if os.path.isdir(path) else []  # noqa: PTH112, PTH208
-        for _ in range(_MAX_WRAPPERS):
+        for _ in range(MAX_WRAPPERS):
             inner = [name for name in names if os.path.isdir(f"{path}/{name}")] if len(names) < _MAX_LISTED else []  # noqa: PTH112
             if len(inner) != 1 or "submitted" in names:
                 break

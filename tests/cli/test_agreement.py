@@ -6,6 +6,7 @@ from typing import Any
 
 import jsonschema
 
+from grader.classroom.gradebook.gradebook import Gradebook
 from tests.classroom.gradebooks import batch, grader
 
 
@@ -50,6 +51,20 @@ def test_agreement(top: Path) -> None:
         "  anna, essay: 3 and 0 of 4 points\n"
         "  anna, essay: 3 and 2 of 4 points\n"
     ) in text
+
+
+def test_a_comment_of_the_second_grader_keeps_the_agreement(top: Path) -> None:
+    """The points stay those of the first grader; the audit names the one who commented."""
+    mark(top, "anna", "3", "Kim")
+    mark(top, "anna", "2", "Lee", "--second")
+    before = agreement(top)
+    commented = ("mark", "anna", "essay", "--comment", "see step 2", "--by", "Lee", "--gradebook", top / "book.db")
+    assert grader(*commented).returncode == 0
+    assert agreement(top) == before
+    assert before["items"] == 1
+    with Gradebook(top / "book.db") as book:
+        newest = "SELECT points, comment, grader_name, author FROM mark ORDER BY id DESC LIMIT 1"
+        assert list(book.rows(newest)) == [(30_000, "see step 2", "Kim", "Lee")]
 
 
 def test_only_marks_of_the_same_submission_and_of_two_people_are_compared(top: Path) -> None:

@@ -71,6 +71,24 @@ def test_all_reasons(top: Path) -> None:
     assert refusal(grader("diff", top / "book.db", "--from", 9)) == "there is no run 9; the runs are: 1, 2, 3, 4"
 
 
+def test_a_renamed_criterion(top: Path) -> None:
+    """The manual mark that no longer counts is named, whether it counted in the older run or came later."""
+    assert grader("mark", "anna", "essay", "3", "--gradebook", top / "book.db").returncode == 0
+    assert batch(top).returncode == 0
+    assert grader("mark", "ben", "essay", "2", "--gradebook", top / "book.db").returncode == 0
+    (top / "newer.toml").write_text(lab_text().replace('id = "essay"', 'id = "text"'))
+    done = batch(top, "--verbose", rubric=top / "newer.toml")
+    shown = " ".join(done.stdout.split())
+    reason = "a manual mark is of a criterion that the rubric no longer has"
+    assert f"{reason} (2) Anna Ek (anna): essay Ben Oh (ben): essay" in shown
+    assert diff(top) == (
+        "\nthe rubric changed; the manual mark of essay no longer counts: the rubric no\nlonger has it (1 student)\n"
+        "  essay: removed\n  Anna Ek (anna): 9 to 6 (-3)\n    essay: 3 to none\n"
+        "\nthe rubric changed; manual marks changed; the manual mark of essay no longer\n"
+        "counts: the rubric no longer has it (1 student)\n  essay: removed\n  Ben Oh (ben): 6 as before\n"
+    )
+
+
 def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     """Students in only one of them are reported, and the JSON form is complete."""
     shutil.copy(top / "book.db", tmp_path / "before.db")

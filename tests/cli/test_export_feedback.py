@@ -3,6 +3,8 @@
 import csv
 import io
 import json
+import os
+import shutil
 import zipfile
 from decimal import Decimal
 from pathlib import Path
@@ -16,7 +18,7 @@ from grader.classroom.gradebook.marks import Entry, add_mark
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.lms.feedback import FeedbackItem, feedback_html, is_own_feedback
 from grader.grading.rubric import read_rubric
-from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, record_run, refusal
+from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, make_class, record_run, refusal, urdf
 
 FIRST_VERSION = (
     "<p>Graded automatically: 58.5 of 100 points.</p><ul><li>The base: 2 of 4. it is 0.1 m too low</li></ul>"
@@ -76,7 +78,7 @@ def test_who_graded(top: Path) -> None:
 
 def test_reports_have_final_marks_excuses_and_comments(top: Path) -> None:
     """As notes, in every format that a batch writes for students."""
-    mark(top, "anna", "total", points("7.5", "an interview"), "Kim")
+    mark(top, "anna", "total", points("7.5", "an\n interview\n"), "Kim")
     mark(top, "ben", "total", Entry("excused", None, "ill"))
     mark(top, "emil", "total", Entry("comment", None, "nice <b>colours</b>\x1b"), "Lee")
     formats = ("--report-format", "json", "--report-format", "markdown", "--report-format", "html")
@@ -137,8 +139,11 @@ def test_extra_credit_is_not_part_of_the_maximum_in_the_lms(tmp_path: Path) -> N
     assert "row 2, anna: 13 points: Brightspace reduces them to the maximum" in done.stderr
     head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
     (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,11.00,-,\n")
-    done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv")
-    assert "without a grade, has 13.00 points, but the maximum in Moodle is 11: 1 (Anna)" in done.stderr
+    why = "13.00 points are above the maximum of 11: raise the maximum there, or give a final mark"
+    for more, code in (((), 0), (("--strict",), 1)):
+        done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv", *more)
+        assert done.returncode == code
+        assert f"the LMS would refuse the grade: row 2, Anna: {why}\n" in done.stderr
 
 
 # --- CSV --------------------------------------------------------------------------------------------------------------
@@ -210,6 +215,22 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
     assert "no feedback for emil: matches no row of the worksheet, or several" in done.stderr
     assert "reports of grades that are not final yet: 1\n" in done.stderr  # of anna
     assert "2 files for 2 students" in done.stderr
+
+
+def test_a_file_name_that_is_not_utf_8(tmp_path: Path) -> None:
+    """Its student gets no report, and the others get theirs."""
+    make_class(tmp_path)
+    shutil.rmtree(tmp_path / "class")
+    (tmp_path / "class").mkdir()
+    for name in (b"anna_101_555_robot.urdf", b"bob_102_556_ro\xffbot.urdf"):
+        Path(os.fsdecode(os.path.join(os.fsencode(tmp_path), b"class", name))).write_text(urdf())
+    assert batch(tmp_path).returncode == 0
+    done = export(tmp_path, "canvas", "--comments", tmp_path / "feedback.zip")
+    assert done.returncode == 0, done.stderr
+    why = "Canvas would find another student, or none, by the name 'bob_102_556_ro\\udcffbot.urdf'"
+    assert f"no feedback for ben: {why}\n" in done.stderr
+    with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
+        assert archive.namelist() == ["anna_101_555_robot.urdf"]
 
 
 def test_strict_writes_no_feedback(top: Path) -> None:

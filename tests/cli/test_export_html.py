@@ -1,5 +1,6 @@
 """grader export html, and batch --report-format html: the pages of the students and of the class, as files."""
 
+import zipfile
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from pathlib import Path
@@ -60,6 +61,26 @@ def test_pages_of_a_class(top: Path) -> None:
         assert "index.html" not in text
         assert not [name for other, name in NAMES.items() if name in text and name != NAMES[key]]
     assert b"of the roots" not in b"".join(files.values())
+
+
+@pytest.mark.parametrize("entry", ["0", "--excused"])
+def test_a_student_without_a_submission_has_a_page(top: Path, entry: str) -> None:
+    """With a final mark or an excuse: in a batch, among the pages, and in the feedback for Moodle."""
+    book = ("--gradebook", top / "book.db")
+    assert grader("mark", "dora", "total", entry, *book).returncode == 0
+    assert batch(top, "--reports", top / "reports", "--report-format", "html").returncode == 0
+    export(top)
+    assert contents(top / "reports") == contents(top / "pages")
+    note = b"Final mark: 0 points, given manually" if entry == "0" else b"Excused."
+    assert note in (top / "pages" / "dora.html").read_bytes()
+    assert "dora.html" in ClassPageReader(top / "pages/index.html").links()
+    head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
+    (top / "moodle.csv").write_text(f"{head}\nParticipant 8,Dora Fi,dora,,11.00,-,\n")
+    into = ("--into", top / "moodle.csv", "--output", top / "out.csv", "--feedback", top / "f.zip")
+    assert grader("export", "moodle", *book, *into).returncode == 0
+    with zipfile.ZipFile(top / "f.zip") as archive:
+        (name,) = archive.namelist()
+        assert note.rstrip(b".") in archive.read(name)
 
 
 def test_batch_writes_the_same(top: Path) -> None:

@@ -3,9 +3,11 @@
 import subprocess
 from decimal import Decimal
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from grader.classroom.gradebook import marks
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
@@ -92,6 +94,24 @@ def test_undo(top: Path) -> None:
         assert [author for (author,) in book.rows("SELECT author FROM mark ORDER BY id")][:3] == ["Kim", "Lee", "Max"]
 
 
+def test_undo_while_somebody_marks(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is undone, and one line names the newer mark."""
+    mark(top, "anna", "essay", "3", "--by", "Lee")
+
+    def marks_of(*arguments: Any) -> list[marks.Mark]:
+        """Return the marks, and let Kim mark after they were read."""
+        found = original(*arguments)
+        monkeypatch.setattr(marks, "marks_of", original)
+        mark(top, "anna", "essay", "1", "--by", "Kim")
+        return found
+
+    original = marks.marks_of
+    monkeypatch.setattr(marks, "marks_of", marks_of)
+    undone = refusal(mark(top, "anna", "essay", "--undo", "--by", "Max"))
+    assert undone.startswith("not undone: somebody has marked this since: 1 point by Kim at 20")
+    assert [entry[3] for entry in entries(top)] == ["Lee", "Kim"]
+
+
 def test_undo_of_the_only_mark(top: Path) -> None:
     """It is withdrawn; without a mark there is nothing to undo."""
     assert refusal(mark(top, "dora", "total", "--undo")) == "there is no mark of total to undo for dora"
@@ -140,6 +160,14 @@ def test_comments_are_numbered(top: Path) -> None:
         "essay has no comment #3: `grader mark STUDENT essay --comments` lists the earlier comments"
     )
     assert mark(top, "emil", "essay", "2", "--comment", "#3 is wrong").returncode == 0
+
+
+def test_a_repeated_comment_is_printable(top: Path) -> None:
+    """Control characters of a stored comment are escaped on the terminal, and kept in the gradebook."""
+    mark(top, "anna", "essay", "1", "--comment", "\x1b[31mred\u202e")
+    used = mark(top, "emil", "essay", "2", "--comment", "#1")
+    assert used.stderr == "grader: comment #1: \\x1b[31mred\\u202e\n"
+    assert entries(top)[-1][2] == "\x1b[31mred\u202e"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """grader gradebook merge: which marks are added, what is a conflict, what is listed, and that nothing is lost."""
 
 import hashlib
+import json
 import shutil
 import sqlite3
 import subprocess
@@ -15,7 +16,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import Entry, Mark, insert_mark
+from grader.classroom.gradebook.marks import Entry, Mark, insert_mark, newest_second
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.students import Student
 from tests.classroom.gradebook.test_versions import DATA
@@ -167,6 +168,21 @@ def test_second_opinions_are_merged(top: Path) -> None:
     assert merge(top).returncode == 0
     assert (*counts(top / "a.db"),) == (2, 8)
     assert entries(top / "a.db")[-1] == ("essay", "second", 4.0, "", "Lee")
+
+
+def test_the_newest_second_opinion_counts_after_a_merge(top: Path) -> None:
+    """The entry that was made last, though the merge appends an earlier one; in either direction."""
+    put(top / "a.db", "ash", "essay", Entry("second", Decimal(2)), "Lee", 5)
+    put(top / "b.db", "ash", "essay", Entry("second", Decimal(4)), "Lee", 3)
+    for names in (("a.db", "b.db"), ("b.db", "a.db")):
+        assert merge(top, names=names).returncode == 0
+        book = top / names[0]
+        data = json.loads(grader("stats", "--gradebook", book, "--format", "json").stdout)["agreement"]
+        assert [(item["first"], item["second"]) for item in data["largest"]] == [(1, 2)]
+        with Gradebook(book) as opened:
+            newest = newest_second(opened, Grades(opened).find("ash"), "essay", "Lee")
+        assert newest is not None
+        assert newest.points == 2
 
 
 def test_students_are_matched_by_ids(tmp_path: Path) -> None:

@@ -171,6 +171,18 @@ def test_sections_side_by_side(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("entry", ["3", "--excused"])
+def test_final_marks_and_excuses_are_not_late(tmp_path: Path, entry: str) -> None:
+    """They lose nothing, so neither the class nor its sections count them."""
+    book = tmp_path / "book.db"
+    sections(book)
+    assert "1 submission late: 2.2 points lost" in grader("stats", "--gradebook", book).stdout
+    assert grader("mark", "birch", "total", entry, "--gradebook", book).returncode == 0
+    assert " late: " not in grader("stats", "--gradebook", book).stdout
+    (section,) = (line for line in stats(book, "--by", "section").splitlines() if line.startswith("A "))
+    assert section.split()[-2:] == ["0", "0"]
+
+
 def test_sections_in_json(tmp_path: Path) -> None:
     """The comparison is added to the data of the class, which are otherwise the same."""
     sections(tmp_path / "book.db")

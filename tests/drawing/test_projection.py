@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from grader.drawing.curves import Curve, outline
 from grader.drawing.order import MAX_PAIRS, Seen
 from grader.drawing.projection import Projection, projection
-from grader.drawing.views import FRONT, SIDE, VIEWS, View
+from grader.drawing.views import FRONT, SIDE, TOP, View
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from tests.drawing.shapes import POSES, ROTATIONS, SHAPES, Points, contains, placed, scene_with, surface
 
+VIEWS = (TOP, SIDE, FRONT)
 EXACT = 0.0005  # metres
 SHARES = np.linspace(0.0, 1.0, 91)
 TO_VIEWER = np.linspace(0.0, 1.5, 1501)  # metres, 1 mm apart

@@ -7,7 +7,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import Reason
 
 _MAY_NEED_ATTENTION = (
-    "((verdict <> 'graded' OR faults OR rubric <> ?) AND final IS NULL AND NOT is_excused)"
+    "((verdict <> 'graded' OR faults OR rubric <> ? OR removed_marks <> '') AND final IS NULL AND NOT is_excused)"
     " OR older_marks || revalued_marks || over_marks <> '' OR is_gone OR is_on_roster = 0 OR final_is_older"
 )
 

@@ -174,7 +174,8 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         for name in dict.fromkeys((*old.points, *new.points))
         if old.points.get(name) != new.points.get(name)
     )
-    if not steps and not final and old.verdict == new.verdict:
+    removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
+    if not (steps or final or removed) and old.verdict == new.verdict:
         return None
     is_same_rubric = old.sha256 == new.sha256
     reasons = (
@@ -186,7 +187,8 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
     why = (*(reason for holds, reason in reasons if holds), *final)
-    names = tuple(step.criterion for step in steps)
+    why += tuple(f"the manual mark of {name} no longer counts: the rubric no longer has it" for name in removed)
+    names = (*(step.criterion for step in steps), *removed)
     return Change(*whole, steps, why, name, () if is_same_rubric else comparison(old.sha256, new.sha256, names))
 
 

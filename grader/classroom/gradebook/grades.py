@@ -26,6 +26,7 @@ from grader.text import shell_quoted
 
 _COUNTS = ("id", "run", "result", "faults", "marks")  # columns that are taken as they are
 _NAMES = ("older_marks", "revalued_marks", "over_marks")  # of criteria, between spaces
+_REMOVED = "removed_marks"  # of criteria that are not in the rubric
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted", "section", "marker")
 _TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
@@ -40,7 +41,7 @@ _OTHERS = (
     "fingerprint",
     "digest",
 )
-_COLUMNS = (*_COUNTS, *_NAMES, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
+_COLUMNS = (*_COUNTS, *_NAMES, _REMOVED, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
 _QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
 
@@ -172,6 +173,7 @@ class Grades:
             late = replace(late, points=Decimal(0))
         return StudentGrade(
             **{**counts, **marked, **points, **texts, **truths, "faults": counts["faults"] or 0},
+            removed_marks=tuple(sorted(values[_REMOVED].split())),
             student=Student(*(values[name] for name in STUDENT_COLUMNS)),
             is_on_roster=None if is_on_roster is None else bool(is_on_roster),
             is_outdated=is_outdated,

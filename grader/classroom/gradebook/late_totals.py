@@ -5,7 +5,9 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 
-_MAYBE_LATE = "result IS NOT NULL AND (is_late OR submitted <> '' OR days_late > 0)"
+_MAYBE_LATE = (
+    "result IS NOT NULL AND final IS NULL AND NOT is_excused AND (is_late OR submitted <> '' OR days_late > 0)"
+)
 
 
 class LateTotals(NamedTuple):
@@ -18,7 +20,7 @@ class LateTotals(NamedTuple):
 
 
 def late_totals(grades: Grades) -> LateTotals:
-    """Return the totals of a gradebook."""
+    """Return the totals of a gradebook, without students who have a final mark or an excuse: they lose nothing."""
     lost = [-grade.late.points for grade in grades.where(_MAYBE_LATE) if grade.late.days]
     zero = Decimal(0)
     return LateTotals(len(lost), sum(lost, zero), min(lost, default=zero), max(lost, default=zero))

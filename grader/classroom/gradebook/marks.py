@@ -106,8 +106,9 @@ def add_mark(
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
     `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If there is a
-    newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, and the result that they
-    were given for. Raises InputError for a criterion of a student without a submission.
+    newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, their grader, and the
+    result that they were given for; the audit names who commented. Raises InputError for a criterion of a student without a
+    submission.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key
@@ -118,7 +119,7 @@ def add_mark(
         before = _seen(book, grade, criterion, entry, by, shown)
         mark = Mark(0, entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            mark = before._replace(entry=before.entry._replace(comment=entry.comment), by=by or before.by)
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment))
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
 
 
@@ -190,7 +191,7 @@ def newest_second(book: Gradebook, grade: StudentGrade, criterion: str, by: str)
     query = (
         f"SELECT {MARK_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
     )
-    row = book.first(f"{query} ORDER BY id DESC", grade.id, criterion, storable(by), grade.files.digest)
+    row = book.first(query, grade.id, criterion, storable(by), grade.files.digest)
     return mark_of_row(*row) if row is not None else None
 
 

@@ -7,7 +7,7 @@ from grader.classroom.gradebook.marks import Mark, current_marks
 from grader.classroom.gradebook.result import EARNED
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.validation import TOTAL
-from grader.text import counted_points, enumerated
+from grader.text import by_name, counted_points, enumerated
 
 
 class Graders(NamedTuple):
@@ -22,7 +22,7 @@ class Graders(NamedTuple):
         """How it was graded: "automatically, and manually by Kim"."""
         if not self.is_manual:
             return "automatically"
-        manually = f"manually{_by(enumerated(self.names))}"
+        manually = f"manually{by_name(enumerated(self.names))}"
         return f"automatically, and {manually}" if self.is_automatic else manually
 
 
@@ -39,7 +39,8 @@ class Remarks(NamedTuple):
         mark = self.whole
         if mark is None:
             return []
-        by, comment = _by(mark.by), f" {mark.comment}" if mark.comment else ""
+        words = " ".join(mark.comment.split())
+        by, comment = by_name(mark.by), f" {words}" if words else ""
         if mark.points is not None:
             head = f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria."
             return [head + comment]
@@ -69,7 +70,3 @@ def remarks_of(grades: Grades, grade: StudentGrade) -> Remarks:
         is_automatic, counting = False, {TOTAL: marks[TOTAL]}
     names = sorted({mark.by for mark in counting.values() if mark.by})
     return Remarks(criteria, marks.get(TOTAL), Graders(is_automatic, bool(counting), tuple(names)))
-
-
-def _by(name: str) -> str:
-    return f" by {name}" if name else ""

@@ -51,11 +51,11 @@ SELECT * FROM mark WHERE kind IN ('points', 'comment', 'excused') AND id = (
     WHERE newer.student = mark.student AND newer.criterion = mark.criterion AND newer.kind <> 'second'
 );
 
--- The newest second opinion of each grader on a student's criterion, also one that withdraws it.
+-- The newest second opinion of each grader on a student's criterion, also one that withdraws it. A merge appends older ones.
 CREATE VIEW second_mark AS
 SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WHERE kind = 'second' AND mark.id = (
-    SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
-        AND newer.kind = 'second' AND newer.grader_name = mark.grader_name
+    SELECT id FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
+        AND newer.kind = 'second' AND newer.grader_name = mark.grader_name ORDER BY at DESC, id DESC LIMIT 1
 );
 
 -- The manual marks of criteria.
@@ -100,9 +100,11 @@ SELECT student.*, submission.run, submission.result, result.rubric, result.versi
     length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
     coalesce(override.marks, 0) AS marks, coalesce(override.older, '') AS older_marks,
     coalesce(override.revalued, '') AS revalued_marks, coalesce(override.over, '') AS over_marks,
+    coalesce((SELECT group_concat(criterion, ' ') FROM manual_mark AS mark WHERE mark.student = student.id AND NOT EXISTS
+        (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '') AS removed_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
     whole.kind IN ('points', 'excused') AND whole.result IS NOT submission.result
-        AND (SELECT digest FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,
+        AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,
     coalesce(submission.is_gone, 0) AS is_gone,
     result.statuses, coalesce(result.failures, '[]') AS failures,
     result.undecided, result.urdf, result.robot,

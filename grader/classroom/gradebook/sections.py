@@ -70,7 +70,7 @@ def _section(
 ) -> Section:
     found = [patterns[grade.id] for grade in grades if grade.id in patterns]
     totals = [pattern.grade(most) / UNITS_PER_POINT for pattern in found if pattern.counts]
-    late = [grade for grade in grades if grade.late.days]
+    late = [grade for grade in grades if grade.late.days and not grade.is_decided]
     return Section(
         name,
         len(grades),

@@ -29,6 +29,7 @@ class Reason(StrEnum):
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with an earlier version of the rubric"
+    REMOVED = "a manual mark is of a criterion that the rubric no longer has"
     OVER = "a manual mark exceeds the maximum of its criterion"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_FINAL = "final mark or excuse given before the submission changed"
@@ -86,10 +87,11 @@ class StudentGrade:
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed. `older_marks`
     are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then,
-    and `over_marks` those whose mark exceeds the current maximum. `is_gone` means that the newest run did not find the
-    submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that the parts have that a
-    submission is graded on. `final` is the final mark; None if there is none, or the student is excused. `final_is_older` means
-    that the final mark or excuse was given for an earlier submission. `section` and `marker` come from the roster.
+    `over_marks` those whose mark exceeds the current maximum, and `removed_marks` those that the rubric no longer has. `is_gone`
+    means that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded,
+    `has_other_parts` that the parts have that a submission is graded on. `final` is the final mark; None if there is none, or the
+    student is excused. `final_is_older` means that the final mark or excuse was given for an earlier submission. `section` and
+    `marker` come from the roster.
     """
 
     id: int
@@ -100,6 +102,7 @@ class StudentGrade:
     older_marks: tuple[str, ...]
     revalued_marks: tuple[str, ...]
     over_marks: tuple[str, ...]
+    removed_marks: tuple[str, ...]
     score: Decimal
     out_of: Decimal
     pending: Decimal
@@ -123,6 +126,11 @@ class StudentGrade:
     final_is_older: bool = False
     section: str = ""
     marker: str = ""
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether a person has decided the whole grade: with a final mark or an excuse, there is no late penalty."""
+        return self.final is not None or self.is_excused
 
     @property
     def total(self) -> Decimal:
@@ -154,10 +162,10 @@ class StudentGrade:
     @property
     def concerns(self) -> Iterator[tuple[Reason, str]]:
         """Yield why an instructor should look at this grade, each reason with its details."""
-        has_final = self.final is not None or self.is_excused
         is_errored = self.verdict == "errored" or self.faults
-        is_open = not has_final and (self.faults or self.pending)
-        is_ungraded = not has_final and self.verdict in ("errored", "unreadable")
+        is_open = not self.is_decided and (self.faults or self.pending)
+        is_current = not self.is_decided and self.rubric and not self.is_outdated
+        is_ungraded = not self.is_decided and self.verdict in ("errored", "unreadable")
         reasons = (
             (
                 is_open and is_errored,
@@ -166,9 +174,10 @@ class StudentGrade:
             ),
             (is_open and self.verdict == "unreadable", Reason.UNREADABLE, self.reason),
             (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not has_final and self.verdict == "missing", Reason.MISSING, ""),
+            (not self.is_decided and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
-            (not has_final and self.is_outdated, Reason.OUTDATED, ""),
+            (not self.is_decided and self.is_outdated, Reason.OUTDATED, ""),
+            (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
             (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
             (self.final_is_older, Reason.OLDER_FINAL, ""),

@@ -12,11 +12,12 @@ from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
 from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing, FolderListing, ZipListing
-from grader.classroom.intake.names import ending_of, stems_of
+from grader.classroom.intake.names import ending_of, is_course_folder, stems_of
 from grader.classroom.intake.roster import Roster
 from grader.errors import InputError
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
+from grader.submission.labs import MAX_WRAPPERS
 from grader.text import counted, printable_path, shell_quoted
 
 LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
@@ -28,7 +29,6 @@ LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
 }
 _MAX_NAMES = 1_000  # in one folder
 _MAX_CHECKED = 20  # entries of a class folder
-_MAX_WRAPPERS = 3  # folders around a download
 
 
 def _detected(folder: ClassFolder) -> str:
@@ -49,7 +49,7 @@ def _unwrapped(folder: ClassFolder) -> ClassFolder:
     unless it is itself a submission.
     """
     wrappers, inner = list[ClassFolder](), _only_folder(folder)
-    while inner is not None and len(wrappers) < _MAX_WRAPPERS and not is_download(inner):
+    while inner is not None and len(wrappers) < MAX_WRAPPERS and not is_download(inner):
         wrappers.append(inner)
         inner = _only_folder(inner)
     if inner is not None and is_download(inner):
@@ -110,18 +110,28 @@ def find_download(path: Path, rubric_id: str) -> Download | None:
     return Download(layout, students) if is_class else None
 
 
-def _refuse_downloads(folder: ClassFolder, path: Path) -> None:
-    """Raise InputError if a small class folder contains a whole class: it must not count as the submission of one student."""
-    names = folder.children.folders + [name for name in folder.children.files if name.lower().endswith(".zip")]
-    for name in sorted(names) if len(names) <= _MAX_CHECKED else ():
-        inner = path / name
+def _notes_on_downloads(folder: ClassFolder, path: Path) -> list[str]:
+    """Return a note on each entry of a small class folder that is graded as one submission and may be a whole class.
+
+    Raises InputError if there are no other entries but the course's own: then they do not count as submissions of one student.
+    """
+    names = folder.children.folders + [name for name in folder.children.files if ending_of(name)]
+    others = [name for name in sorted(names) if not is_course_folder(name)] if len(names) <= _MAX_CHECKED else []
+    found: dict[str, Download] = {}
+    for name in others:
         is_known = folder.roster is not None and folder.roster.knows(name.removesuffix(ending_of(name)))
-        found = find_download(inner, folder.rubric_id) if not is_known else None
-        if found is not None:
+        if not is_known and (download := find_download(path / name, folder.rubric_id)) is not None:
+            found[name] = download
+    notes = []
+    for name, download in found.items():
+        inner, what = path / name, f"a download of a whole class ({counted(download.students, 'student')})"
+        command = f"grade it with `grader batch {shell_quoted(inner)}`"
+        if len(found) == len(others):
             raise InputError(
-                f"{printable_path(inner)} is a download of a whole class ({counted(found.students, 'student')}): grade it with"
-                f" `grader batch {shell_quoted(inner)}`; if it is the submission of one student, add --layout folders"
+                f"{printable_path(inner)} is {what}: {command}; if it is the submission of one student, add --layout folders"
             )
+        notes.append(f"{printable_path(name)} is graded as the submission of one student; if it is {what}, {command}")
+    return notes
 
 
 def read_class(
@@ -160,8 +170,8 @@ def read_class(
         raise InputError(
             f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shell_quoted(path)}`)"
         )
-    if layout == "auto" and chosen == "folders" and isinstance(listing, FolderListing):
-        _refuse_downloads(folder, path)
+    is_guess = layout == "auto" and chosen == "folders" and isinstance(listing, FolderListing)
+    notes = _notes_on_downloads(folder, path) if is_guess else []
     submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
     ignored = folder.ignored.lines()
     if not len(submissions):
@@ -174,7 +184,8 @@ def read_class(
         inner = listing.children(path, _MAX_NAMES)
         return roster is not None and sum(map(roster.knows, stems_of(inner.folders, inner.files))) > 1
 
-    return assign(chosen, ignored, submissions, roster, holds_students)
+    intake = assign(chosen, ignored, submissions, roster, holds_students)
+    return replace(intake, notes=(*notes, *intake.notes))
 
 
 def _listing(path: Path) -> ClassListing:

@@ -22,6 +22,7 @@ _MAX_NAME = 60
 _PLAIN = re.compile(
     r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL
 )  # can be read in one way
+_NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _TEXT = frozenset({".txt", ".urdf", ".xacro", ".xml", ".py", ".yaml", ".yml", ".rst"})
 ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
@@ -36,7 +37,7 @@ def moodle_folder(student: Student, participant: str) -> str:
 def canvas_target(name: str) -> tuple[str, str] | None:
     """Return whose submission and which attachment Canvas finds by the name of an uploaded file; None if it ignores the file."""
     words = [word for word in name.split("_") if word != "LATE"]
-    if words[-1].startswith("link") or name.startswith("._"):
+    if not words or words[-1].startswith("link") or name.startswith("._") or _NOT_UTF8.search(name):
         return None
     found = words[1:3] if words[0] == "anon" else [word for word in words if re.fullmatch("[0-9]+", word)][:2]
     return (found[0], found[1]) if len(found) == 2 and found[1].isdecimal() else None

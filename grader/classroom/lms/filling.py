@@ -18,7 +18,7 @@ from grader.text import format_points
 
 _MAX_NAMED = 5
 _NOT_GRADED_YET = frozenset({"", "-", "needs grading"})  # the last in Blackboard
-FillRow = Callable[[TableRow, LmsGrade, Decimal, str], TableRow | str]
+FillRow = Callable[[TableRow, LmsGrade, Decimal, str], "TableRow | str | RowNote"]
 FillExcuse = Callable[[TableRow, str], TableRow | str]
 
 
@@ -72,9 +72,9 @@ class Preflight:
 
     `filled` rows are changed and `unchanged` ones have the grade already. All other rows are removed from the file, so that the
     import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows of students
-    without a grade, `unknown` rows that match no student, `missing` students with a grade but without a row, `ambiguous` rows
-    and students with several possible matches, which are left unassigned. `kept_feedback` are rows with a comment that a person
-    wrote.
+    without a grade, `refused` those whose grade the LMS would not accept, `unknown` rows that match no student, `missing`
+    students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
+    unassigned. `kept_feedback` are rows with a comment that a person wrote.
     """
 
     column: str
@@ -87,12 +87,13 @@ class Preflight:
     ambiguous: list[RowNote] = field(default_factory=list)
     kept_feedback: list[RowNote] = field(default_factory=list)
     excused: list[str] = field(default_factory=list)
+    refused: list[RowNote] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     @property
     def matches(self) -> bool:
-        """Whether every row has its student and every grade its row."""
-        return not (self.unknown or self.missing or self.ambiguous)
+        """Whether every row has its student, every grade its row, and the LMS accepts every grade."""
+        return not (self.refused or self.unknown or self.missing or self.ambiguous)
 
 
 class Filled(NamedTuple):
@@ -115,7 +116,8 @@ def fill_rows(
     """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
 
     `fill_row` gets a row, the grade, its total and the student's name; it returns the new row, the same row if nothing changes, or the
-    reason why the grade cannot be written. `fill_excuse` does the same for an excuse, in an LMS that supports excuses.
+    reason why the grade cannot be written, or a note that the LMS would refuse it. `fill_excuse` does the same for an excuse, in an
+    LMS that supports excuses.
     """
     by_row = {student.row: student for student in students}
     matched = match_rows(list(by_row.values()), grades, preflight)
@@ -125,7 +127,7 @@ def fill_rows(
             rows.append(row)
         elif row.number in matched:
             who, grade = by_row[row.number].who, matched[row.number]
-            new: TableRow | str = grade.why_not or "has no grade"
+            new: TableRow | str | RowNote = grade.why_not or "has no grade"
             if (grade.total is not None or grade.is_excused) and len(row.cells) != len(table.titles):
                 new = f"the row has {len(row.cells)} cells and the header {len(table.titles)}"
             elif grade.is_excused and fill_excuse is not None:
@@ -134,6 +136,9 @@ def fill_rows(
                 new = fill_row(row, grade, grade.total, who)
             if isinstance(new, str):
                 preflight.ungraded.append(RowNote(row.number, who, new))
+                continue
+            if isinstance(new, RowNote):
+                preflight.refused.append(new)
                 continue
             if grade.is_excused:
                 preflight.excused.append(who)

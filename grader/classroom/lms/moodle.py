@@ -46,12 +46,13 @@ def fill_worksheet(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
         check_maximum(f"Moodle's {table.titles[columns.maximum]!r}", maxima, options.out_of)
     preflight = Preflight(table.titles[columns.grade])
 
-    def fill_row(row: TableRow, grade: LmsGrade, total: Decimal, who: str) -> TableRow | str:
+    def fill_row(row: TableRow, grade: LmsGrade, total: Decimal, who: str) -> TableRow | str | RowNote:
         maximum = read_points(row.value(columns.maximum))
         if row.value(columns.changeable).casefold() in _NO:
             return "has a grade that is locked in Moodle"
         if maximum is not None and rounded_down(total) > maximum:
-            return f"has {points_text(total)} points, but the maximum in Moodle is {format_points(maximum)}"
+            why = f"{points_text(total)} points are above the maximum of {format_points(maximum)}"
+            return RowNote(row.number, who, f"{why}: raise the maximum there, or give a final mark")
         row = with_points(table, row, columns.grade, total, who, preflight, row.value(columns.maximum))
         return _with_comment(table, row, columns, who, grade, preflight)
 

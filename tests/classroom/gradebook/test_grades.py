@@ -9,13 +9,13 @@ import pytest
 from grader.classroom.gradebook.attention import attention
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of
+from grader.classroom.gradebook.marks import Entry, add_mark, criterion_of
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
-from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import graded_as, lab, mark, record_run
+from grader.grading.rubric import Rubric, read_rubric
+from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 
 LAB = lab()
 PEOPLE = (
@@ -135,6 +135,23 @@ def test_an_older_mark(rubric: Rubric, digest: str, why: str, tmp_path: Path) ->
         assert Grades(book).find("anna").marks == 1
 
 
+def test_a_mark_of_a_criterion_that_the_rubric_no_longer_has(tmp_path: Path) -> None:
+    """It is named, unless the submission is not graded with the new rubric yet, or has a final mark."""
+    other = read_rubric(lab_text().replace('id = "essay"', 'id = "text"').encode(), Path("small.toml"))
+    why = "a manual mark is of a criterion that the rubric no longer has: essay"
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, LAB, [graded_as(LAB, key, "ppp??") for key in ("anna", "ben", "emil", "fay")])
+        for key in ("anna", "ben", "emil"):
+            put(book, key)
+        put(book, "anna", "picture")
+        add_mark(book, Grades(book).find("emil"), "total", Entry("points", Decimal(3)))
+        record_run(book, other, [graded_as(other, key, "ppp??") for key in ("anna", "emil", "fay")])
+        assert notices(book) == {"anna": why, "ben": "graded with an earlier version of the rubric"}
+        assert attention(Grades(book)).total == 2
+        record_run(book, LAB, [graded_as(LAB, key, "ppp??") for key in ("anna", "ben", "emil", "fay")])
+        assert notices(book) == {}
+
+
 def test_several_older_marks_are_in_the_order_of_the_rubric(tmp_path: Path) -> None:
     """Whatever the order in which they were given."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
@@ -157,6 +174,18 @@ def test_a_mark_on_an_unreadable_submission_is_listed(tmp_path: Path) -> None:
         assert "marked before" not in notices(book)["anna"]  # the same record: nothing new was found
         record_run(book, LAB, [graded_as(LAB, "anna", "?????", reason="no tar")])
         assert "marked before" in notices(book)["anna"]
+
+
+@pytest.mark.parametrize("entry", [Entry("points", Decimal(3)), Entry("excused")])
+def test_a_final_mark_on_an_unreadable_submission_is_listed(entry: Entry, tmp_path: Path) -> None:
+    """Two results without a digest may be about different submissions."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        for signs in ("?????", "?ff??"):
+            record_run(book, LAB, [graded_as(LAB, "anna", signs, reason="no zip")._replace(digest="")])
+            if signs == "?????":
+                add_mark(book, Grades(book).find("anna"), "total", entry)
+                assert notices(book) == {}
+        assert notices(book) == {"anna": "the final mark or excuse is from before the newest submission"}
 
 
 def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:

@@ -58,10 +58,10 @@ class Book:
         return next(reversed(self.marks(item)), None)
 
     def add(self, item: Item, entry: Entry) -> None:
-        """Add an entry; a comment keeps the points or the excuse that counts."""
+        """Add an entry; a comment keeps the points or the excuse that counts, and their grader."""
         before = self.newest(item)
         if entry.kind == "comment" and before is not None and before.kind in ("points", "excused"):
-            entry = entry._replace(kind=before.kind, points=before.points)
+            entry = entry._replace(kind=before.kind, points=before.points, by=before.by)
         self.entries.setdefault(item, []).append(entry)
 
     def restore(self, item: Item, before: Entry | None, author: str, at: str) -> None:

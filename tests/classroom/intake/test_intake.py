@@ -284,13 +284,13 @@ def test_a_students_folder_is_no_wrapper(tmp_path: Path, files: tuple[str, ...])
     assert "ash" in assigned(read_class(lay_out(tmp_path, *files)))
 
 
-def test_a_download_among_other_entries_is_no_submission(tmp_path: Path) -> None:
+def test_a_download_beside_the_courses_own_folder_is_no_submission(tmp_path: Path) -> None:
     """It is refused with the command that grades it, unpacked or not, unless it has the name of a student."""
-    lay_out(tmp_path, *(f"submissions/{name}" for name in CANVAS), "reports/index.csv")
+    lay_out(tmp_path, *(f"submissions/{name}" for name in CANVAS), "solution/robot.urdf")
     command = f"`grader batch {tmp_path}/"
     with pytest.raises(InputError, match=re.escape(f"(2 students): grade it with {command}")):
         read_class(tmp_path)
-    assert len(read_class(tmp_path, Roster([RosterEntry(Student("submissions"))]))) == 2
+    assert set(assigned(read_class(tmp_path, Roster([RosterEntry(Student("submissions"))])))) == {"submissions"}
     assert len(read_class(tmp_path, layout="folders")) == 2
     sections = tmp_path / "sections"
     sections.mkdir()
@@ -298,6 +298,19 @@ def test_a_download_among_other_entries_is_no_submission(tmp_path: Path) -> None
     pack(sections / "b.zip", MOODLE)
     with pytest.raises(InputError, match=r"/sections/a\.zip is a download of a whole class"):
         read_class(sections)
+
+
+def test_one_submission_with_files_named_as_in_canvas_stops_no_class(tmp_path: Path) -> None:
+    """It is graded among the others, with a note that names it, whether the others are on a roster or not."""
+    lay_out(tmp_path, *(f"birch/{name}" for name in CANVAS), "ash/robot.urdf")
+    note = (
+        "birch is graded as the submission of one student; if it is a download of a whole class (2 students), grade it with"
+        f" `grader batch {tmp_path}/birch`"
+    )
+    for students in (None, Roster([RosterEntry(Student("ash"))])):
+        intake = read_class(tmp_path, students)
+        assert set(assigned(intake)) == {"ash", "birch"}
+        assert intake.notes == (note,)
 
 
 def test_a_folder_of_a_student_on_the_roster_is_no_wrapper(tmp_path: Path) -> None:

@@ -35,6 +35,8 @@ def test_moodle_reads_the_participant_in_any_folder(name: str) -> None:
         ("doejane_101_text.html", None),
         ("._doejane_101_2001_lab6.zip", None),
         ("lab6.zip", None),
+        ("LATE", None),
+        ("LATE_LATE", None),
     ],
 )
 def test_whose_file_canvas_takes_it_for(name: str, target: tuple[str, str] | None) -> None:

@@ -130,11 +130,12 @@ def test_rows_without_a_grade_are_omitted() -> None:
     assert len(cells(filled)) == 1
     assert [left.why for left in filled.preflight.ungraded] == [
         "has a grade that is locked in Moodle",
-        "has 58.50 points, but the maximum in Moodle is 50",
         "not handed in",
         "the row has 11 cells and the header 10",
     ]
-    assert filled.preflight.matches
+    why = "58.50 points are above the maximum of 50: raise the maximum there, or give a final mark"
+    assert filled.preflight.refused == [RowNote(3, "Jane Doe", why)]
+    assert not filled.preflight.matches
 
 
 def test_full_marks_are_not_above_the_maximum() -> None:

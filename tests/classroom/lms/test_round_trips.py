@@ -209,12 +209,12 @@ def test_canvas_only_resets_no_other_assignment(book: Path, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("kind", ["markdown", "html"])
 def test_moodle_gives_each_student_the_report(kind: str, book: Path, tmp_path: Path) -> None:
-    """Each student with a result or a final mark gets the own report, by the gradebook's participant or the worksheet's."""
+    """Each student with a result, a final mark or an excuse gets the own report, by the gradebook's participant or the worksheet's."""
     done = grader("export", "moodle", "--gradebook", book, "--feedback", tmp_path / "a.zip", "--feedback-format", kind)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     participants = {one.student.moodle: one.key for one in CLASS}
     found = moodle_feedback((tmp_path / "a.zip").read_bytes(), participants)
-    expected = [one for one in CLASS if not one.is_missing or one.final is not None]
+    expected = [one for one in CLASS if not one.is_missing or one.final is not None or one.is_excused]
     assert sorted(found) == [one.key for one in expected]
     for one in expected:
         ((name, report),) = found[one.key].items()
