@@ -185,7 +185,7 @@ def test_a_final_mark_on_an_unreadable_submission_is_listed(entry: Entry, tmp_pa
             if signs == "?????":
                 add_mark(book, Grades(book).find("anna"), "total", entry)
                 assert notices(book) == {}
-        assert notices(book) == {"anna": "the final mark or excuse is from before the newest submission"}
+        assert notices(book) == {"anna": "final mark or excuse given before the submission changed"}
 
 
 def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:
