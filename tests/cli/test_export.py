@@ -232,6 +232,16 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
 
 
+def test_the_column_of_other_work_is_not_filled(graded_class: Path, tmp_path: Path) -> None:
+    """An only assignment with another title is filled if --column names it."""
+    into = tmp_path / "canvas.csv"
+    into.write_text(canvas(ben="102").replace("A small lab", "Midterm"))
+    why = "no column with a title like 'small' or 'A small lab', choose one with --column: 'Midterm (77)'"
+    assert refusal(export(graded_class, "canvas", "--into", into)) == f"{into} has {why}"
+    named = export(graded_class, "canvas", "--into", into, "--column", "Midterm")
+    assert (named.returncode, named.stderr.splitlines()[0][:28]) == (0, "grader: column 'Midterm (77)")
+
+
 def test_only_pending_criteria_count_as_zero(top: Path) -> None:
     """With the option, students who left the class folder or have an older rubric still get no grade."""
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
