@@ -35,6 +35,7 @@ from tests.classroom.gradebooks import (
     make_class,
     record_run,
     refusal,
+    urdf,
     write_submission,
 )
 from tests.classroom.gradebooks import mark as add_mark
@@ -240,6 +241,23 @@ def test_the_column_of_other_work_is_not_filled(graded_class: Path, tmp_path: Pa
     assert refusal(export(graded_class, "canvas", "--into", into)) == f"{into} has {why}"
     named = export(graded_class, "canvas", "--into", into, "--column", "Midterm")
     assert (named.returncode, named.stderr.splitlines()[0][:28]) == (0, "grader: column 'Midterm (77)")
+
+
+def test_marks_of_an_earlier_submission_are_reported(top: Path) -> None:
+    """The preview names whose final mark or excuse was given before the newest submission."""
+    for arguments in (("anna", "total", "7"), ("ben", "total", "8"), ("emil", "total", "--excused")):
+        assert grader("mark", *arguments, "--gradebook", top / "book.db").returncode == 0
+    (top / "canvas.csv").write_text(canvas(**EVERYONE))
+    arguments = ("canvas", "--into", top / "canvas.csv")
+    assert "newest submission" not in export(top, *arguments).stderr
+    (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
+    (top / "class" / "emil" / "robot.urdf").write_text(urdf("2 2 2"))
+    assert batch(top).returncode == 0
+    assert export(top, *arguments).stderr.splitlines()[1:4] == [
+        "grader: excused (EX): 1 (Emil, X)",
+        "grader: 1 final mark is from before the newest submission: Anna Ek",
+        "grader: 1 excuse is from before the newest submission: Ben Oh",
+    ]
 
 
 def test_only_pending_criteria_count_as_zero(top: Path) -> None:
