@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from grader.report.class_schemas import CLASS_SCHEMA
-from tests.classroom.gradebooks import grader, lab_text, urdf
+from tests.classroom.gradebooks import grader, lab_text, refusal, urdf
 
 LATE = "percent_per_day = 10\n"
 NO_EFFECT = (
@@ -208,3 +208,11 @@ def test_who_is_marked(tmp_path: Path) -> None:
     assert mark("Mueller") == (2, f"there is no student 'Mueller' in the gradebook; did you mean one of {several}?")
     assert mark("Ann")[0] == 2
     assert [row["marks_by_hand"] for row in graded(tmp_path)["students"]] == [1, 0, 0]
+
+
+def test_a_time_of_submission_that_cannot_be_read(tmp_path: Path) -> None:
+    """The roster is refused with the line: without the time, no submission would be late."""
+    write(tmp_path, "id,submitted\nash,20.11.2026 10:00\n", ("ash/robot.urdf",))
+    where = f"line 2 of {tmp_path}/roster.csv has the time '20.11.2026 10:00' for submitted"
+    assert refusal(batch(tmp_path)) == f"{where}: write it as 2026-09-01T10:00"
+    assert not (tmp_path / "book.db").exists()

@@ -120,8 +120,6 @@ def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> Itera
 
 
 def _notes(reader: RowReader, shown: str) -> Iterator[str]:
-    for line, text in reader.ignored:
-        yield f"line {line} of {shown}: {text!r} is not a time such as 2026-09-01T10:00, and was ignored"
     if reader.unread:
         line, status = reader.unread[0]
         count = f" ({len(reader.unread)} lines)" if len(reader.unread) > 1 else ""
