@@ -97,6 +97,13 @@ def test_csv(top: Path) -> None:
     assert (top / "same.csv").read_bytes() == (top / "grades.csv").read_bytes()
 
 
+def test_an_excused_student_has_no_total(top: Path) -> None:
+    """The cell is empty in the CSV, as the grade is in an LMS; the points of the criteria stay."""
+    assert grader("mark", "anna", "total", "--excused", "--gradebook", top / "book.db").returncode == 0
+    row = table(export(top, "csv").stdout)["anna"]
+    assert (row["score"], row["total"], row["excused"], row["not_final_because"]) == ("6", "", "yes", "excused")
+
+
 def test_view_csv_and_json_agree(top: Path) -> None:
     """SELECT * FROM grade gives the same as the command line, for every student."""
     mark(top, "anna", essay="1.2345", loads="0")
@@ -245,8 +252,8 @@ def test_the_column_of_other_work_is_not_filled(graded_class: Path, tmp_path: Pa
 
 def test_marks_of_an_earlier_submission_are_reported(top: Path) -> None:
     """The preview names whose final mark or excuse was given before the newest submission."""
-    for arguments in (("anna", "total", "7"), ("ben", "total", "8"), ("emil", "total", "--excused")):
-        assert grader("mark", *arguments, "--gradebook", top / "book.db").returncode == 0
+    for whole in (("anna", "total", "7"), ("ben", "total", "8"), ("emil", "total", "--excused")):
+        assert grader("mark", *whole, "--gradebook", top / "book.db").returncode == 0
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
     arguments = ("canvas", "--into", top / "canvas.csv")
     assert "newest submission" not in export(top, *arguments).stderr
