@@ -21,6 +21,7 @@ from grader.classroom.gradebook.marks import (
     undo_mark,
 )
 from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL
@@ -82,9 +83,15 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
     _report_replaced(before, criterion, request, warn)
+    text = _grade_text(now, whole)
     if request.second:
-        return printable(f"{now.student.key}: second opinion on {request.criterion}; the grade stays the same") + "\n"
-    return printable(f"{now.student.key}: {_grade_text(now, whole)}") + "\n"
+        text = f"second opinion on {request.criterion}; the grade stays the same"
+    return printable(f"{_who(now.student, request.submission)}: {text}") + "\n"
+
+
+def _who(student: Student, typed: str) -> str:
+    """Return the key that was typed, else also the name, to see who was found."""
+    return student.key if typed == student.key or not student.name else f"{student.name} ({student.key})"
 
 
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:

@@ -35,7 +35,7 @@ def test_a_final_mark_with_and_without_a_submission(top: Path) -> None:
     assert (missing.returncode, missing.stdout, missing.stderr) == (0, "dora: final mark 0 of 11 points\n", "")
     assert total(top, "dora") == (Decimal(0), False, "")
     given = mark(top, "Anna Ek", "total", "7,5")
-    assert given.stdout == "anna: final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
+    assert given.stdout == "Anna Ek (anna): final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
     assert total(top, "anna") == (Decimal("7.5"), False, "")
     withdrawn = mark(top, "anna", "total", "-")
     assert withdrawn.stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"

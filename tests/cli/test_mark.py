@@ -51,10 +51,11 @@ def marks(top: Path) -> list[tuple[Any, ...]]:
 
 @pytest.mark.parametrize("name", ["anna", "ae1", "anna@example.org", "101", "Anna Ek"])
 def test_who_is_marked(name: str, top: Path) -> None:
-    """A student is found by key, login, address, number or name; one line gives the new score."""
+    """A student is found by key, login, address, number or name; one line gives the new score, and the name unless the key was typed."""
     done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == "anna: 9.5 of 11 points; needs manual grading: 1 point\n"
+    who = name if name == "anna" else "Anna Ek (anna)"
+    assert done.stdout == f"{who}: 9.5 of 11 points; needs manual grading: 1 point\n"
     ((criterion, points, comment, author, at, _),) = marks(top)
     assert (criterion, points, comment, author) == ("essay", 35_000, "the roots are missing", "Kim")
     assert at.startswith("20")
