@@ -158,7 +158,8 @@ def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
         return f"final mark {format_points(grade.final)} of {format_points(whole)} points{not_counted}"
     if grade.result is None:
         return "no submission"
-    return of_criteria + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    late = f"; {format_points(grade.total)} after the late penalty" if grade.late.points else ""
+    return of_criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
 
 
 def _listed(comments: dict[int, str]) -> str:
