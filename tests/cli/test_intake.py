@@ -216,3 +216,27 @@ def test_a_time_of_submission_that_cannot_be_read(tmp_path: Path) -> None:
     where = f"line 2 of {tmp_path}/roster.csv has the time '20.11.2026 10:00' for submitted"
     assert refusal(batch(tmp_path)) == f"{where}: write it as 2026-09-01T10:00"
     assert not (tmp_path / "book.db").exists()
+
+
+def last_words(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the output without its line breaks."""
+    return " ".join(done.stdout.split())
+
+
+def test_a_deadline_without_times_of_submission(tmp_path: Path) -> None:
+    """The summary ends with what is missing, unless the roster has times, or says who is late."""
+    write(tmp_path, "id\nash\nbirch\n", ("ash/robot.urdf", "birch/robot.urdf"))
+    due, line = (
+        ("--due", "2026-09-01"),
+        "no submission time is known for 2 submissions: add a column `submitted` to the roster",
+    )
+    assert not last_words(batch(tmp_path)).endswith(line)
+    assert last_words(batch(tmp_path, *due)).endswith(line)
+    for roster in ("id,late\nash,no\nbirch,\n", "id,submitted\nash,2026-09-01\nbirch,\n"):
+        (tmp_path / "roster.csv").write_text(roster)
+        assert "no submission time" not in batch(tmp_path, *due).stdout
+    write(tmp_path, "id\nash\nbirch\n", (), late="")
+    assert "no submission time" not in batch(tmp_path, *due).stdout
+    write(tmp_path, "id\nash\nbirch\n", (), late=f"due = 2026-09-01T00:00:00Z\n{LATE}")
+    (tmp_path / "book.db").unlink()
+    assert last_words(batch(tmp_path)).endswith(line)
