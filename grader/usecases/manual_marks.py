@@ -29,6 +29,8 @@ from grader.report.review import mark_text
 from grader.text import counted_points, format_points, printable
 from grader.usecases import Warn
 
+_NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
+
 
 class MarkRequest(NamedTuple):
     """What `grader mark` records for a criterion or the whole submission. `points` is None without POINTS."""
@@ -47,6 +49,11 @@ class MarkRequest(NamedTuple):
     def is_total(self) -> bool:
         """Return whether it is about the whole submission."""
         return self.criterion == TOTAL
+
+    @property
+    def is_points(self) -> bool:
+        """Return whether it gives points, and does not withdraw them."""
+        return self.points is not None and self.points.strip() != TAKE_BACK
 
     def check(self) -> None:
         """Raise InputError if the options contradict each other, or say nothing."""
@@ -79,6 +86,8 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         if request.comments:
             return _listed(numbered_comments(book, request.criterion))
         most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
+        if request.is_points and criterion is not None and criterion.adjustment is not None and not criterion.points:
+            raise InputError(_NOT_COUNTED.format(criterion.id))
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
@@ -111,7 +120,7 @@ def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
             return Entry("excused")
         case MarkRequest(points=None):
             return Entry("comment")
-        case MarkRequest(points=str(points)) if points.strip() == TAKE_BACK:
+        case MarkRequest(is_points=False):
             return WITHDRAWN_SECOND if request.second else WITHDRAWN
     return Entry("second" if request.second else "points", read(request.points or ""))
 
@@ -145,7 +154,7 @@ def _report_replaced(before: Mark | None, criterion: Criterion | None, request: 
         what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
         warn(f"this {'undoes' if request.undo else 'replaces'} the newest {what} of {name}: {mark_text(before)}")
     if criterion is not None and criterion.adjustment is not None:
-        warn(f"the rubric adjusts {name}: its manual marks do not count")
+        warn(_NOT_COUNTED.format(name))
 
 
 def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
