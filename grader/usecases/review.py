@@ -39,16 +39,20 @@ def review(
         folder = PictureFolder(session, book, pictures or Path(temporary)) if pictures or opens else None
         written = write_all_pictures(session, folder, terminal.show) if folder and pictures else {}
         viewer = Viewer(terminal.warn) if opens else None
-        while session.item is not None:
-            queued = session.queue[session.position]
-            if folder is not None and queued not in written:
-                written[queued] = folder.write(session.item)
-            found = written.get(queued, WrittenPictures())
-            _show(session, found, terminal)
-            if viewer is not None:
-                viewer.open(map(str, found.files))
-            if not _go_on(session, terminal):
-                break
+        try:
+            while session.item is not None:
+                queued = session.queue[session.position]
+                if folder is not None and queued not in written:
+                    written[queued] = folder.write(session.item)
+                found = written.get(queued, WrittenPictures())
+                _show(session, found, terminal)
+                if viewer is not None:
+                    viewer.open(map(str, found.files))
+                if not _go_on(session, terminal):
+                    break
+        except KeyboardInterrupt:
+            terminal.show(f"\n{summary(session)}")
+            raise
         return summary(session)
 
 

@@ -267,3 +267,17 @@ def test_undo_of_a_replacement(top: Path) -> None:
     done = review(top, "3 good\nback\n1 bad\nundo\ns\nq\n")
     assert done.stderr.startswith("grader: undone; the mark before it counts again: 3 points by Kim at 20")
     assert [row[2] for row in marks(top)] == [3, 1, 3]
+
+
+def test_an_interrupt_ends_with_the_summary(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C at the prompt keeps the marks, and says how many there are."""
+
+    def typed() -> str:
+        if marks(top):
+            raise KeyboardInterrupt
+        return "2"
+
+    monkeypatch.setattr("builtins.input", typed)
+    done = review(top, "")
+    assert done.stdout.endswith("(? for help): \n1 marked, 3 left\n")
+    assert (done.returncode, done.stderr) == (130, "grader: interrupted\n")
