@@ -27,6 +27,7 @@ FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] =
 }
 _WITH_FEEDBACK = ("moodle",)
 _WITH_EXCUSES = ("canvas",)
+_NEXT_STEP = "`grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open"
 _MAX_NAMED, _MAX_LINES = 3, 50
 
 
@@ -95,6 +96,8 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
         [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
     )
     yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
+    if any(row.why != "excused" for row in found.ungraded):
+        yield _NEXT_STEP
     for kind, rows in (
         ("in the file, but not in the gradebook", found.unknown),
         ("in the gradebook, but not in the file", found.missing),

@@ -235,6 +235,7 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
         f"grader: without a grade, {BROKEN}: 1 (Cleo, X)",
         "grader: without a grade, nothing was submitted: 1 (Dora, X)",
         "grader: without a grade, 5 points need manual grading: 1 (Emil, X)",
+        "grader: `grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open",
     ]
     zero = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
@@ -416,8 +417,8 @@ def test_the_output_for_a_large_class_is_short() -> None:
         "without a grade, nothing was submitted: 2 (Doe, 41; Doe, 42)",
         "without a grade, has a grade that is locked in Moodle: 1 (Zoe)",
     ]
-    assert lines[54] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
-    assert lines[104:] == ["in the file, but not in the gradebook: and 3 more", "warned"]
+    assert lines[55] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
+    assert lines[105:] == ["in the file, but not in the gradebook: and 3 more", "warned"]
 
 
 def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
