@@ -1,6 +1,6 @@
 """Give, withdraw or undo a manual mark by command."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
@@ -26,10 +26,16 @@ from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
-from grader.text import counted_points, format_points, printable
+from grader.text import counted_points, enumerated, format_points, printable
 from grader.usecases import Warn
 
 _NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
+_MAX_NAMED = 10
+# The students whose newest submission has the same files in the same class.
+_SAME_SUBMISSION = """
+SELECT id, key FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
+    (SELECT source, json_extract(files, '$[0]') FROM grade WHERE id = ?) ORDER BY key
+"""
 
 
 class MarkRequest(NamedTuple):
@@ -91,11 +97,23 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
+        others = [] if request.second or request.is_total else list(_unmarked_members(book, now, request.criterion))
     _report_replaced(before, criterion, request, warn)
+    if others:
+        warn(f"the same submission counts for {enumerated(others, _MAX_NAMED)}: mark them as well")
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
     return printable(f"{_who(now.student, request.submission)}: {text}") + "\n"
+
+
+def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
+    """Yield the keys of the other members of a team whose newest mark of a criterion is not the same."""
+    mark = newest_mark(book, grade.id, criterion)
+    for student, key in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
+        other = newest_mark(book, student, criterion)
+        if mark is not None and (WITHDRAWN if other is None else other.entry) != mark.entry:
+            yield printable(key)
 
 
 def _who(student: Student, typed: str) -> str:

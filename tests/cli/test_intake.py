@@ -248,3 +248,21 @@ def test_the_test_student_of_canvas_is_no_student(name: str, tmp_path: Path) -> 
     head = "Student,ID,SIS User ID,SIS Login ID,Section,A small lab (77)\n    Points Possible,,,,,6\n"
     write(tmp_path, f'{head}"Ash, Ann",101,s1,ash,A,\n"{name}",199,,f00ba4,A,\n', ("ash/robot.urdf",))
     assert [student["name"] for student in graded(tmp_path)["students"]] == ["Ash, Ann"]
+
+
+def test_a_mark_of_one_member_names_the_others(tmp_path: Path) -> None:
+    """Until they have the same mark; a final mark is for one student, and a submission of one's own has no other members."""
+    roster = "id,name,group\nash,Ann Ash,\nbirch,Bea Birch,The Reds\ncedar,Cal Cedar,The Reds\n"
+    write(tmp_path, roster, ("ash/robot.urdf", "The Reds/robot.urdf"))
+    assert batch(tmp_path).returncode == 0
+
+    def said(key: str, *arguments: str) -> str:
+        done = grader("mark", key, *arguments, "--gradebook", tmp_path / "book.db")
+        assert done.returncode == 0, done.stderr
+        return done.stderr.removeprefix("grader: ")
+
+    assert said("birch", "box", "1") == "the same submission counts for cedar: mark them as well\n"
+    assert said("cedar", "box", "1") == ""
+    assert said("birch", "box", "-").endswith("grader: the same submission counts for cedar: mark them as well\n")
+    assert said("cedar", "total", "1") == ""
+    assert said("ash", "box", "1") == ""
