@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+# The name of the student whom Canvas makes for "View as Student", in its gradebook and in lower case.
+CANVAS_TEST_STUDENT = frozenset({"student, test", "test student"})
+
 
 @dataclass(frozen=True, slots=True)
 class Student:

@@ -16,7 +16,7 @@ from grader.usecases.writing import write_stdout
 def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
-    section: Annotated[str, typer.Option(metavar="NAME", help="Only this section of the roster.")] = "",
+    section: Annotated[str | None, typer.Option(metavar="NAME", help="Only this section of the roster.")] = None,
     mine: Annotated[
         bool, typer.Option("--mine", help="Only students whose marker in the roster is the name of --by.")
     ] = False,
@@ -66,7 +66,9 @@ def review(
     """
     from grader.classroom.gradebook.manual_queue import ReviewScope
 
-    scope = ReviewScope(criterion, by, section, mine, second, anonymous)
+    if section is not None and not section.strip():
+        raise InputError("--section is empty: name a section, or omit it to review all")
+    scope = ReviewScope(criterion, by, section or "", mine, second, anonymous)
     if html:
         from grader.usecases.review_server import review_in_browser
 

@@ -35,11 +35,17 @@ def _is_evidence(result: Result) -> bool:
     return result.criterion.check.function is evidence_shown
 
 
+def evidence_files(result: Result) -> tuple[str, ...]:
+    """Return the paths of the files of evidence. What other checks measure, such as a vector, is no list of files."""
+    measured = result.outcome.measured
+    return tuple(map(str, measured)) if _is_evidence(result) and isinstance(measured, tuple | list) else ()
+
+
 def _files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files in an outcome."""
+    """Return the paths of the files of evidence, or of the document with pictures in an answer."""
+    if files := evidence_files(result):
+        return files
     outcome = result.outcome
-    if isinstance(outcome.measured, tuple):
-        return tuple(map(str, outcome.measured))
     if outcome.location is None or "[picture]" not in str(outcome.measured):
         return ()
     return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()

@@ -152,11 +152,12 @@ def _print_rest(number: int, console: Console) -> None:
 
 def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[str], console: Console) -> None:
     console.print()
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    table.add_column("criterion", no_wrap=True)
     asked = [row for row in criteria if row.of]
     has_marks, has_carried = any(row.marked for row in asked), any(row.carried for row in asked)
     more = [*(["carried"] if has_carried else []), *(["manual"] if has_marks else [])]
+    # With both, ids of 26 letters fit on 80 columns.
+    table = Table(box=None, pad_edge=False, padding=(0, 0, 0, 1) if len(more) > 1 else (0, 1), header_style="bold")
+    table.add_column("criterion", no_wrap=True)
     for name in ("points", "passed", *more, "of", "share", "discrimination"):
         table.add_column(name, justify="right", no_wrap=True)
     for row in asked:

@@ -161,8 +161,11 @@ def without_urdf(summary: ClassSummary) -> str:
 
 
 def late_line(summary: ClassSummary) -> str:
-    """Return how many submissions are late and what they lost; empty if none is."""
+    """Return how many submissions are late and what they lost, or that this is unknown; empty if none is late."""
     late = summary.late
+    if late.unknown:
+        known = f"no submission time is known for {counted(late.unknown, 'submission')}"
+        return f"{known}: add a column `submitted` to the roster"
     if not late.students:
         return ""
     if summary.rubric.late is None and not late.lost:

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
+from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
 from grader.report.details import status_of
 from grader.text import counted, counted_points, printable
@@ -60,13 +61,12 @@ def message_text(item: QueuedResult) -> str:
         return printable(outcome.message)
     if outcome.status != "pending":
         return f"the check: {outcome.status}"
-    match outcome.measured:
-        case str():
-            found = "a written answer, needs manual grading"
-        case tuple() | list() as files:
-            found = f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
-        case _:
-            found = "nothing to show, needs manual grading"
+    if isinstance(outcome.measured, str):
+        found = "a written answer, needs manual grading"
+    elif files := evidence_files(item.result):
+        found = f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
+    else:
+        found = "nothing to show, needs manual grading"
     return printable(f"{item.result.criterion.arguments.get('question', '')} {found}".strip())
 
 
@@ -88,8 +88,7 @@ def mark_text(mark: Mark) -> str:
 
 def files_text(item: QueuedResult) -> list[str]:
     """Return where the files are that a criterion is about, printable."""
-    measured = item.result.outcome.measured if item.number is None else None
-    return [printable(_where(item, str(file))) for file in measured] if isinstance(measured, tuple | list) else []
+    return [printable(_where(item, file)) for file in evidence_files(item.result)] if item.number is None else []
 
 
 def place_text(item: QueuedResult) -> str:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
+from zipfile import is_zipfile
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
@@ -153,3 +154,5 @@ def _refuse_files(request: ExportRequest) -> None:
     for other in filter(None, (into, output)):
         if feedback is not None and is_same_file(feedback, other):
             raise GraderError(f"cannot write {printable_path(feedback)}: it is also the file of --into or --output")
+    if feedback is not None and feedback.is_file() and not is_zipfile(feedback):
+        raise InputError(f"cannot write {printable_path(feedback)}: it exists and is not a zip; name another file")

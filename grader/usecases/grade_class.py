@@ -30,7 +30,7 @@ from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_cla
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.grades_csv import grades_csv
-from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_symlinks, save
+from grader.usecases.writing import is_same_file, missing_folder, refuse_gradebook, refuse_symlinks, save
 
 _MAX_LINES = 10
 
@@ -222,3 +222,15 @@ def _refuse_targets(request: ClassRequest) -> None:
         raise missing_folder(csv)
     if csv is not None:
         refuse_gradebook(csv, request.gradebook)
+        _refuse_inputs(csv, request)
+
+
+def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
+    """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
+    files = [path for path in (request.roster, Path(request.rubric), *request.ignore_files) if path is not None]
+    if any(file.is_file() and is_same_file(csv, file) for file in files):
+        raise InputError(f"cannot write {printable_path(csv)}: the command reads it; name another file for --csv")
+    if request.root in (csv.resolve(), *csv.resolve().parents):
+        raise InputError(
+            f"cannot write {printable_path(csv)}: the next run would take it for a submission; choose a file outside of the class"
+        )

@@ -28,7 +28,8 @@ def _row(grades: Grades, grade: StudentGrade, criteria: Sequence[Criterion]) -> 
     if grade.result is None:
         numbers: list[CellValue] = [*[None] * 5, grade.final]
     else:
-        numbers = [grade.score, grade.out_of, grade.pending, grade.late.days, grade.late.points, grade.total]
+        total = None if grade.is_excused else grade.total
+        numbers = [grade.score, grade.out_of, grade.pending, grade.late.days, grade.late.points, total]
     points = grades.points(grade)
     decided = (points.get(criterion.id) for criterion in criteria)
     return [*about, *numbers, grade.why_not_final, *decided, *_more(grades, grade)]

@@ -17,7 +17,7 @@ from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, fill_offline
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.files.reading import read_capped
-from grader.text import printable
+from grader.text import counted, printable
 
 FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] = {
     "canvas": fill_gradebook,
@@ -27,6 +27,7 @@ FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] =
 }
 _WITH_FEEDBACK = ("moodle",)
 _WITH_EXCUSES = ("canvas",)
+_NEXT_STEP = "`grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open"
 _MAX_NAMED, _MAX_LINES = 3, 50
 
 
@@ -51,10 +52,10 @@ def lms_grades(grades: Grades, *, feedback: bool, excuses: bool, pending_as_zero
         )
         if reason and not (is_only_pending and pending_as_zero):
             is_excused = excuses and grade.is_excused
-            yield LmsGrade(grade.student, None, "", reason, is_on_roster, is_excused)
+            yield LmsGrade(grade.student, None, "", reason, is_on_roster, is_excused, grade.final_is_older)
             continue
         text = _feedback(grades, grade) if feedback else ""
-        yield LmsGrade(grade.student, grade.total, text, is_on_roster=is_on_roster)
+        yield LmsGrade(grade.student, grade.total, text, "", is_on_roster, is_older=grade.final_is_older)
 
 
 def _feedback(grades: Grades, grade: StudentGrade) -> str:
@@ -85,11 +86,18 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
     yield from map(
         printable, [f"excused (EX): {len(found.excused)} ({_listed(found.excused)})"] if found.excused else []
     )
+    for kind in ("final mark", "excuse"):
+        older = [one.who for one in found.older if one.why == kind]
+        verb = "is" if len(older) == 1 else "are"
+        text = f"{counted(len(older), kind)} {verb} from before the newest submission: {_listed(older)}"
+        yield from map(printable, [text] if older else [])
     yield from _capped(
         "grades that change",
         [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
     )
     yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
+    if any(row.why != "excused" for row in found.ungraded):
+        yield _NEXT_STEP
     for kind, rows in (
         ("the LMS would refuse the grade", found.refused),
         ("in the file, but not in the gradebook", found.unknown),

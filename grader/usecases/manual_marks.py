@@ -1,6 +1,6 @@
 """Give, withdraw or undo a manual mark by command."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
@@ -22,12 +22,21 @@ from grader.classroom.gradebook.marks import (
     undo_mark,
 )
 from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
-from grader.text import counted_points, format_points, printable
+from grader.text import counted_points, enumerated, format_points, printable
 from grader.usecases import Warn
+
+_NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
+_MAX_NAMED = 10
+# The students whose newest submission has the same files in the same class.
+_SAME_SUBMISSION = """
+SELECT id, key FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
+    (SELECT source, json_extract(files, '$[0]') FROM grade WHERE id = ?) ORDER BY key
+"""
 
 
 class MarkRequest(NamedTuple):
@@ -47,6 +56,11 @@ class MarkRequest(NamedTuple):
     def is_total(self) -> bool:
         """Return whether it is about the whole submission."""
         return self.criterion == TOTAL
+
+    @property
+    def is_points(self) -> bool:
+        """Return whether it gives points, and does not withdraw them."""
+        return self.points is not None and self.points.strip() != TAKE_BACK
 
     def check(self) -> None:
         """Raise InputError if the options contradict each other, or say nothing."""
@@ -79,13 +93,33 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         if request.comments:
             return _listed(numbered_comments(book, request.criterion))
         most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
+        if request.is_points and criterion is not None and criterion.adjustment is not None and not criterion.points:
+            raise InputError(_NOT_COUNTED.format(criterion.id))
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
+        others = [] if request.second or request.is_total else list(_unmarked_members(book, now, request.criterion))
     _report_replaced(before, criterion, request, warn)
+    if others:
+        warn(f"the same submission counts for {enumerated(others, _MAX_NAMED)}: mark them as well")
+    text = _grade_text(now, whole)
     if request.second:
-        return printable(f"{now.student.key}: second opinion on {request.criterion}; the grade stays the same") + "\n"
-    return printable(f"{now.student.key}: {_grade_text(now, whole)}") + "\n"
+        text = f"second opinion on {request.criterion}; the grade stays the same"
+    return printable(f"{_who(now.student, request.submission)}: {text}") + "\n"
+
+
+def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
+    """Yield the keys of the other members of a team whose newest mark of a criterion is not the same."""
+    mark = newest_mark(book, grade.id, criterion)
+    for student, key in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
+        other = newest_mark(book, student, criterion)
+        if mark is not None and (WITHDRAWN if other is None else other.entry) != mark.entry:
+            yield printable(key)
+
+
+def _who(student: Student, typed: str) -> str:
+    """Return the key that was typed, else also the name, to see who was found."""
+    return student.key if typed == student.key or not student.name else f"{student.name} ({student.key})"
 
 
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
@@ -108,7 +142,7 @@ def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
             return Entry("excused")
         case MarkRequest(points=None):
             return Entry("comment")
-        case MarkRequest(points=str(points)) if points.strip() == TAKE_BACK:
+        case MarkRequest(is_points=False):
             return WITHDRAWN_SECOND if request.second else WITHDRAWN
     return Entry("second" if request.second else "points", read(request.points or ""))
 
@@ -142,7 +176,7 @@ def _report_replaced(before: Mark | None, criterion: Criterion | None, request: 
         what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
         warn(f"this {'undoes' if request.undo else 'replaces'} the newest {what} of {name}: {mark_text(before)}")
     if criterion is not None and criterion.adjustment is not None:
-        warn(f"the rubric adjusts {name}: its manual marks do not count")
+        warn(_NOT_COUNTED.format(name))
 
 
 def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
@@ -155,7 +189,8 @@ def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
         return f"final mark {format_points(grade.final)} of {format_points(whole)} points{not_counted}"
     if grade.result is None:
         return "no submission"
-    return of_criteria + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    late = f"; {format_points(grade.total)} after the late penalty" if grade.late.points else ""
+    return of_criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
 
 
 def _listed(comments: dict[int, str]) -> str:

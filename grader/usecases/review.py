@@ -21,6 +21,7 @@ from grader.usecases.viewer import Viewer
 
 NOTHING = "nothing needs manual grading\n"
 _HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+_END = "end of the queue: u to undo, b to go back, Enter to end: "
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
 
@@ -39,17 +40,35 @@ def review(
         folder = PictureFolder(session, book, pictures or Path(temporary)) if pictures or opens else None
         written = write_all_pictures(session, folder, terminal.show) if folder and pictures else {}
         viewer = Viewer(terminal.warn) if opens else None
-        while session.item is not None:
-            queued = session.queue[session.position]
-            if folder is not None and queued not in written:
-                written[queued] = folder.write(session.item)
-            found = written.get(queued, WrittenPictures())
-            _show(session, found, terminal)
-            if viewer is not None:
-                viewer.open(map(str, found.files))
-            if not _go_on(session, terminal):
-                break
+        try:
+            while session.item is not None or _at_end(session, terminal):
+                assert session.item is not None
+                queued = session.queue[session.position]
+                if folder is not None and queued not in written:
+                    written[queued] = folder.write(session.item)
+                found = written.get(queued, WrittenPictures())
+                _show(session, found, terminal)
+                if viewer is not None:
+                    viewer.open(map(str, found.files))
+                if not _go_on(session, terminal):
+                    break
+        except KeyboardInterrupt:
+            terminal.show(f"\n{summary(session)}")
+            raise
         return summary(session)
+
+
+def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
+    """Ask what to do at the end of the queue, if a mark of this review can be undone; return whether there is an item again."""
+    while session.item is None and session.can_undo and (line := terminal.ask(_END)) is not None:
+        match line.strip().lower():
+            case "" | "q" | "quit":
+                return False
+            case "u" | "undo":
+                _undo(session, terminal)
+            case "b" | "back":
+                session.back()
+    return session.item is not None
 
 
 def _show(session: ReviewSession, pictures: WrittenPictures, terminal: Terminal) -> None:

@@ -225,3 +225,25 @@ def test_other_parts(top: Path) -> None:
     found = as_json(top / "book.db")["students"]
     assert found
     assert {tuple(student["because"]) for student in found} == {("graded on other parts",)}
+
+
+def test_an_interrupted_run_is_not_compared_by_default(tmp_path: Path) -> None:
+    """Whom the interrupted run graded again is in the comparison of the run that resumed it; a number still names it."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, rubric, [graded_as(rubric, key, "fff??") for key in ("ash", "birch")])
+        record_run(book, rubric, [graded_as(rubric, "ash", "pff??", "b")])
+        with book.transaction():
+            book.connection.execute("UPDATE run SET finished = NULL WHERE id = 2")
+        assert "not two runs" in refusal(grader("diff", tmp_path / "book.db"))
+        record_run(book, rubric, [graded_as(rubric, "birch", "pff??", "b")])
+    run = re.compile(r"From run (\d).* to run (\d)")
+    for arguments, runs, students in (
+        ((), ("1", "3"), {"ash", "birch"}),
+        (("--from", 2), ("2", "3"), {"birch"}),
+        (("--to", 2), ("1", "2"), {"ash"}),
+    ):
+        done = grader("diff", tmp_path / "book.db", *arguments)
+        assert (found := run.match(done.stdout)), done
+        assert found.groups() == runs
+        assert {key for key in ("ash", "birch") if key in done.stdout} == students

@@ -35,6 +35,7 @@ from tests.classroom.gradebooks import (
     make_class,
     record_run,
     refusal,
+    urdf,
     write_submission,
 )
 from tests.classroom.gradebooks import mark as add_mark
@@ -94,6 +95,13 @@ def test_csv(top: Path) -> None:
     assert (top / "grades.csv").read_bytes().decode().replace("\r\n", "\n") == done.stdout.replace("\r\n", "\n")
     assert batch(top, "--csv", top / "same.csv").returncode == 0
     assert (top / "same.csv").read_bytes() == (top / "grades.csv").read_bytes()
+
+
+def test_an_excused_student_has_no_total(top: Path) -> None:
+    """The cell is empty in the CSV, as the grade is in an LMS; the points of the criteria stay."""
+    assert grader("mark", "anna", "total", "--excused", "--gradebook", top / "book.db").returncode == 0
+    row = table(export(top, "csv").stdout)["anna"]
+    assert (row["score"], row["total"], row["excused"], row["not_final_because"]) == ("6", "", "yes", "excused")
 
 
 def test_view_csv_and_json_agree(top: Path) -> None:
@@ -227,9 +235,37 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
         f"grader: without a grade, {BROKEN}: 1 (Cleo, X)",
         "grader: without a grade, nothing was submitted: 1 (Dora, X)",
         "grader: without a grade, 5 points need manual grading: 1 (Emil, X)",
+        "grader: `grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open",
     ]
     zero = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
+
+
+def test_the_column_of_other_work_is_not_filled(graded_class: Path, tmp_path: Path) -> None:
+    """An only assignment with another title is filled if --column names it."""
+    into = tmp_path / "canvas.csv"
+    into.write_text(canvas(ben="102").replace("A small lab", "Midterm"))
+    why = "no column with a title like 'small' or 'A small lab', choose one with --column: 'Midterm (77)'"
+    assert refusal(export(graded_class, "canvas", "--into", into)) == f"{into} has {why}"
+    named = export(graded_class, "canvas", "--into", into, "--column", "Midterm")
+    assert (named.returncode, named.stderr.splitlines()[0][:28]) == (0, "grader: column 'Midterm (77)")
+
+
+def test_marks_of_an_earlier_submission_are_reported(top: Path) -> None:
+    """The preview names whose final mark or excuse was given before the newest submission."""
+    for whole in (("anna", "total", "7"), ("ben", "total", "8"), ("emil", "total", "--excused")):
+        assert grader("mark", *whole, "--gradebook", top / "book.db").returncode == 0
+    (top / "canvas.csv").write_text(canvas(**EVERYONE))
+    arguments = ("canvas", "--into", top / "canvas.csv")
+    assert "newest submission" not in export(top, *arguments).stderr
+    (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
+    (top / "class" / "emil" / "robot.urdf").write_text(urdf("2 2 2"))
+    assert batch(top).returncode == 0
+    assert export(top, *arguments).stderr.splitlines()[1:4] == [
+        "grader: excused (EX): 1 (Emil, X)",
+        "grader: 1 final mark is from before the newest submission: Anna Ek",
+        "grader: 1 excuse is from before the newest submission: Ben Oh",
+    ]
 
 
 def test_only_pending_criteria_count_as_zero(top: Path) -> None:
@@ -381,8 +417,8 @@ def test_the_output_for_a_large_class_is_short() -> None:
         "without a grade, nothing was submitted: 2 (Doe, 41; Doe, 42)",
         "without a grade, has a grade that is locked in Moodle: 1 (Zoe)",
     ]
-    assert lines[54] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
-    assert lines[104:] == ["in the file, but not in the gradebook: and 3 more", "warned"]
+    assert lines[55] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
+    assert lines[105:] == ["in the file, but not in the gradebook: and 3 more", "warned"]
 
 
 def test_almost_all_points_are_not_all(tmp_path: Path) -> None:

@@ -260,6 +260,10 @@ def test_strict_writes_no_feedback(top: Path) -> None:
         ),
         (("canvas", "--comments", "{top}/link.zip"), "cannot write {top}/link.zip: it is a symlink"),
         (("canvas", "--comments", "{top}/class"), "cannot write {top}/class: it is a folder"),
+        (
+            ("canvas", "--comments", "{top}/roster.csv"),
+            "cannot write {top}/roster.csv: it exists and is not a zip; name another file",
+        ),
         (("canvas", "--comments", "{top}/book.db"), "cannot write {top}/book.db: this would overwrite the gradebook"),
         (
             ("moodle", "--feedback", "{top}/roster.csv", "--into", "{top}/roster.csv", "--output", "{top}/o.csv"),

@@ -37,7 +37,7 @@ def test_a_final_mark_with_and_without_a_submission(top: Path) -> None:
     assert (missing.returncode, missing.stdout, missing.stderr) == (0, "dora: final mark 0 of 11 points\n", "")
     assert total(top, "dora") == (Decimal(0), False, "")
     given = mark(top, "Anna Ek", "total", "7,5")
-    assert given.stdout == "anna: final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
+    assert given.stdout == "Anna Ek (anna): final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
     assert total(top, "anna") == (Decimal("7.5"), False, "")
     withdrawn = mark(top, "anna", "total", "-")
     assert withdrawn.stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"
@@ -202,3 +202,15 @@ def test_a_mark_of_an_adjusted_criterion_is_reported(top: Path) -> None:
     done = mark(top, "anna", "essay", "1")
     assert done.stderr == "grader: the rubric adjusts essay: its manual marks do not count\n"
     assert done.stdout == "anna: 10 of 11 points; needs manual grading: 1 point\n"
+
+
+def test_points_of_a_dropped_criterion_are_refused(top: Path) -> None:
+    """The reason is the rubric's correction, not the range of the points; a mark can still be withdrawn."""
+    assert mark(top, "anna", "essay", "3").returncode == 0
+    text = lab_text() + '\n[adjust.essay]\naction = "drop"\nreason = "the question was unclear"\n'
+    (top / "adjusted.toml").write_text(text)
+    assert batch(top, rubric=top / "adjusted.toml").returncode == 0
+    why = "the rubric adjusts essay: its manual marks do not count"
+    assert refusal(mark(top, "anna", "essay", "3")) == why
+    assert refusal(mark(top, "anna", "essay", "0", "--second", "--by", "Lee")) == why
+    assert mark(top, "anna", "essay", "-").returncode == 0

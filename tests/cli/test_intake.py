@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from grader.report.class_schemas import CLASS_SCHEMA
-from tests.classroom.gradebooks import grader, lab_text, urdf
+from tests.classroom.gradebooks import grader, lab_text, refusal, urdf
 
 LATE = "percent_per_day = 10\n"
 NO_EFFECT = (
@@ -202,9 +202,67 @@ def test_who_is_marked(tmp_path: Path) -> None:
 
     for name in ("Jörg Müller", "Mu\u0308ller, Jörg", "jörg", "JM1", "s1"):
         code, line = mark(name)
-        assert (code, line.partition(":")[0]) == (0, "s1"), name
+        assert (code, line.partition(":")[0]) == (0, "s1" if name == "s1" else "Jörg Müller (s1)"), name
     several = "'s1' (Jörg Müller), 's2' (Ann Müller)"
     assert mark("Müller") == (2, f"'Müller' is ambiguous: it may be {several}; use one of these ids")
     assert mark("Mueller") == (2, f"there is no student 'Mueller' in the gradebook; did you mean one of {several}?")
     assert mark("Ann")[0] == 2
     assert [row["marks_by_hand"] for row in graded(tmp_path)["students"]] == [1, 0, 0]
+
+
+def test_a_time_of_submission_that_cannot_be_read(tmp_path: Path) -> None:
+    """The roster is refused with the line: without the time, no submission would be late."""
+    write(tmp_path, "id,submitted\nash,20.11.2026 10:00\n", ("ash/robot.urdf",))
+    where = f"line 2 of {tmp_path}/roster.csv has the time '20.11.2026 10:00' for submitted"
+    assert refusal(batch(tmp_path)) == f"{where}: write it as 2026-09-01T10:00"
+    assert not (tmp_path / "book.db").exists()
+
+
+def last_words(done: subprocess.CompletedProcess[str]) -> str:
+    """Return the output without its line breaks."""
+    return " ".join(done.stdout.split())
+
+
+def test_a_deadline_without_times_of_submission(tmp_path: Path) -> None:
+    """The summary ends with what is missing, unless the roster has times, or says who is late."""
+    write(tmp_path, "id\nash\nbirch\n", ("ash/robot.urdf", "birch/robot.urdf"))
+    due, line = (
+        ("--due", "2026-09-01"),
+        "no submission time is known for 2 submissions: add a column `submitted` to the roster",
+    )
+    assert not last_words(batch(tmp_path)).endswith(line)
+    assert last_words(batch(tmp_path, *due)).endswith(line)
+    for roster in ("id,late\nash,no\nbirch,\n", "id,submitted\nash,2026-09-01\nbirch,\n"):
+        (tmp_path / "roster.csv").write_text(roster)
+        assert "no submission time" not in batch(tmp_path, *due).stdout
+    write(tmp_path, "id\nash\nbirch\n", (), late="")
+    assert "no submission time" not in batch(tmp_path, *due).stdout
+    write(tmp_path, "id\nash\nbirch\n", (), late=f"due = 2026-09-01T00:00:00Z\n{LATE}")
+    (tmp_path / "book.db").unlink()
+    assert last_words(batch(tmp_path)).endswith(line)
+
+
+@pytest.mark.parametrize("name", ["Student, Test", "Test Student"])
+def test_the_test_student_of_canvas_is_no_student(name: str, tmp_path: Path) -> None:
+    """A gradebook from Canvas has a row for it; nothing was submitted by nobody."""
+    head = "Student,ID,SIS User ID,SIS Login ID,Section,A small lab (77)\n    Points Possible,,,,,6\n"
+    write(tmp_path, f'{head}"Ash, Ann",101,s1,ash,A,\n"{name}",199,,f00ba4,A,\n', ("ash/robot.urdf",))
+    assert [student["name"] for student in graded(tmp_path)["students"]] == ["Ash, Ann"]
+
+
+def test_a_mark_of_one_member_names_the_others(tmp_path: Path) -> None:
+    """Until they have the same mark; a final mark is for one student, and a submission of one's own has no other members."""
+    roster = "id,name,group\nash,Ann Ash,\nbirch,Bea Birch,The Reds\ncedar,Cal Cedar,The Reds\n"
+    write(tmp_path, roster, ("ash/robot.urdf", "The Reds/robot.urdf"))
+    assert batch(tmp_path).returncode == 0
+
+    def said(key: str, *arguments: str) -> str:
+        done = grader("mark", key, *arguments, "--gradebook", tmp_path / "book.db")
+        assert done.returncode == 0, done.stderr
+        return done.stderr.removeprefix("grader: ")
+
+    assert said("birch", "box", "1") == "the same submission counts for cedar: mark them as well\n"
+    assert said("cedar", "box", "1") == ""
+    assert said("birch", "box", "-").endswith("grader: the same submission counts for cedar: mark them as well\n")
+    assert said("cedar", "total", "1") == ""
+    assert said("ash", "box", "1") == ""

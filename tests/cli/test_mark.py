@@ -16,7 +16,17 @@ from grader.classroom.gradebook.grades import Grades
 from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
 from grader.usecases.class_summary import class_summary
-from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, lab_text, refusal, urdf, write_submission
+from tests.classroom.gradebooks import (
+    ENVIRONMENT,
+    HOSTILE,
+    batch,
+    grader,
+    lab_text,
+    make_class,
+    refusal,
+    urdf,
+    write_submission,
+)
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -51,10 +61,11 @@ def marks(top: Path) -> list[tuple[Any, ...]]:
 
 @pytest.mark.parametrize("name", ["anna", "ae1", "anna@example.org", "101", "Anna Ek"])
 def test_who_is_marked(name: str, top: Path) -> None:
-    """A student is found by key, login, address, number or name; one line gives the new score."""
+    """A student is found by key, login, address, number or name; one line gives the new score, and the name unless the key was typed."""
     done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == "anna: 9.5 of 11 points; needs manual grading: 1 point\n"
+    who = name if name == "anna" else "Anna Ek (anna)"
+    assert done.stdout == f"{who}: 9.5 of 11 points; needs manual grading: 1 point\n"
     ((criterion, points, comment, author, at, _),) = marks(top)
     assert (criterion, points, comment, author) == ("essay", 35_000, "the roots are missing", "Kim")
     assert at.startswith("20")
@@ -103,6 +114,16 @@ def test_a_number_below_zero_as_a_comment(top: Path) -> None:
     assert refusal(mark(top, "anna", "essay", "-3", "--comment", "-1")) == "essay is worth 0 to 4 points, not -3"
     done = grader("mark", "--gradebook", top / "book.db", "--", "anna", "essay", "-3")
     assert refusal(done) == "essay is worth 0 to 4 points, not -3"
+
+
+def test_the_late_penalty_is_part_of_the_output(tmp_path: Path) -> None:
+    """The points of the criteria come first, then what is left of them."""
+    make_class(tmp_path, "percent_per_day = 10\n")
+    (tmp_path / "roster.csv").write_text("id,late\nanna,1 day\nben,\n")
+    assert batch(tmp_path).returncode == 0
+    done = mark(tmp_path, "anna", "essay", "4")
+    assert done.stdout == "anna: 10 of 11 points; 8.9 after the late penalty; needs manual grading: 1 point\n"
+    assert mark(tmp_path, "ben", "essay", "4").stdout == "ben: 10 of 11 points; needs manual grading: 1 point\n"
 
 
 def test_a_later_mark_replaces_an_earlier_one(top: Path) -> None:

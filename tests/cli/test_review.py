@@ -267,3 +267,29 @@ def test_undo_of_a_replacement(top: Path) -> None:
     done = review(top, "3 good\nback\n1 bad\nundo\ns\nq\n")
     assert done.stderr.startswith("grader: undone; the mark before it counts again: 3 points by Kim at 20")
     assert [row[2] for row in marks(top)] == [3, 1, 3]
+
+
+def test_an_interrupt_ends_with_the_summary(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C at the prompt keeps the marks, and says how many there are."""
+
+    def typed() -> str:
+        if marks(top):
+            raise KeyboardInterrupt
+        return "2"
+
+    monkeypatch.setattr("builtins.input", typed)
+    done = review(top, "")
+    assert done.stdout.endswith("(? for help): \n1 marked, 3 left\n")
+    assert (done.returncode, done.stderr) == (130, "grader: interrupted\n")
+
+
+def test_the_last_item_can_be_undone(top: Path) -> None:
+    """At the end of the queue a review that has marked something asks; one that has marked nothing does not."""
+    end = "end of the queue: u to undo, b to go back, Enter to end: "
+    done = review(top, "s\ns\ns\n1\nx\nu\n0.5 better\nb\n0.25\n\n")
+    assert done.stdout.count("4 of 4") == 3
+    assert done.stdout.count(end) == 4
+    assert done.stdout.endswith(f"{end}1 marked, 3 left\n")
+    assert done.stderr == "grader: the mark is undone\n"
+    assert [points for *_, points, _ in marks(top)] == [1, None, 0.5, 0.25]
+    assert end not in review(top, "s\ns\ns\n").stdout

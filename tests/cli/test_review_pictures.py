@@ -149,3 +149,18 @@ def test_nothing_needs_manual_grading(top: Path) -> None:
     (top / "out").rmdir()
     assert review(top).stdout == "nothing needs manual grading\n"
     assert not (top / "out").exists()
+
+
+def test_a_measured_vector_is_no_list_of_files(tmp_path: Path) -> None:
+    """A second opinion on an overridden check shows no paths made of its numbers, and writes no pictures."""
+    write_submission(tmp_path / "class" / "ash")
+    centre = '"centre_at"\nwith = { link = "base", relative_to = "base", xyz = [0, 0, 1], tolerance = 0.001 }'
+    before, middle = lab_text(middle="1").split('id = "middle"')
+    text = f'{before}id = "middle"{middle.replace(chr(34) + "urdf_loads" + chr(34), centre)}'
+    (tmp_path / "small.toml").write_text(text)
+    (tmp_path / "roster.csv").write_text("id\nash\n")
+    assert batch(tmp_path).returncode == 0
+    assert grader("mark", "ash", "middle", "1", "--by", "Kim", "--gradebook", tmp_path / "book.db").returncode == 0
+    done = review(tmp_path, "q\n", "--second", "--by", "Lee", "--criterion", "middle")
+    assert "1 of 1  ash: About middle" in done.stdout
+    assert not {word for word in ("Look at", "Pictures", "submission") if word in done.stdout}, done.stdout

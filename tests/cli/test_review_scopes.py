@@ -297,3 +297,10 @@ def test_partial_points_are_shown_as_partial(top: Path, scoped_class: Path) -> N
     page = (top / "out" / "u7701.html").read_text()
     assert 'class="partial"' in page and "partial-card" in page
     assert '"status": "pending"' in (top / "out" / "u7701.json").read_text()
+
+
+def test_an_empty_section_is_refused(top: Path) -> None:
+    """It would be all sections: a script with an unset variable gets a line instead."""
+    for name in ("", " "):
+        why = refusal(review(top, "", "--section", name))
+        assert why == "--section is empty: name a section, or omit it to review all"

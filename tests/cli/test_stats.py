@@ -1,6 +1,7 @@
 """grader stats: a class at a glance, for people at any terminal and for programs."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import Student
 from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run, refusal, write_submission
+from tests.samples import LAB6, ROOT
 
 
 def stats(path: Path, *more: object, **variables: str) -> str:
@@ -199,3 +201,16 @@ def test_sections_in_json(tmp_path: Path) -> None:
     assert comparison["groups"][0]["late_points"] == 2.2
     assert comparison["groups"][0]["shares"]["box"] == 0.5
     assert comparison["differing"][0] == "essay"
+
+
+def test_the_table_of_criteria_fits_on_80_columns(tmp_path: Path) -> None:
+    """With carried and manual criteria, no header and no id is cut."""
+    shutil.copytree(ROOT / "submissions" / "wheel-too-small", tmp_path / "class" / "ash")
+    book = ("--gradebook", tmp_path / "book.db")
+    assert grader("batch", tmp_path / "class", *book, "--jobs", 1).returncode == 0
+    assert grader("mark", "ash", "answer-floating-link", "1", *book).returncode == 0
+    lines = stats(tmp_path / "book.db").splitlines()
+    header = next(line for line in lines if line.startswith("criterion"))
+    assert header.split() == ["criterion", "points", "passed", "carried", "manual", "of", "share", "discrimination"]
+    ids = {line.split()[0] for line in lines[lines.index(header) :] if line}
+    assert {criterion.id for criterion in LAB6.criteria if criterion.part == "task1"} <= ids

@@ -106,19 +106,20 @@ _Comparison = Callable[[str, str, tuple[str, ...]], tuple[RubricChange, ...]]
 
 
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
-    """Return the last two runs in a gradebook, or two runs by their numbers; raises InputError.
+    """Return the last two finished runs in a gradebook, or two runs by their numbers; raises InputError.
 
-    The older snapshot has the manual marks from before its run, the newer one also those after its run.
+    An interrupted run has only a part of the class: the run after it would differ from it only in the rest. The older snapshot has the manual marks from before its run, the newer one also those after its run.
     """
     runs = {run.id: run for run in book.runs()}
-    if len(runs) < 2:
-        again = f"grader batch PATH --gradebook {shell_quoted(book.shown)}"
-        raise InputError(f"there are not two runs to compare: run `{again}` again, or name a second gradebook")
     for run in (before, after):
         if run is not None and run not in runs:
-            raise InputError(f"there is no run {run}; the runs are: {', '.join(map(str, runs))}")
-    newer = max(runs) if after is None else after
-    older = max((run for run in runs if run < newer), default=newer) if before is None else before
+            raise InputError(f"there is no run {run}; the runs are: {', '.join(map(str, runs)) or 'none'}")
+    finished = [run.id for run in runs.values() if run.finished]
+    if len({*finished, before, after} - {None}) < 2:
+        again = f"grader batch PATH --gradebook {shell_quoted(book.shown)}"
+        raise InputError(f"there are not two runs to compare: run `{again}` again, or name a second gradebook")
+    newer = max(finished) if after is None else after
+    older = max((run for run in finished if run < newer), default=newer) if before is None else before
     if older >= newer:
         raise InputError(f"run {older} is not before run {newer}")
     later = [run.last_mark for run in runs.values() if run.id > newer]

@@ -78,6 +78,12 @@ class Grades:
         """The criteria of these parts."""
         return tuple(row for row in self.newest_rubric().criteria if row.part in self.parts)
 
+    @property
+    def has_deadline(self) -> bool:
+        """Return whether late submissions lose points after a deadline of the class."""
+        policy = self.newest_rubric().late
+        return policy is not None and (self._deadline or policy.due) is not None
+
     def points(self, grade: StudentGrade) -> dict[str, Decimal]:
         """Return the points of each criterion that has a result or a manual mark."""
         if not grade.rubric:

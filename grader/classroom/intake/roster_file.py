@@ -11,6 +11,7 @@ from pathlib import Path
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_values import RowReader
 from grader.classroom.matching import plain_word
+from grader.classroom.students import CANVAS_TEST_STUDENT
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.text import counted, first_lines, printable_path
@@ -67,8 +68,8 @@ def read_roster(path: Path) -> Roster:
     mistakes: list[tuple[int, str]] = []
     read = list(_by_field(rows, fields, mistakes))
     is_from_canvas = _is_from_canvas(header, fields) and any(row["id"].isdecimal() for _, row in read)
-    if is_from_canvas:  # Canvas has rows of points and comments above the students
-        read = [(line, row) for line, row in read if row["id"]]
+    if is_from_canvas:  # Canvas has rows of points and comments above the students, and a row of its test student
+        read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in CANVAS_TEST_STUDENT]
     reader = RowReader(is_from_canvas=is_from_canvas)
     entries: list[RosterEntry] = []
     lines: list[int] = []
@@ -119,8 +120,6 @@ def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> list[
 
 
 def _notes(reader: RowReader, shown: str) -> Iterator[str]:
-    for line, text in reader.ignored:
-        yield f"line {line} of {shown}: {text!r} is not a time such as 2026-09-01T10:00, and was ignored"
     if reader.unread:
         line, status = reader.unread[0]
         count = f" ({len(reader.unread)} lines)" if len(reader.unread) > 1 else ""

@@ -20,12 +20,11 @@ _DATE = re.compile(r"\d{4}-\d\d?-\d\d?(?!\d)")
 
 
 class RowReader:
-    """Reads the rows of one roster. `unread` are the lines with a Status that is not understood, and `ignored` odd times."""
+    """Reads the rows of one roster. `unread` are the lines with a Status that is not understood."""
 
     def __init__(self, *, is_from_canvas: bool) -> None:
         self._is_from_canvas = is_from_canvas
         self.unread: list[tuple[int, str]] = []
-        self.ignored: list[tuple[int, str]] = []
 
     def entry(self, line: int, row: dict[str, str]) -> tuple[RosterEntry | None, list[str]]:
         """Return the student in a row, given by field, and what is wrong in it; no student if the row names none."""
@@ -59,7 +58,7 @@ class RowReader:
             row["section"],
             due,
             extension,
-            self._submitted(line, row["submitted"], complain),
+            _submitted(row["submitted"], complain),
             is_late,
             days,
             (row["github"],) if row["github"] not in ("", login) else (),
@@ -77,14 +76,6 @@ class RowReader:
         if due:
             return True, None
         return days > extension, max(0.0, days - extension)
-
-    def _submitted(self, line: int, text: str, complain: Complain) -> str:
-        time = iso_time(text)
-        if text and not time and _DATE.match(text):
-            complain(f"has the time {text!r} for submitted, which does not exist: write it as 2026-09-01T10:00")
-        elif text and not time:
-            self.ignored.append((line, text))
-        return time
 
 
 def _is_of_moodle(row: dict[str, str]) -> bool:
@@ -117,6 +108,14 @@ def _group(text: str, complain: Complain) -> str:
     if text and (not visible or text.casefold() in _NO_GROUP):
         complain(f"has {text!r} for the group: leave the cell empty for a student without a group")
     return text
+
+
+def _submitted(text: str, complain: Complain) -> str:
+    time = iso_time(text)
+    if text and not time:
+        why = ", which does not exist" if _DATE.match(text) else ""
+        complain(f"has the time {text!r} for submitted{why}: write it as 2026-09-01T10:00")
+    return time
 
 
 def _due(row: dict[str, str], complain: Complain) -> tuple[str, float]:

@@ -36,10 +36,7 @@ def find_assignment(columns: Sequence[GradeColumn], options: FillOptions, lms: s
 
 
 def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, options: FillOptions) -> Iterator[str]:
-    """Yield what to check about the columns: a title that does not name the rubric, and other assignments in the file."""
-    if not options.column and options.rubric_names and not _names_rubric(chosen.title, options.rubric_names):
-        name = options.rubric_names[-1]
-        yield f"{chosen.header!r} is the only assignment in the file, but its title does not contain {name!r}"
+    """Yield what to check about the columns: other assignments in the file."""
     others = sum(column != chosen and bool(column.title) for column in columns)
     if others and not options.only:
         yield (
@@ -60,23 +57,25 @@ def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
 
 
 def _detected(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
-    """Return the only assignment whose title is a name of the rubric, contains or is part of one; else the only assignment.
+    """Return the only assignment whose title is a name of the rubric, contains or is part of one.
 
-    Raises InputError if there is none, or several.
+    Raises InputError if there is none, or several. An only assignment with another title may be the grade of other work.
     """
     assignments = [column for column in columns if column.title]
     joined = {"".join(_words(name)) for name in options.rubric_names} - {""}
     same = [column for column in assignments if "".join(_words(column.title)) in joined]
     similar = [column for column in assignments if _names_rubric(column.title, options.rubric_names)]
-    candidates = same or similar or assignments
+    candidates = same or similar
     if len(candidates) == 1:
         return candidates[0]
-    if not candidates:
+    if not assignments:
         raise InputError(
             f"{options.shown} has no column of an assignment, such as {example!r}, but: {_list(columns)};"
             f" create the assignment in {lms}, and export again"
         )
-    raise InputError(f"{options.shown} has several possible columns, choose one with --column: {_list(candidates)}")
+    names = enumerated([repr(name) for name in options.rubric_names], word="or")
+    what = "several possible columns" if candidates else f"no column with a title like {names}"
+    raise InputError(f"{options.shown} has {what}, choose one with --column: {_list(candidates or assignments)}")
 
 
 def _names_rubric(title: str, rubric_names: tuple[str, ...]) -> bool:

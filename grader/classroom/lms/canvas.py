@@ -26,7 +26,7 @@ from grader.classroom.lms.filling import (
 )
 from grader.classroom.lms.grades import LmsGrade, read_points
 from grader.classroom.lms.tables import Table, TableRow, read_table
-from grader.classroom.students import Student
+from grader.classroom.students import CANVAS_TEST_STUDENT, Student
 from grader.errors import InputError
 from grader.text import format_points
 
@@ -40,7 +40,6 @@ _READ_ONLY = re.compile(r"\(.+\)")  # "(read only)", in the user's language
 _TITLE_AND_ID = re.compile(r"(.*)\s\(([0-9]+)\)", re.DOTALL)
 _NOT_A_STUDENT = re.compile(r"\s*(muted|manual posting.*)?\s*", re.IGNORECASE)
 _QUOTED = re.compile(r'="(.*)"', re.DOTALL)  # gradebook_exporter.rb writes names that begin with = like this
-_TEST_STUDENT = frozenset({"student, test", "test student"})
 _EXCUSE = "EX"
 _NO_GRADE = {"ex": "is excused in Canvas", "n/a": "is not assigned this assignment in Canvas"}
 
@@ -86,7 +85,7 @@ def fill_gradebook(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
     students = [_student(row, columns) for row in table.rows if _is_student(row)]
     kept = [*first_of_each(table.titles, _IDENTITY), grade.index] if options.only else None
     filled = fill_rows(table, students, grades, preflight, fill_row, fill_excuse=fill_excuse, kept=kept)
-    preflight.unknown = [note for note in preflight.unknown if note.who.casefold() not in _TEST_STUDENT]
+    preflight.unknown = [note for note in preflight.unknown if note.who.casefold() not in CANVAS_TEST_STUDENT]
     preflight.warnings += _warnings(table, columns, options)
     return filled
 

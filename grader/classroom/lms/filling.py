@@ -74,7 +74,8 @@ class Preflight:
     import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows of students
     without a grade, `refused` those whose grade the LMS would not accept, `unknown` rows that match no student, `missing`
     students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
-    unassigned. `kept_feedback` are rows with a comment that a person wrote.
+    unassigned. `kept_feedback` are rows with a comment that a person wrote. `older` are the final marks and excuses in the file
+    that were given for an earlier submission.
     """
 
     column: str
@@ -88,6 +89,7 @@ class Preflight:
     kept_feedback: list[RowNote] = field(default_factory=list)
     excused: list[str] = field(default_factory=list)
     refused: list[RowNote] = field(default_factory=list)
+    older: list[RowNote] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     @property
@@ -142,6 +144,8 @@ def fill_rows(
                 continue
             if grade.is_excused:
                 preflight.excused.append(who)
+            if grade.is_older:
+                preflight.older.append(RowNote(row.number, grade.who, "excuse" if grade.is_excused else "final mark"))
             preflight.unchanged += new is row
             preflight.filled += new is not row
             rows.append(new)

@@ -16,6 +16,7 @@ class LmsGrade:
 
     `feedback` is HTML from `feedback_html`; Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is False for a
     submission that is not on the roster of its class. `is_excused` is an excuse for an LMS that knows excuses; it has no total.
+    `is_older` means that the final mark or excuse was given for an earlier submission.
     """
 
     student: Student
@@ -24,6 +25,7 @@ class LmsGrade:
     why_not: str = ""
     is_on_roster: bool = True
     is_excused: bool = False
+    is_older: bool = False
 
     @property
     def who(self) -> str:

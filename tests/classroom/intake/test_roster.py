@@ -109,15 +109,6 @@ def test_an_extension_is_days_or_a_date(tmp_path: Path) -> None:
     assert (second.due, second.extension_days) == ("2026-09-04", 0.0)
 
 
-def test_an_invalid_time_is_noted(tmp_path: Path) -> None:
-    """An LMS may write text instead of a time of submission: it is ignored with a note."""
-    roster = read(tmp_path, "id,submitted\n1,yesterday\n")
-    assert roster.entries[0].submitted == ""
-    assert roster.notes == (
-        f"line 2 of {tmp_path}/roster.csv: 'yesterday' is not a time such as 2026-09-01T10:00, and was ignored",
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -187,6 +178,11 @@ def test_any_bytes_give_a_roster_or_lines(tmp_path_factory: pytest.TempPathFacto
             "id,submitted",
             "1,2026-02-30 10:00",
             "line 2 of FILE has the time '2026-02-30 10:00' for submitted, which does not exist",
+        ),
+        (
+            "id,submitted",
+            "1,yesterday",
+            "line 2 of FILE has the time 'yesterday' for submitted: write it as 2026-09-01T10:00",
         ),
         (
             "id,due,extension",

@@ -88,7 +88,12 @@ def test_brightspace_cuts_points_above_the_maximum() -> None:
             LEARN.replace("100", "10"),
             "Blackboard's maximum of 'Lab 6' is 10, but the rubric's maximum is 100",
         ),
-        (BLACKBOARD, "Username,Lab A [Total Pts: 5] |1,Lab B [Total Pts: 5] |2", "several possible columns"),
+        (BLACKBOARD, "Username,Lab A [Total Pts: 5] |1,Lab B [Total Pts: 5] |2", "choose one with --column"),
+        (
+            BRIGHTSPACE,
+            D2L.replace("Lab 6", "Midterm"),
+            "no column with a title like 'lab6' or 'A wheeled base', choose one",
+        ),
     ],
 )
 def test_what_is_refused(form: OfflineFormat, header: str, words: str) -> None:

@@ -197,6 +197,22 @@ def test_a_file_in_place_of_the_reports(folder: Path, tmp_path: Path) -> None:
     assert not book.exists()
 
 
+def test_grades_do_not_replace_what_the_command_reads(folder: Path, tmp_path: Path) -> None:
+    """Not the roster or a robot, under any name, and nothing in the class: every file keeps its content."""
+    roster, robot = tmp_path / "roster.csv", tmp_path / "robot.urdf"
+    roster.write_text("id\nash\n")
+    robot.write_text("<robot name='a'><link name='b'/></robot>")
+    (tmp_path / "link.csv").symlink_to("roster.csv")
+    inputs = ("--roster", roster, "--ignore-file", robot, "--gradebook", tmp_path / "lab6.db")
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    for name in ("roster.csv", "link.csv", "robot.urdf"):
+        line = refused("batch", folder, *inputs, "--csv", tmp_path / name)
+        assert line == f"cannot write {tmp_path / name}: the command reads it; name another file for --csv"
+    inside = refused("batch", folder, *inputs, "--csv", folder / "grades.csv")
+    assert inside.endswith("the next run would take it for a submission; choose a file outside of the class")
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
 @pytest.mark.parametrize("option", ["--reports", "--csv", "--gradebook"])
 def test_symlinks_of_a_submission_are_not_written_through(option: str, folder: Path, tmp_path: Path) -> None:
     """They are refused before anything is graded; a symlink beside the class is followed."""
