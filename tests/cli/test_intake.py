@@ -266,3 +266,10 @@ def test_a_mark_of_one_member_names_the_others(tmp_path: Path) -> None:
     assert said("birch", "box", "-").endswith("grader: the same submission counts for cedar: mark them as well\n")
     assert said("cedar", "total", "1") == ""
     assert said("ash", "box", "1") == ""
+
+
+def test_an_extension_that_cannot_be_read(tmp_path: Path) -> None:
+    """The line says that it may be a number of days."""
+    write(tmp_path, "id,extension\nash,two\n", ("ash/robot.urdf",))
+    where = f"line 2 of {tmp_path}/roster.csv has 'two' for extension"
+    assert refusal(batch(tmp_path)) == f"{where}: write a number of days from 0, or a date"

@@ -113,25 +113,27 @@ def _group(text: str, complain: Complain) -> str:
 def _submitted(text: str, complain: Complain) -> str:
     time = iso_time(text)
     if text and not time:
-        why = ", which does not exist" if _DATE.match(text) else ""
-        complain(f"has the time {text!r} for submitted{why}: write it as 2026-09-01T10:00")
+        complain(f"has the time {text!r} for submitted{_why_no_date(text)}: write it as 2026-09-01T10:00")
     return time
 
 
 def _due(row: dict[str, str], complain: Complain) -> tuple[str, float]:
     """Return a student's own deadline and extension in days: the column extension may hold either."""
-    days = _days(row["extension"])
-    if row["extension"].startswith("-"):
-        complain(f"has {row['extension']!r} for extension: write a number of days from 0, or a date")
+    days, extended = _days(row["extension"]), iso_time(row["extension"])
+    if row["extension"] and days is None and not extended:
+        why = _why_no_date(row["extension"])
+        complain(f"has {row['extension']!r} for extension{why}: write a number of days from 0, or a date")
         return "", 0.0
-    written = row["due"] or ("" if days is not None else row["extension"])
-    due = iso_time(written)
-    if written and not due:
-        why = ", which does not exist" if _DATE.match(written) else ""
-        complain(f"has the date {written!r}{why}: write it as 2026-09-01 or 2026-09-01T23:59")
+    due = iso_time(row["due"]) if row["due"] else "" if days is not None else extended
+    if row["due"] and not due:
+        complain(f"has the date {row['due']!r}{_why_no_date(row['due'])}: write it as 2026-09-01 or 2026-09-01T23:59")
     if row["due"] and row["extension"] and days is None:
         complain(f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one date")
     return due, days or 0.0
+
+
+def _why_no_date(text: str) -> str:
+    return ", which does not exist" if _DATE.match(text) else ""
 
 
 def _late(text: str, complain: Complain) -> tuple[bool | None, float | None]:

@@ -171,7 +171,13 @@ def test_any_bytes_give_a_roster_or_lines(tmp_path_factory: pytest.TempPathFacto
     [
         ("id,late", "1,-1", "line 2 of FILE has '-1' for late: write yes, no, or a number of days from 0"),
         ("id,extension", "1,-2", "line 2 of FILE has '-2' for extension: write a number of days from 0, or a date"),
-        ("id,extension", "1,soon", "line 2 of FILE has the date 'soon': write it as 2026-09-01 or 2026-09-01T23:59"),
+        ("id,extension", "1,soon", "line 2 of FILE has 'soon' for extension: write a number of days from 0, or a date"),
+        (
+            "id,extension",
+            "1,2026-02-30",
+            "line 2 of FILE has '2026-02-30' for extension, which does not exist: write a",
+        ),
+        ("id,due", "1,soon", "line 2 of FILE has the date 'soon': write it as 2026-09-01 or 2026-09-01T23:59"),
         ("id,due", "1,2026-02-30", "line 2 of FILE has the date '2026-02-30', which does not exist: write it as"),
         ("id,due", "1,2026-09-01T25:00", "line 2 of FILE has the date '2026-09-01T25:00', which does not exist"),
         (
