@@ -13,20 +13,15 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_hints
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
-from grader.classroom.intake.roster import Roster, roster_from_json
-from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.worker import robot_hashes
 from grader.errors import InputError
-from grader.grading.answers import load_with_answers
-from grader.grading.rubric import Rubric
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import Screen
-from grader.submission.opening import open_submission
-from grader.text import counted, first_lines, printable, printable_path, shell_quoted
-from grader.usecases import DEFAULT_RUBRIC, Warn
+from grader.text import counted, first_lines, printable, printable_path
+from grader.usecases import Warn
 from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.grades_csv import grades_csv
@@ -75,18 +70,18 @@ def grade_class(
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    rubric = _rubric(request.rubric, request.gradebook, warn)
+    rubric = rubric_of(request.rubric, request.gradebook, warn)
     for name in request.parts:
         rubric.part(name)
     deadline = read_deadline(request.due)
     warn_of_due(request.due, rubric, warn)
-    handed_out = tuple(_handed_out(request.ignore_files, rubric))
-    roster = _roster(request.roster, request.gradebook)
+    handed_out = tuple(handed_out_hashes(request.ignore_files, rubric))
+    roster = roster_of(request.roster, request.gradebook)
     _refuse_targets(request)
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
     _warn_of_intake(intake, warn)
     with Gradebook(request.gradebook, create=True) as book:
-        _warn_of_parts(book, request.parts, rubric, warn)
+        warn_of_parts(book, request.parts, rubric, warn)
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
@@ -120,54 +115,6 @@ def _search_hints(
     statistics = is_json or (reports and Format.HTML in request.report_formats)
     search_class_hints(book, options, progress, warn, reports=reports, statistics=statistics)
     return is_json
-
-
-def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
-    """Yield the hashes of the robots that the course handed out. Raises InputError for a file without a robot."""
-    for path in files:
-        hashes = robot_hashes(
-            open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-        )
-        if not any(hashes):
-            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
-        yield from filter(None, hashes)
-
-
-def _rubric(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
-    """Return the rubric with its answers, so that `review` has them on any machine; without a name that of the last run.
-
-    If the file of the last run no longer exists, its text in the gradebook counts.
-    """
-    if name is None and gradebook.exists():
-        with Gradebook(gradebook) as book:
-            run = book.newest_run()
-            last = book.rubric(run.rubric, answers=True) if run is not None else None
-        if last is not None:
-            rubric = load_with_answers(str(last.path)) if last.path.exists() else last
-            if not rubric.is_shipped:
-                warn(f"rubric of the last run: {printable_path(rubric.path)}")
-            return rubric
-    return load_with_answers(name or DEFAULT_RUBRIC)
-
-
-def _warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn: Warn) -> None:
-    """Say that the last run graded fewer parts than this one, which grades all."""
-    last = Grades(book).parts if not wanted and book.newest_run() is not None else ()
-    if last and set(last) < {criterion.part for criterion in rubric.criteria}:
-        options = " ".join(f"--part {shell_quoted(part)}" for part in last)
-        warn(
-            f"the last run graded {', '.join(last)} only, and this one grades all parts: pass {options} to grade the same"
-        )
-
-
-def _roster(file: Path | None, gradebook: Path) -> Roster | None:
-    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows."""
-    roster = read_roster(file) if file is not None else None
-    if not gradebook.exists():
-        return roster
-    with Gradebook(gradebook) as book:
-        roster = roster or roster_from_json(book.roster_entries())
-        return roster.with_lms_numbers(book.students()) if roster is not None else None
 
 
 @contextmanager
@@ -227,7 +174,8 @@ def _refuse_targets(request: ClassRequest) -> None:
 
 def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
-    files = [path for path in (request.roster, Path(request.rubric), *request.ignore_files) if path is not None]
+    rubric = Path(request.rubric) if request.rubric else None
+    files = [path for path in (request.roster, rubric, *request.ignore_files) if path is not None]
     if any(file.is_file() and is_same_file(csv, file) for file in files):
         raise InputError(f"cannot write {printable_path(csv)}: the command reads it; name another file for --csv")
     if request.root in (csv.resolve(), *csv.resolve().parents):
