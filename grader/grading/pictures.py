@@ -36,9 +36,14 @@ def _is_evidence(result: Result) -> bool:
 
 
 def evidence_files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files of evidence. What other checks measure, such as a vector, is no list of files."""
-    measured = result.outcome.measured
-    return tuple(map(str, measured)) if _is_evidence(result) and isinstance(measured, tuple | list) else ()
+    """Return the paths of the files of evidence, also where it takes the place of a URDF.
+
+    What other checks measure, such as a vector or names, is no list of files.
+    """
+    measured, is_open = result.outcome.measured, result.outcome.status == "pending"
+    if not isinstance(measured, tuple | list) or not (_is_evidence(result) or is_open):
+        return ()
+    return tuple(name for name in measured if isinstance(name, str))
 
 
 def _files(result: Result) -> tuple[str, ...]:

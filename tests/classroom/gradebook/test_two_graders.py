@@ -163,6 +163,7 @@ class TwoGraders(RuleBasedStateMachine):
             or (what == "undo" and not marks_before)
             or (what not in ("undo",) and key == MISSING and row.id != TOTAL)
             or (what == "second" and row.id == TOTAL)
+            or (what in ("points", "second") and row.adjusted == "drop")
             or (what == "second" and newest is not None and newest.points is not None and newest.by == by)
         )
         if is_refused:

@@ -281,7 +281,8 @@ def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) 
     before = results(graded)
     assert again(graded, "--rubric", str(rubric)) == f"{SIZE} graded, 0 unchanged"
     assert again(graded, "--rubric", str(rubric)) == f"0 graded, {SIZE} unchanged"
-    assert again(graded) == f"{SIZE} graded, 0 unchanged"
+    assert again(graded) == f"0 graded, {SIZE} unchanged"  # with the rubric of the last run
+    assert again(graded, "--rubric", "lab6") == f"{SIZE} graded, 0 unchanged"
     once_more = results(graded)
     assert {len(row) for row in once_more.values()} == {3}
     assert again(graded, "--force") == f"{SIZE} graded, 0 unchanged"
