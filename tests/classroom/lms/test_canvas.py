@@ -161,7 +161,7 @@ def test_excuses() -> None:
 
 
 def test_only_this_assignment() -> None:
-    """The columns that identify students stay, each once, and the row of points; all else is left out, quotes and all."""
+    """The columns that identify students stay, each once, and the row of points; all other columns are omitted, with their quotes."""
     header = 'Student,ID,"SIS User ID",SIS Login ID,Section,Notes,Quiz (1),Lab 6 (2),Section,Current Score'
     points = '"    Points Possible",,,,,,10,100,,(read only)'
     posting = ",,,,,,,Manual Posting,,"
