@@ -198,8 +198,9 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
     other = package.find(owner)
     if other is None:
         # A path may lack a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'.
-        tail = posixpath.basename(rest or owner.removeprefix(package.name))
-        if owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files):
+        more = owner.removeprefix(package.name)
+        is_known = more in package.tree.folders if rest else more in map(posixpath.basename, package.tree.files)
+        if owner.startswith(package.name) and is_known:
             path = posixpath.join("share", owner, rest).rstrip("/")
             return (
                 "failed",

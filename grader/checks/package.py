@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.package import MANIFEST, Package
+from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
@@ -35,6 +35,13 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         return failed(problem.message, problem.location)
     fine = manifest.name == name
     message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    setup, registered = package.setup, package.registered
+    if fine and setup is not None and registered and name not in registered:
+        # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below that name.
+        others = enumerated([repr(other) for other in registered])
+        message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
+        at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))
+        return failed(message, setup.location(at))
     return judged(fine, message, manifest.name, name, at=manifest.name_location)
 
 
@@ -154,8 +161,7 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
             message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
             return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
     copies = [copy for copy in setup.copies if copy.source in files]
-    shares = tuple(f"share/{name}/" for name in package.names)
-    inside = [copy for copy in copies if copy.target.startswith(shares)]
+    inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
     if kind == "launch" and len(twice) > 1:
         message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
@@ -167,8 +173,8 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
         return pending(f"{message}; needs manual grading", "cannot determine statically what setup.py installs")
     if copies:
-        message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {shares[0]}"
-        mistake = f"a build installs the file outside of {shares[0]}"
+        message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {package.share}"
+        mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake)
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"

@@ -43,6 +43,7 @@ class Package:
     generated: tuple[str, ...] = field(
         default=(), repr=False
     )  # files that a build has copied, by their paths in the submission
+    wanted: str = ""  # the name that the lab gives it
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -69,8 +70,17 @@ class Package:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names that ROS 2 finds it by: its own, and those that setup.py installs in the resource index."""
-        index = [path.removeprefix(RESOURCE_INDEX) for path in self.installed if path.startswith(RESOURCE_INDEX)]
-        return tuple(dict.fromkeys([self.name, *index]))
+        return tuple(dict.fromkeys([self.name, *self.registered]))
+
+    @cached_property
+    def registered(self) -> tuple[str, ...]:
+        """The names that setup.py registers it by: those of its files in the resource index."""
+        return tuple(path.removeprefix(RESOURCE_INDEX) for path in self.installed if path.startswith(RESOURCE_INDEX))
+
+    @cached_property
+    def share(self) -> str:
+        """The folder below the prefix where ros2 looks for its files: by the name of the lab if it has it, else by its own."""
+        return f"share/{self.wanted if self.wanted in self.names else self.name}/"
 
     @property
     def is_cmake(self) -> bool:

@@ -36,7 +36,7 @@ def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...
     the least deep, then the first in alphabetical order.
     """
     known: dict[str, Package] = {}
-    found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
+    found = [_read_package(tree, folder, known, wanted) for folder in find_packages(tree, wanted)]
     found.sort(
         key=lambda it: (_distance(it, wanted), is_backup(it.folder), _missing(it, urdf), _depth(it.folder)),
     )
@@ -101,7 +101,7 @@ def _distance(package: Package, wanted: str) -> int:
     return _SIMILAR if package.manifest is not None and closest(package.name, [wanted]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
+def _read_package(tree: Tree, folder: str, known: dict[str, Package], wanted: str) -> Package:
     own = tree.below(folder)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)
@@ -111,4 +111,4 @@ def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package
             manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
-    return Package(folder, own, manifest, known, tree.generated)
+    return Package(folder, own, manifest, known, tree.generated, wanted)

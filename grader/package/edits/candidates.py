@@ -32,7 +32,8 @@ def package_proposals(
     if package is None:
         return []
     task = Task(package, reference)
-    found: dict[tuple[object, ...], Proposal] = {}
+    name = package.share.split("/")[1]
+    found = {proposal.edits: proposal for proposal in manifest_edits.one_name(task, name)}
     for check, arguments in wanted:
         family = _BY_CHECK.get(check)
         own = [it for it in family(task, arguments) if it.edits] if family is not None else []

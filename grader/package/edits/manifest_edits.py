@@ -20,28 +20,43 @@ _EXPORT_END = re.compile(r"[ \t]*</export\s*>")
 
 def named(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
     """Yield edits that give the package its name, in all its files, or create its package.xml."""
-    manifest, source = task.package.manifest, task.source(MANIFEST)
-    if manifest is not None and source is not None and manifest.name is not None:
-        old, new = manifest.name, arguments["name"]
-        edits = [_text(source, manifest.name_location, new), *_elsewhere(task, old, new)]
-        yield proposal(edits, "the name of the package", f"rename the package to {new}")
-        modules = [task.renamed(path, path.replace(old, new, 1)) for path in task.files if path.startswith(f"{old}/")]
-        if modules:
-            edits = [*edits, *modules]
-            yield proposal(
-                edits, "the name of the package", f"rename the package to {new}, with its folder of Python files"
-            )
+    yield from one_name(task, arguments["name"])
     yield from readable(task)
+
+
+def one_name(task: Task, new: str) -> Iterator[Proposal]:
+    """Yield edits that give the package one name in all its files, for a package that has another or several."""
+    manifest, source, setup = task.package.manifest, task.source(MANIFEST), task.package.setup
+    if manifest is None or source is None or manifest.name is None:
+        return
+    names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *task.package.registered])
+    names.pop(new, None)
+    if not names:
+        return
+    edits = [_text(source, manifest.name_location, new)] if manifest.name != new else []
+    for old in names:
+        edits += _elsewhere(task, old, new)
+    yield proposal(edits, "the name of the package", f"rename the package to {new}")
+    modules = [
+        task.renamed(path, path.replace(old, new, 1)) for path in task.files for old in names if path.startswith(f"{old}/")
+    ]
+    if modules:
+        action = f"rename the package to {new}, with its folder of Python files"
+        yield proposal([*edits, *modules], "the name of the package", action)
 
 
 def _elsewhere(task: Task, old: str, new: str) -> Iterator[Edit]:
     """Yield the edits of the other files that name the package."""
+    word = re.compile(rf"(?<![\w.]){re.escape(old)}(?![\w.])")
     for path in (SETUP, *task.package.launch_files[:3]):
         file = task.python(path) if path.endswith(".py") else None
         for literal in file.literals if file is not None else ():
-            text = re.sub(rf"(?<![\w.]){re.escape(old)}(?![\w.])", new, literal.text)
+            text = word.sub(new, literal.text)
             if file is not None and text != literal.text and (path == SETUP or literal.text == old):
                 yield file.source.edit(literal.start, literal.end, text)
+    config = task.source("setup.cfg")
+    if config is not None:
+        yield from (config.edit(found.start(), found.end(), new) for found in word.finditer(config.text))
     if f"resource/{old}" in task.files and f"resource/{new}" not in task.files:
         yield task.renamed(f"resource/{old}", f"resource/{new}")
 
