@@ -1,10 +1,8 @@
-"""The evidence in a report: what was found for each piece that the lab asks for, and where it takes the place of a URDF."""
+"""The evidence in a report: what was found for each piece that the lab asks for."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from grader.checks.outcome import Outcome
-from grader.files.tree import File
 from grader.grading.report import Exhibits
 from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission
@@ -14,7 +12,7 @@ if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _MAX_PICTURES = 50
-_MAX_UNREAD, _MAX_LISTED = 4, 6
+_MAX_UNREAD = 4
 
 
 def exhibits_of(
@@ -44,10 +42,3 @@ def not_searched(submission: Submission, exhibits: Sequence[Exhibits]) -> tuple[
 
     unread = documents.named(DOCUMENTS)[1]
     return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
-
-
-def by_evidence(files: Sequence[File]) -> Outcome:
-    """Return the outcome of a criterion of the URDF, where there is none, but evidence."""
-    paths = tuple(file.path for file in files[:_MAX_PICTURES])
-    message = f"no URDF was submitted, but {enumerated(paths, _MAX_LISTED)}; needs manual grading"
-    return Outcome("pending", message, paths, mistake="no URDF was submitted, but evidence")

@@ -1,24 +1,25 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check
 from grader.checks.tree import urdf_loads
 from grader.errors import InputError, MissingElement, NotDecided, RubricError
 from grader.grading.criterion import Carried, Criterion
-from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
+from grader.grading.exhibits import exhibits_of, not_searched
 from grader.grading.explanation import explained
 from grader.grading.graded_submission import GradedSubmission
+from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.submission.urdf import Absent, Read
 from grader.text import enumerated
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
@@ -46,7 +47,8 @@ def grade(
         problems += package_problems(submission.package)
     evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
-    return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
+    graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
+    return Report(graded, rubric, chosen, results, problems, *evidence, notes)
 
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
@@ -86,13 +88,30 @@ def _notes_on_xacro(submission: Submission) -> list[str]:
     return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
 
 
+def _graded_manually(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+    """Return what a submission lacks, and why, whose criteria then need manual grading by the rubric.
+
+    Without a URDF, `without_urdf` decides for the package as well.
+    """
+    keys = {"URDF": rubric.without_urdf, "package": rubric.without_package}
+    if "manual" not in keys.values():
+        return {}
+    lacking = missing_work(rubric, submission)
+    if "URDF" in lacking and rubric.without_urdf == "manual":
+        return lacking
+    return {kind: reason for kind, reason in lacking.items() if keys[kind] == "manual"}
+
+
 class _Grading:
     """The criteria decided so far, and which of them was the first that misses a thing."""
 
     def __init__(self, rubric: Rubric, submission: Submission) -> None:
-        self.submission = submission
-        is_manual = rubric.without_urdf == "manual"
-        self._by_evidence = by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
+        self._rubric, self.submission = rubric, submission
+        self._manual = _graded_manually(rubric, submission)
+        if "URDF" in self._manual:
+            submission = replace(submission, urdf=Absent())
+        if "package" in self._manual:
+            submission = replace(submission, package=None)
         self._subjects = Subjects(rubric, submission)
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
@@ -118,20 +137,12 @@ class _Grading:
 
     def _check(self, criterion: Criterion) -> Result:
         try:
-            if self._by_evidence is not None and self._needs_what_is_missing(criterion.check):
-                return Result(criterion, self._by_evidence)
             result = self._run(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
             return self._miss(criterion, missing)
         if result.outcome.status != "failed":
             return result
         return result._replace(outcome=explained(result.outcome, self._subjects.problems))
-
-    def _needs_what_is_missing(self, check: Check) -> bool:
-        """Return whether a check is decided by a URDF, or by a package where there is none either."""
-        if check.function in MANUAL_CHECKS:
-            return False
-        return check.subject in ("urdf", "robot") or self.submission.package is None
 
     def _carried(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
@@ -186,6 +197,11 @@ class _Grading:
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
+        if missing.kind in self._manual:
+            return Result(criterion, by_evidence(self.submission, self._manual[missing.kind]))
+        robot = robot_of(self.submission.urdf)
+        if missing.kind == "link" and robot is not None and is_another_robot(self._rubric, robot):
+            missing = another_robot(self._rubric, robot)
         first = self.missed.get((missing.kind, missing.name), criterion.id)
         if (
             criterion.adjustment is None

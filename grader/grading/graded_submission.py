@@ -32,8 +32,8 @@ class GradedPackage(NamedTuple):
 class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
-    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; with
-    `has_evidence_only` there are pictures or documents, but no URDF. `originals` are its files.
+    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; `lacks`
+    names what there is evidence for, but no work of this lab: the URDF, the package. `originals` are its files.
     """
 
     id: str
@@ -46,11 +46,11 @@ class GradedSubmission:
     verdict: Verdict | None = None
     is_single: bool = False
     unread: str = ""
-    has_evidence_only: bool = False
+    lacks: tuple[str, ...] = ()
     originals: Originals | None = field(default=None, repr=False, compare=False)
 
     @classmethod
-    def of(cls, submission: Submission) -> "GradedSubmission":
+    def of(cls, submission: Submission, lacks: tuple[str, ...]) -> "GradedSubmission":
         """Return what a report says of a submission."""
         package = submission.package
         return cls(
@@ -64,7 +64,7 @@ class GradedSubmission:
             submission.verdict,
             submission.is_single,
             submission.unread,
-            submission.has_evidence_only,
+            lacks,
             submission,
         )
 

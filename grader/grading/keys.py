@@ -221,6 +221,10 @@ RUBRIC = KeyTable(
             toml_type(Literal["failed", "manual"]),
             "The criteria of the URDF if there is evidence, but no URDF: failed (the default), or manual grading.",
         ),
+        "without_package": described(
+            toml_type(Literal["failed", "manual"]),
+            "The criteria of the package if there is evidence, but no package: failed (the default), or manual grading.",
+        ),
         "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
         "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),
         "part": described(_rows(PART), "The parts of the lab, in the order of the report."),

@@ -40,7 +40,7 @@ def to_record(report: Report, template: Template | None = None) -> str:
         "submission": [
             submission.id, submission.path, submission.sha256, submission.package,
             submission.other_candidates, submission.ignored, submission.has_urdf, submission.verdict, submission.is_single,
-            submission.unread, submission.has_evidence_only,
+            submission.unread, submission.lacks,
         ],
         "parts": report.parts,
         "results": [_result(same, result) for result in report.results],
@@ -86,9 +86,9 @@ def submission_of(text: str) -> GradedSubmission:
     return _submission(json.loads(text))
 
 
-def has_evidence_only(text: str) -> bool:
-    """Return whether a record is of a submission with pictures or documents, but without a URDF."""
-    return json.loads(text)["submission"][-1] is True  # records of earlier versions end with a text
+def lacks(text: str) -> tuple[str, ...]:
+    """Return what the submission of a record has evidence for, but no work of this lab: the URDF, the package."""
+    return submission_of(text).lacks
 
 
 def _submission(data: Any, originals: Originals | None = None) -> GradedSubmission:
@@ -106,7 +106,7 @@ def _submission(data: Any, originals: Originals | None = None) -> GradedSubmissi
         verdict,
         is_single,
         unread,
-        rest == [True],
+        tuple(rest[0]) if rest else (),
         originals,
     )
 

@@ -1,13 +1,14 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.checks.manual import answered
+from grader.checks.registry import LINK_ARGUMENTS
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.criterion import Adjustment, Carried, Criterion
@@ -70,7 +71,8 @@ class Rubric:
 
     `folders` are the names of the lab's folder in a repository of several labs.
     `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
-    grading. It is empty where the rubric does not say, which means "failed". `hints` is the most that hints tell. `solution` is
+    grading. It is empty where the rubric does not say, which means "failed". `without_package` is the same for the package.
+    `links` are the links that criteria name. `hints` is the most that hints tell. `solution` is
     the reference solution, if there is one.
     """
 
@@ -88,9 +90,11 @@ class Rubric:
     answers: str = ""
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
+    without_package: str = ""
     hints: Level = "cause"
     ignored: tuple[Ignored, ...] = ()
     solution: Reference | None = field(default=None, compare=False, repr=False)
+    links: frozenset[str] = frozenset()
 
     @property
     def compares_with_reference(self) -> bool:
@@ -183,10 +187,19 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric.get("answers", ""),
         rubric.get("folders", ()),
         rubric.get("without_urdf", ""),
+        rubric.get("without_package", ""),
         rubric.get("hints", "cause"),
         tuple(Ignored(**row) for row in valid.ignored),
         _solution(rubric, path),
+        frozenset(_links(arguments for _, arguments in valid.bound)),
     )
+
+
+def _links(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield the names of links in the arguments of checks."""
+    for given in arguments:
+        names = texts_in([value for key, value in given.items() if key in LINK_ARGUMENTS])
+        yield from (name for name in names if name and not is_selector(name))
 
 
 def _solution(rubric: TomlRow, path: Path) -> Reference | None:

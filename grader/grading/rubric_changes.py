@@ -10,7 +10,10 @@ from grader.grading.rubric import Rubric
 
 _Values = Callable[[Any], object]
 _KEYS_OF_RUBRIC: Mapping[str, _Values] = {
-    **{name: attrgetter(name) for name in ("urdf", "package", "folders", "reference", "without_urdf")},
+    **{
+        name: attrgetter(name)
+        for name in ("urdf", "package", "folders", "reference", "without_urdf", "without_package")
+    },
     "part": lambda rubric: tuple((part.id, part.needs) for part in rubric.parts),
 }
 _KEYS_OF_CRITERION: Mapping[str, _Values] = {

@@ -41,7 +41,8 @@ def render_class_json(
                 }
                 for group in summary.attention.groups
             ],
-            "evidence_without_urdf": summary.evidence_only,
+            "evidence_without_urdf": summary.evidence_only["URDF"],
+            "evidence_without_package": summary.evidence_only["package"],
             "late": {
                 "count": late.students,
                 **{name: exact(getattr(late, name)) for name in ("lost", "least", "most")},

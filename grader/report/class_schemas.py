@@ -91,6 +91,7 @@ CLASS_SCHEMA = document(
         "needs_a_look": TOTAL,
         "attention": array(record({"reason": TEXT, "students": array(record({"id": TEXT, "detail": TEXT}))})),
         "evidence_without_urdf": TOTAL,
+        "evidence_without_package": TOTAL,
         "late": record({"count": TOTAL, **each(POINTS, "lost least most")}),
         "students": array(_STUDENT),
     },

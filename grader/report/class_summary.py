@@ -26,6 +26,7 @@ from grader.report.class_words import (
     criterion_name,
     earlier_line,
     edit_lines,
+    evidence_lines,
     final_line,
     gain,
     identical_line,
@@ -34,7 +35,6 @@ from grader.report.class_words import (
     mark_lines,
     percent,
     span,
-    without_urdf,
 )
 from grader.report.console import wrapped
 from grader.text import counted, format_points, printable
@@ -61,7 +61,7 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
     _print_agreement([*agreement_lines(summary.agreement)], console)
     _print_identical(summary.identical, console)
     _print_attention(summary.attention, console, verbose=verbose)
-    for line in filter(None, (without_urdf(summary), late_line(summary))):
+    for line in filter(None, (*evidence_lines(summary), late_line(summary))):
         console.print()
         wrapped(console, Text(line), 0)
 

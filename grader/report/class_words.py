@@ -148,16 +148,16 @@ def identical_line(work: IdenticalWork) -> str:
     return f"{enumerated(work.students, MAX_NAMED)}{f' ({same})' if same else ''}"
 
 
-def without_urdf(summary: ClassSummary) -> str:
-    """Return how many submissions have evidence, but no URDF; empty if there are none, or if the rubric says what to do."""
-    count = summary.evidence_only
-    if not count or summary.rubric.without_urdf:
-        return ""
-    have = "submission has" if count == 1 else "submissions have"
-    return (
-        f"{count} {have} pictures or documents, but no URDF: the criteria of the URDF are failed. "
-        'Set `without_urdf = "manual"` in the rubric to grade them manually, or "failed" to keep this'
-    )
+def evidence_lines(summary: ClassSummary) -> list[str]:
+    """Return how many submissions have evidence, but no URDF or no package, unless the rubric says what to do with them."""
+    keys = {"URDF": summary.rubric.without_urdf, "package": summary.rubric.without_package}
+    return [
+        f"{counted(count, 'submission')} {'has' if count == 1 else 'have'} pictures or documents, but no {kind} of this lab: the "
+        f"criteria of the {kind} are failed. "
+        f'Set `without_{kind.lower()} = "manual"` in the rubric to grade them manually, or "failed" to keep this'
+        for kind, key in keys.items()
+        if (count := summary.evidence_only[kind]) and not key
+    ]
 
 
 def late_line(summary: ClassSummary) -> str:

@@ -122,6 +122,7 @@ def submission_of(
         chosen.students,
         chosen.notes,
         is_single=False,
+        other_lab=chosen.other_lab,
         no_documents=no_documents,
         arguments=arguments,
         reopen=partial(

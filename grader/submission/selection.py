@@ -27,7 +27,7 @@ class Selection(NamedTuple):
     """The files of the lab, the URDF and the package that are graded, the other candidates, and notes on the choice.
 
     `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `students` are the folders of several students, if
-    the submission holds theirs.
+    the submission holds theirs. `other_lab` is the folder of another lab that is graded.
     """
 
     tree: Tree
@@ -38,6 +38,7 @@ class Selection(NamedTuple):
     others: tuple[OtherCandidate, ...]
     notes: tuple[str, ...]
     students: tuple[str, ...]
+    other_lab: str
 
 
 def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit: int) -> Selection:
@@ -78,7 +79,9 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     if urdf is not None and not students:
         own, beside = students_beside(urdf.rpartition("/")[0], scope.documents.folders, names, lab, package)
         notes += [_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own)] if beside else []
-    return Selection(scope.documents, urdf, graded, packages, no_package, others, tuple(notes), students)
+    return Selection(
+        scope.documents, urdf, graded, packages, no_package, others, tuple(notes), students, scope.other_lab
+    )
 
 
 class _Scope:
@@ -89,7 +92,7 @@ class _Scope:
     ) -> None:
         self._whole = tree
         self._labs = LabFolders(folders, tree.files)
-        self._other = ""
+        self.other_lab = ""
         present = set(map(self._labs.belonging, tree.files))
         work = {self._labs.belonging(path) for path in (*(robot.path for robot in robots), *roots)}
         has_own = Belonging.THIS_LAB in present
@@ -99,7 +102,7 @@ class _Scope:
             self._allowed = [Belonging.THIS_LAB, Belonging.NO_LAB]
         elif work == {Belonging.OTHER_LAB} or present == {Belonging.OTHER_LAB}:
             best = find_urdf(tree, wanted, None, tuple(of_labs or robots)).path or next(iter([*roots, *tree.files]))
-            self._other = self._labs.around(best)
+            self.other_lab = self._labs.around(best)
             self._allowed = [Belonging.OTHER_LAB, Belonging.NO_LAB]
         else:
             self._allowed = [Belonging.NO_LAB]
@@ -110,7 +113,7 @@ class _Scope:
     def lab(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not graded."""
         found = self._labs.belonging(path)
-        if found is Belonging.OTHER_LAB and not (self._other and path.startswith(f"{self._other}/")):
+        if found is Belonging.OTHER_LAB and not (self.other_lab and path.startswith(f"{self.other_lab}/")):
             return None
         return found
 
@@ -131,10 +134,10 @@ class _Scope:
 
     def notes(self, urdf: str | None) -> tuple[str, ...]:
         """Return the notes on the folders that were searched."""
-        if self._other:
+        if self.other_lab:
             why = f"{self._own}, the folder of this lab, has no robot and no package" if self._own else ""
             return (
-                f"{why or 'no folder of this lab was found'}: {self._other}, the folder of another lab, was graded",
+                f"{why or 'no folder of this lab was found'}: {self.other_lab}, the folder of another lab, was graded",
             )
         if self._own and urdf and self.lab(urdf) is Belonging.NO_LAB:
             return (f"{self._own}, the folder of this lab, has no URDF: {urdf}, which is outside of it, was graded",)

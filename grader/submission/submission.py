@@ -42,6 +42,7 @@ class Submission:
     students: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
+    other_lab: str = ""  # the folder of another lab, where it is graded
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
     arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
     reopen: Callable[[Tree], Submission] | None = field(default=None, repr=False)  # opens other files in the same way
@@ -70,11 +71,6 @@ class Submission:
         """The files that may show the work: pictures, films, PDF and Word files."""
         named = {proof.file.path for proof in self.proofs}
         return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
-
-    @property
-    def has_evidence_only(self) -> bool:
-        """Return whether it has evidence, but no URDF."""
-        return isinstance(self.urdf, Absent) and bool(self.evidence)
 
     @property
     def path(self) -> str | None:

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from grader.cli.app import run as in_process
-from grader.grading.record import from_record, has_evidence_only, to_record
+from grader.grading.record import from_record, lacks, to_record
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import grader, urdf
 from tests.command_line import run
@@ -23,7 +23,7 @@ REPORT = pdf(
     ["Task 1: Step 18", PICTURE, "REQUIRED Question: what happens and why?", "It vanishes."],
     ["REQUIRED Question:", "rviz2 shows the robot."],
 )
-NO_URDF = "pictures or documents, but no URDF"
+NO_URDF = "pictures or documents, but no URDF of this lab"
 EVIDENCE_LAB = """
 id = "small"
 title = "A small lab"
@@ -168,11 +168,10 @@ def test_a_record_keeps_evidence(tmp_path: Path) -> None:
     report = json.loads((tmp_path / "reports" / "Ash.json").read_text())
     assert report["evidence"] == as_json(tmp_path / "class" / "Ash")["evidence"]
     record = json.loads(to_record(SAMPLES["pictures-only"].grade()))
-    assert has_evidence_only(json.dumps(record))
+    assert lacks(json.dumps(record)) == ("URDF", "package")
     del record["perhaps"], record["submission"][-1]
     earlier = from_record(json.dumps(record), LAB6)
-    assert not has_evidence_only(json.dumps(record))
-    assert (earlier.submission.has_evidence_only, earlier.exhibits[0].perhaps) == (False, ())
+    assert (earlier.submission.lacks, earlier.exhibits[0].perhaps) == ((), ())
 
 
 @pytest.mark.parametrize(("key", "pending"), [("", 1), ("failed", 1), ("manual", 6)])

@@ -29,6 +29,7 @@ folders = ["Lab0"]
 points = 6.5
 answers = "lab0.answers.toml"
 without_urdf = "manual"
+without_package = "manual"
 hints = "edit"
 reference = "solution"
 

@@ -1,5 +1,6 @@
 """The summary of a class, for the terminal, the JSON and the class's page."""
 
+from collections import Counter
 from typing import NamedTuple
 
 from grader.classroom.gradebook.agreement import Agreement, agreement
@@ -16,7 +17,8 @@ from grader.grading.rubric import Rubric
 class ClassSummary(NamedTuple):
     """The figures of a class under the newest rubric.
 
-    `fixes` is empty unless requested. `evidence_only` counts the submissions with pictures or documents, but no URDF.
+    `fixes` is empty unless requested. `evidence_only` counts the submissions with pictures or documents, but no `URDF`,
+    or no `package`.
     """
 
     rubric: Rubric
@@ -24,7 +26,7 @@ class ClassSummary(NamedTuple):
     fixes: tuple[CommonFix, ...]
     attention: Attention
     identical: tuple[IdenticalWork, ...]
-    evidence_only: int
+    evidence_only: Counter[str]
     agreement: Agreement
     late: LateTotals
 

@@ -28,6 +28,7 @@ from grader.files.opening import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
+from grader.grading.missing_work import is_another_robot, robot_of
 from grader.grading.record import Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
@@ -93,6 +94,10 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     fault, reason = report.fault, _why_unreadable(submission)
     verdict: Verdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result_of(report, task, verdict, fault or reason, digest, seen, template)
+    if is_another_robot(
+        rubric, robot_of(submission.urdf)
+    ):  # what the course handed out for the lab before is no identical work
+        return graded
     urdf, robot = robot_hashes(submission)
     return graded._replace(urdf=urdf, robot=robot)
 

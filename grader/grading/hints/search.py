@@ -9,6 +9,7 @@ from grader.edits import REWRITTEN, Proposal
 from grader.grading.hints.choice import Choice, Option
 from grader.grading.hints.proposing import Proposing
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, costs_of, gained, joined
+from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
 from grader.submission.urdf import Read
@@ -42,6 +43,7 @@ class Search:
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self._choice = Choice(trials, Proposing(reference, package), self._criteria)
         self._reference = reference
+        self._is_another_robot = is_another_robot(trials.rubric, robot_of(trials.start.submission.urdf))
         self.found: list[Found] = []
         self.final = trials.start
         self._known: dict[Edits, list[Option]] = {}
@@ -63,6 +65,8 @@ class Search:
     def _round(self, state: State, ranks: range) -> bool:
         """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
         wanted = self._by_cost(state.results)
+        if self._is_another_robot:  # no edit of a mistake makes it the lab's
+            wanted = [name for name in wanted if self._criteria[name].check.subject != "robot"]
         if not wanted:
             return False
         options = self._known.get(state.edits) or self._choice.tried(state, wanted)

@@ -38,7 +38,10 @@ def one_name(task: Task, new: str) -> Iterator[Proposal]:
         edits += _elsewhere(task, old, new)
     yield proposal(edits, "the name of the package", f"rename the package to {new}")
     modules = [
-        task.renamed(path, path.replace(old, new, 1)) for path in task.files for old in names if path.startswith(f"{old}/")
+        task.renamed(path, path.replace(old, new, 1))
+        for path in task.files
+        for old in names
+        if path.startswith(f"{old}/")
     ]
     if modules:
         action = f"rename the package to {new}, with its folder of Python files"

@@ -21,6 +21,7 @@ from grader.report.class_words import (
     adjusted_lines,
     earlier_line,
     edit_lines,
+    evidence_lines,
     final_line,
     gain,
     is_low,
@@ -28,7 +29,6 @@ from grader.report.class_words import (
     percent,
     same_file,
     span,
-    without_urdf,
 )
 from grader.report.pages.class_rows import Group, StudentRow, groups, student_rows
 from grader.report.pages.robot import RULES
@@ -81,7 +81,7 @@ def render_class_page(
         "identical_note": IDENTICAL_NOTE,
         "attention": summary.attention,
         "max_attention": _MAX_ATTENTION,
-        "evidence": without_urdf(summary),
+        "evidence": evidence_lines(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,
         "columns": _columns(rows),
