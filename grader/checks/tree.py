@@ -7,12 +7,15 @@ from grader.checks.outcome import Outcome, failed, judged, passed, pending, plac
 from grader.checks.toml_types import Count
 from grader.errors import MissingElement
 from grader.names import did_you_mean
-from grader.problems import Problem
+from grader.problems import Problem, kinds_in
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.text import counted, enumerated
+from grader.xml import catalogue as xml_catalogue
+
+_OF_XML = kinds_in(vars(xml_catalogue).values())
 
 
 def urdf_loads(urdf: Reading) -> Outcome:
@@ -28,7 +31,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
         return pending(
             f"{undetermined[0].message}; needs manual grading", undetermined[0].message, undetermined[0].location
         )
-    problems.sort(key=lambda problem: not problem.kind.is_before_ros)
+    problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""

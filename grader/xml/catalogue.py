@@ -57,3 +57,9 @@ SEVERAL_ROOTS = warns(
     "More than one element at the top level",
     "ROS 2 reads the first <robot> at the top level and ignores every other top-level element.",
 )
+RECOVERED = warns(
+    "URDF015",
+    "An assumption about a broken tag",
+    "ROS 2 loads nothing of a file with a broken tag. To grade the rest of it, the grader assumes where an element ends, or reads "
+    "a tag without the attributes that are broken. Fix the tag: with other assumptions the file means something else.",
+)

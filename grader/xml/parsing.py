@@ -42,7 +42,8 @@ class Unresolved(NamedTuple):
 class XmlDocument(NamedTuple):
     """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
 
-    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level. If xacro expanded the text,
+    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level; `recovered` is then what can be read of
+    the robot. If xacro expanded the text,
     `unresolved` has the elements that are not known completely.
     """
 
@@ -52,6 +53,7 @@ class XmlDocument(NamedTuple):
     first_tag: int = 0
     unresolved: Mapping[Element, Unresolved] = {}
     is_expanded: bool = False
+    recovered: Element | None = None
 
 
 def parse_xml(data: bytes) -> Element:
@@ -64,8 +66,11 @@ def make_element(tag: str, attributes: dict[str, str], parent: Element | None = 
     return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)
 
 
-def read_document(data: bytes, path: str) -> XmlDocument:
-    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
+def read_document(data: bytes, path: str, children: Mapping[str, tuple[str, ...]]) -> XmlDocument:
+    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first.
+
+    `children` are the tags that may be in each element of a URDF: they tell where an element ends that is not closed.
+    """
     text = data.decode("utf-8", "surrogateescape")
     body = data.removeprefix(b"\xef\xbb\xbf")  # TinyXML2 skips a byte-order mark
     if is_plain(body):
@@ -76,10 +81,11 @@ def read_document(data: bytes, path: str) -> XmlDocument:
             pass
     from grader.xml.tinyxml2.scanner import Scanner  # late: most files are plain, and compiling its patterns takes long
 
-    scan = Scanner(text).scan()
+    scan = Scanner(text, children).scan()
     source = Source(path, text, scan.offsets)
     problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
-    return XmlDocument(parse_xml(scan.xml) if scan.xml else None, source, problems, scan.first_tag)
+    root, recovered = (parse_xml(xml) if xml else None for xml in (scan.xml, scan.recovered))
+    return XmlDocument(root, source, problems, scan.first_tag, recovered=recovered)
 
 
 def is_plain(data: bytes) -> bool:

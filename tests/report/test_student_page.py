@@ -148,7 +148,7 @@ def test_inspection_starts_at_the_given_positions() -> None:
 def test_inspection_of_what_is_no_robot(tmp_path: Path) -> None:
     """Text that is no XML has a page with the problem, and no picture."""
     file = tmp_path / "x.urdf"
-    file.write_text("<robot name='x'><link")
+    file.write_text("<robot name='x'><lin")
     page = inspected(file)
     assert page.find_class("error-card")
     assert not page.xpath("//canvas")

@@ -11,7 +11,7 @@ _QUERY = "SELECT result, statuses, urdf, files FROM grade WHERE verdict = 'grade
 
 
 def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
-    """Return how many submissions have evidence, but not the `URDF`, or not the `package`, that this rubric grades."""
+    """Return how many submissions have evidence, but no `URDF`, or one but no `package`, that this rubric grades."""
     needed = {"URDF": ("urdf", "robot"), "package": ("package",)}
     subjects = {row.check.subject for row in rubric.criteria}
     graded = {kind for kind, names in needed.items() if subjects.intersection(names)}
@@ -22,7 +22,8 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
         for result, statuses, urdf, files in list(book.rows(_QUERY, rubric.sha256))
         if not urdf or not (any(statuses[at] == "p" for at in package) or _is_single(files))
     ]
-    return Counter(kind for result in found for kind in lacks(book.record(result)[0]) if kind in graded)
+    lacking = (lacks(book.record(result)[0])[:1] for result in found)
+    return Counter(kind for kinds in lacking for kind in kinds if kind in graded)
 
 
 def _is_single(files: str) -> bool:

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from grader.problems import Kind
 from grader.xml import catalogue
+from grader.xml.tinyxml2.difference import Difference
+from grader.xml.tinyxml2.recovery import Children, Recovery
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
@@ -18,18 +20,10 @@ _MAX_WRITTEN_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geo
 _MAX_ERRORS = 20
 
 
-class Difference(NamedTuple):
-    """A difference from XML, or an error, at a character offset."""
-
-    kind: Kind
-    message: str
-    offset: int
-
-
 class Scan(NamedTuple):
     """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
 
-    The XML has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
+    `recovered` is what can be read of it where TinyXML2 refuses the text; the offsets are then of its tags. The XML has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
     text in elements, too.
     """
 
@@ -37,13 +31,16 @@ class Scan(NamedTuple):
     offsets: list[int]
     first_tag: int
     differences: list[Difference]
+    recovered: bytes = b""
 
 
 class Scanner:
     """One pass over a text. Where TinyXML2 would stop at an error, it goes on, to find other broken tags."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, children: Children) -> None:
+        """`children` are the tags that may be in each element of a URDF."""
         self._text = text
+        self._children = children
         self._xml: list[str] = []
         self._offsets: list[int] = []  # of the start tags that were written
         self._differences: list[Difference] = []
@@ -61,7 +58,8 @@ class Scanner:
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
             errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
-            return Scan(b"", self._offsets, first_tag, errors)
+            recovered = Recovery(self._text, self._children).run()
+            return Scan(b"", recovered.offsets, first_tag, [*errors, *recovered.assumed], recovered.xml)
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:

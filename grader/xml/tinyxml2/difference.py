@@ -1,0 +1,13 @@
+"""A difference between a text and XML."""
+
+from typing import NamedTuple
+
+from grader.problems import Kind
+
+
+class Difference(NamedTuple):
+    """A difference from XML, an error, or what was assumed about one, at a character offset."""
+
+    kind: Kind
+    message: str
+    offset: int

@@ -1,0 +1,140 @@
+"""What can be read of a text that TinyXML2 refuses: every element but the broken ones as it stands, and what was assumed."""
+
+import re
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+from grader.text import enumerated
+from grader.xml import catalogue
+from grader.xml.tinyxml2.difference import Difference
+from grader.xml.tinyxml2.tags import MalformedTagError, Tag, read_tag, short
+from grader.xml.tinyxml2.values import decode, escape
+
+Children = Mapping[str, tuple[str, ...]]
+
+# What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
+_OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!.*?(?:>|\Z)", re.DOTALL)
+# A broken tag to its > or to the next tag, and the attributes in it: also without quotes, in typographic ones, or without the last.
+_BROKEN = re.compile(r"<\s*(?P<close>/?)\s*(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
+_ATTRIBUTE = re.compile(
+    r"""([A-Za-z_][\w:.-]*)\s*=\s*(?:"([^"]*?)(?:"|/?\s*\Z)|'([^']*?)(?:'|/?\s*\Z)|[“”]([^“”]*)[“”]|([^\s"'“”=/]+))"""
+)
+_NEXT_NAME = re.compile(r"<\s*([A-Za-z_][\w:.-]*)")
+_TOP = ("gazebo", "transmission", "ros2_control")  # elements for other tools, which stand in the robot
+_MAX_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
+_MAX_ASSUMED = 20
+
+
+class Recovered(NamedTuple):
+    """The first <robot> as XML, with the offset of each of its start tags; empty if no link of it can be read."""
+
+    xml: bytes
+    offsets: list[int]
+    assumed: list[Difference]
+
+
+class Recovery:
+    """One pass over a text. A tag that does not fit closes those that are in its way, as the format of a URDF tells."""
+
+    def __init__(self, text: str, children: Children) -> None:
+        """`children` are the tags that may be in each element of a URDF."""
+        self._text = text
+        self._children = children
+        self._tags = {*children, *(tag for tags in children.values() for tag in tags)}
+        self._xml: list[str] = []
+        self._offsets: list[int] = []
+        self._assumed: list[Difference] = []
+        self._open: list[Tag] = []
+
+    def run(self) -> Recovered:
+        """Read the first robot."""
+        position, text = 0, self._text.partition("\0")[0]
+        while (start := text.find("<", position)) >= 0 and len(self._assumed) < _MAX_ASSUMED:
+            self._write(text[position:start])
+            if other := _OTHER.match(text, start):
+                self._write(other["text"] or "")
+                position = other.end()
+                continue
+            tag, position = self._tag(start)
+            if tag is not None and (tag.name == "robot" if not self._open else True):
+                self._close(tag) if tag.form == "close" else self._start(tag)
+            if self._xml and not self._open:
+                break
+        if self._open:
+            self._assume(
+                f"what is open is closed at the end: {enumerated([f'<{short(tag.name)}>' for tag in self._open], 3)}",
+                len(text),
+            )
+        while self._open:
+            self._end()
+        if not any(xml.startswith("<link") for xml in self._xml):
+            return Recovered(b"", [], [])
+        return Recovered("".join(self._xml).encode(), self._offsets, self._assumed)
+
+    def _tag(self, start: int) -> tuple[Tag | None, int]:
+        """Return the tag at an offset, and the offset after it; a broken one with the attributes that can be read."""
+        try:
+            tag, end = read_tag(self._text, start, lambda *_: None)
+        except MalformedTagError as error:
+            found = _BROKEN.match(self._text, start)
+            if found is None:
+                self._assume("a < without the name of a tag is ignored", start)
+                return None, max(error.resume, start + 1)
+            attributes: dict[str, str] = {}
+            for name, *values in _ATTRIBUTE.findall(found["rest"]):
+                attributes.setdefault(name, decode("".join(values)))
+            form: Literal["open", "close", "empty"] = (
+                "close" if found["close"] else "empty" if found["rest"].rstrip().endswith("/") else "open"
+            )
+            tag, end = Tag(found["name"], form, attributes, start), found.end()
+            if tag.form != "close":
+                what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
+                self._assume(f"<{short(tag.name)}> is read {what}", start)
+        is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
+        if is_slash_missing and not self._is_before_child(tag, end):
+            self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
+            return tag._replace(form="close"), end
+        return tag, end
+
+    def _is_before_child(self, tag: Tag, end: int) -> bool:
+        found = _NEXT_NAME.search(self._text, end)
+        return found is not None and found[1] in self._children.get(tag.name, ())
+
+    def _start(self, tag: Tag) -> None:
+        parents = {"robot"} if tag.name in _TOP else {name for name, tags in self._children.items() if tag.name in tags}
+        around = [opened.name for opened in self._open]
+        if around and around[-1] not in parents and parents.intersection(around) and self._tags.issuperset(around):
+            self._leave(max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset)
+        if len(self._open) < _MAX_DEPTH:
+            self._xml.append(tag.xml)
+            self._offsets.append(tag.offset)
+        if tag.form == "open":
+            self._open.append(tag)
+
+    def _close(self, tag: Tag) -> None:
+        found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
+        if not found:
+            self._assume(f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open", tag.offset)
+            return
+        self._leave(found[-1] + 1, tag.offset)
+        self._end()
+
+    def _leave(self, depth: int, offset: int) -> None:
+        """Close the tags that are open below a depth, before an offset."""
+        while len(self._open) > depth:
+            name = short(self._open[-1].name)
+            line = self._text.count("\n", 0, self._open[-1].offset) + 1
+            self._assume(f"<{name}> of line {line} is closed here", offset)
+            self._end()
+
+    def _end(self) -> None:
+        tag = self._open.pop()
+        if len(self._open) < _MAX_DEPTH:
+            self._xml.append(f"</{tag.xml_name}>")
+
+    def _write(self, text: str) -> None:
+        if self._open and len(self._open) <= _MAX_DEPTH:
+            self._xml.append(escape(decode(text)).replace(">", "&gt;"))
+
+    def _assume(self, message: str, offset: int) -> None:
+        self._assumed.append(Difference(catalogue.RECOVERED, f"assumed for grading: {message}", offset))
