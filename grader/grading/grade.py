@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from typing import Any
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
@@ -16,16 +17,18 @@ from grader.grading.missing_work import another_robot, by_evidence, is_another_r
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
+from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Read
-from grader.text import enumerated
+from grader.text import counted_points, enumerated
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
 _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
 )
+_MIN_OF_CONVENTION = 2  # criteria that a convention decides
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
 
@@ -47,6 +50,7 @@ def grade(
         problems += package_problems(submission.package)
     evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
+    notes += _note_on_convention(rubric, submission, results)
     graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
     return Report(graded, rubric, chosen, results, problems, *evidence, notes)
 
@@ -80,6 +84,40 @@ def _chosen_parts(
             f"a single URDF is graded on {only} only: {enumerated(skipped)} need the folder or archive it is in"
         )
     return chosen, tuple(notes)
+
+
+def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequence[Result]) -> tuple[str, ...]:
+    """Return a note on frames of the whole robot that are turned or moved alike, if undoing that makes criteria pass.
+
+    The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many mistakes.
+    """
+    lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
+    robot = robot_of(submission.urdf)
+    if (
+        len(lost) < _MIN_OF_CONVENTION
+        or robot is None
+        or rubric.solution is None
+        or not isinstance(submission.urdf, Read)
+    ):
+        return ()
+    from grader.robot.conventions import convention_of  # late: most robots lose few points
+
+    try:
+        found = convention_of(Configuration(robot), rubric.solution.robot, rubric.base)
+    except InputError:
+        return ()
+    if found is None:
+        return ()
+    reading = replace(submission.urdf.reading, robot=found.robot)
+    other = replace(submission, urdf=submission.urdf._replace(reading=reading))
+    decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
+    after = {result.criterion.id: result for result in decide(rubric, other, {it.criterion.id for it in decided})}
+    before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
+    gained = [after[name].criterion.points for name in lost if after[name].outcome.status == "passed"]
+    if len(gained) < _MIN_OF_CONVENTION or any(after[name].outcome.status != "passed" for name in before):
+        return ()
+    points = counted_points(sum(gained, Decimal(0)))
+    return (f"everything is {found.description} relative to the handout: one decision, {points}",)
 
 
 def _notes_on_xacro(submission: Submission) -> list[str]:

@@ -1,5 +1,6 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -100,6 +101,12 @@ class Rubric:
     def compares_with_reference(self) -> bool:
         """Return whether a check compares submissions with the reference solution."""
         return any("reference" in criterion.check.examined for criterion in self.criteria)
+
+    @property
+    def base(self) -> str:
+        """The link that criteria measure in most often; empty if they name none."""
+        names = (name for row in self.criteria for name in texts_in(row.arguments.get("relative_to", ())))
+        return max(sorted(Counter(names).items()), key=lambda it: it[1], default=("", 0))[0]
 
     @property
     def sha256(self) -> str:

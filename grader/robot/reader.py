@@ -12,7 +12,7 @@ from grader.robot.joints import check_references, read_joint
 from grader.robot.links import Materials, read_link
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
-from grader.robot.spelling import CHILDREN, check_spelling
+from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
@@ -55,7 +55,7 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are omitted
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
-    return read_robot(read_document(data, path, CHILDREN))
+    return read_robot(read_document(data, path))
 
 
 def read_robot(document: XmlDocument) -> Reading:

@@ -128,7 +128,7 @@ def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[
     from grader.xacro.expansion import expand  # late: most URDFs are no xacro
 
     expansion = expand(data, path, around.workspace(), {**launched, **around.arguments})
-    if expansion.root is None and expansion.problems:
+    if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)

@@ -15,7 +15,7 @@ from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
-from grader.xacro.nodes import Node, read_nodes
+from grader.xacro.nodes import Node, read_nodes, recovered_nodes
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
@@ -26,13 +26,14 @@ __all__ = ("Expansion", "Open", "Workspace", "expand")
 
 
 class Expansion(NamedTuple):
-    """An expanded file. `root` is None where it cannot be expanded at all."""
+    """An expanded file. `root` is None where it cannot be expanded at all; `recovered` is then what can be read of one with broken tags."""
 
     root: Element | None
     source: Source
     problems: tuple[Problem, ...]  # what xacro refuses
     undetermined: tuple[Open, ...]  # what cannot be determined statically
     unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
+    recovered: Element | None = None
 
     @property
     def document(self) -> XmlDocument:
@@ -41,7 +42,9 @@ class Expansion(NamedTuple):
             Problem(catalogue.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
         ]
         problems = [*self.problems, *undetermined]
-        return XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
+        return XmlDocument(
+            self.root, self.source, problems, 0, self.unresolved, is_expanded=True, recovered=self.recovered
+        )
 
 
 _STEPS_OF_READING, _ELEMENTS_OF_READING = 200, 100  # of a short file
@@ -136,6 +139,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     plain = Source(path, data.decode("utf-8", "surrogateescape"))
     at = plain.at(0)
     refused: tuple[Problem, ...] = ()
+    is_recovered = False
     try:
         try:
             source = read_nodes(data, path)
@@ -143,7 +147,10 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
             refused = (_not_xml(error, path),)
             source = read_nodes(data, path, is_repaired=True)
     except XMLSyntaxError:
-        return Expansion(None, plain, refused, (), {})
+        recovered, assumed = recovered_nodes(data, path)
+        if recovered is None:
+            return Expansion(None, plain, refused, (), {})
+        source, is_recovered, refused = recovered, True, (*refused, *assumed)
     except ExpressionFails as error:
         return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", at),), (), {})
     except Undetermined as error:
@@ -156,11 +163,12 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
     return Expansion(
-        element,
+        None if is_recovered else element,
         ExpandedSource(plain, nodes, expander),
         (*refused, *expander.problems),
         tuple(expander.undetermined),
         unresolved,
+        element if is_recovered else None,
     )
 
 

@@ -2,10 +2,12 @@
 
 import re
 
+from grader.problems import Problem
 from grader.source import Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro.scopes import Place
 from grader.xml.parsing import Element, parse_xml
+from grader.xml.tinyxml2.recovery import Recovery
 
 Children = list["Node | str"]
 
@@ -56,7 +58,19 @@ def read_nodes(data: bytes, path: str, *, is_repaired: bool = False) -> Node:
         raise Undetermined("entities of a DOCTYPE are not supported")
     if any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    source = Source(path, text)
+    return _nodes(root, Source(path, text))
+
+
+def recovered_nodes(data: bytes, path: str) -> tuple[Node | None, list[Problem]]:
+    """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
+    text = _decoded(data)
+    recovered = Recovery(text).run()
+    source = Source(path, text, recovered.offsets)
+    assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.assumed]
+    return _nodes(parse_xml(recovered.xml), source) if recovered.xml else None, assumed
+
+
+def _nodes(root: Element, source: Source) -> Node:
     nodes: dict[Element, Node] = {}
     for index, element in enumerate(root.iter()):
         node = nodes[element] = Node(_tag(element), Place(source, index), _attributes(element))

@@ -66,11 +66,8 @@ def make_element(tag: str, attributes: dict[str, str], parent: Element | None = 
     return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)
 
 
-def read_document(data: bytes, path: str, children: Mapping[str, tuple[str, ...]]) -> XmlDocument:
-    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first.
-
-    `children` are the tags that may be in each element of a URDF: they tell where an element ends that is not closed.
-    """
+def read_document(data: bytes, path: str) -> XmlDocument:
+    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
     text = data.decode("utf-8", "surrogateescape")
     body = data.removeprefix(b"\xef\xbb\xbf")  # TinyXML2 skips a byte-order mark
     if is_plain(body):
@@ -81,7 +78,7 @@ def read_document(data: bytes, path: str, children: Mapping[str, tuple[str, ...]
             pass
     from grader.xml.tinyxml2.scanner import Scanner  # late: most files are plain, and compiling its patterns takes long
 
-    scan = Scanner(text, children).scan()
+    scan = Scanner(text).scan()
     source = Source(path, text, scan.offsets)
     problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
     root, recovered = (parse_xml(xml) if xml else None for xml in (scan.xml, scan.recovered))

@@ -72,7 +72,9 @@ SAMPLES: tuple[ProblemSample, ...] = (
     ProblemSample("URDF001", "quote-not-closed", lines('  ¦<link name="a/>', '  <link name="b"/>'), also="URDF015"),
     ProblemSample("URDF001", "no-tag-name", lines("  ¦<1/>")),
     ProblemSample("URDF002", "closed-by-another", lines('  <link name="a">', "  ¦</lnk>"), also="URDF015"),
-    ProblemSample("URDF015", "closed-here", lines('  <link name="a">', "    <inertial>", "  ¦</link>"), also="URDF002 URDF040"),
+    ProblemSample(
+        "URDF015", "closed-here", lines('  <link name="a">', "    <inertial>", "  ¦</link>"), also="URDF002 URDF040"
+    ),
     ProblemSample("URDF002", "never-closed", '<robot name="r">\n  ¦<link name="a">\n', also="URDF015"),
     ProblemSample("URDF003", "empty", "¦"),
     ProblemSample("URDF003", "blank", "¦\n\n"),

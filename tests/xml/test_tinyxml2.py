@@ -6,7 +6,6 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.robot.reader import read_urdf
-from grader.robot.spelling import CHILDREN
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2.scanner import Scan, Scanner
@@ -53,14 +52,14 @@ def assert_sound(scan: Scan, text: str) -> None:
 def test_translation_is_sound(raw: bytes) -> None:
     """Any bytes are translated or refused, and the translation is XML with its offsets."""
     text = decoded(raw)
-    assert_sound(Scanner(text, CHILDREN).scan(), text)
+    assert_sound(Scanner(text).scan(), text)
 
 
 @settings(max_examples=300, deadline=None)
 @given(text=st.text(max_size=200))
 def test_any_text_is_translated_or_refused(text: str) -> None:
     """Text without any tags in mind."""
-    assert_sound(Scanner(text, CHILDREN).scan(), text)
+    assert_sound(Scanner(text).scan(), text)
 
 
 # --- Where lxml and TinyXML2 agree ------------------------------------------------------------------------------------
@@ -132,7 +131,7 @@ def assert_same_if_plain(text: str) -> None:
             root = etree.fromstring(raw, _PARSER)
         except etree.XMLSyntaxError:
             return
-        assert tree(root) == tree(etree.fromstring(Scanner(text, CHILDREN).scan().xml, _PARSER))
+        assert tree(root) == tree(etree.fromstring(Scanner(text).scan().xml, _PARSER))
 
 
 @settings(max_examples=300, deadline=None)
@@ -170,7 +169,7 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
         return
     if root.tag != "robot":
         return
-    translated = tree(etree.fromstring(Scanner(decoded(raw), CHILDREN).scan().xml, _PARSER))
+    translated = tree(etree.fromstring(Scanner(decoded(raw)).scan().xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
         if tag.isascii() and tag.replace("_", "a").isalnum() and not tag.startswith("xml"):
             assert tag == other
@@ -228,4 +227,4 @@ def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
     text = frame.format(piece * (2**18 // len(piece)))
     with processor_time(1.0):
         is_plain(text.encode())
-        Scanner(text, CHILDREN).scan()
+        Scanner(text).scan()

@@ -5,8 +5,8 @@ from itertools import islice
 
 from grader.edits import MOVED, Proposal
 from grader.robot.edits.draft import Draft
-from grader.robot.spelling import CHILDREN
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import CHILDREN
 
 _MAX_ELEMENTS, _MAX_MOVED = 3000, 6
 

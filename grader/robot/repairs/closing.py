@@ -7,8 +7,8 @@ from grader import markup
 from grader.edits import Proposal
 from grader.names import closest
 from grader.robot.repairs.pieces import LEAVES, Piece, Tree, pieces_of
-from grader.robot.spelling import ATTRIBUTES, CHILDREN
 from grader.source import Edit, Source
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 _MISSING = ("a closing tag is missing", "add the closing tag")
 

@@ -7,8 +7,9 @@ from grader.names import closest
 from grader.robot.edits.draft import Edits, child_of
 from grader.robot.repairs.numbers import COUNTS, is_readable, readable, with_count
 from grader.robot.repairs.site import Robots, Site
-from grader.robot.spelling import ATTRIBUTES, CHILDREN, SWAPPED
+from grader.robot.spelling import SWAPPED
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 REQUIRED = {
     "robot": ("name",),

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from grader.robot.spelling import ATTRIBUTES, CHILDREN
 from grader.xml.tinyxml2.tags import MalformedTagError, read_tag
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 # Tags that contain nothing, and are closed with />.
 LEAVES = frozenset(ATTRIBUTES) - frozenset(CHILDREN)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from grader.edits import Proposal
 from grader.names import closest
 from grader.robot.repairs.pieces import LEAVES, Piece, pieces_of
-from grader.robot.spelling import ATTRIBUTES
 from grader.source import Source
+from grader.xml.urdf_format import ATTRIBUTES
 
 _QUOTES = "\"'\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`"
 _CURLY = re.compile(f"[{_QUOTES[2:]}]")

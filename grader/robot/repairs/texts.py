@@ -13,10 +13,10 @@ from grader.robot.reader import Reading
 from grader.robot.repairs.closing import closing_proposals, early_end_proposals
 from grader.robot.repairs.pieces import Piece, Tree, pieces_of
 from grader.robot.repairs.tags import tag_proposals
-from grader.robot.spelling import ATTRIBUTES
 from grader.source import Edit, Source
 from grader.xml import catalogue as xml_catalogue
 from grader.xml.tinyxml2.tags import REFERENCE
+from grader.xml.urdf_format import ATTRIBUTES
 
 _LOST = re.compile(rf"(?<![<\w/:.\-\"'=])(/?)({'|'.join(sorted(ATTRIBUTES, key=len, reverse=True))})\b(?=[^<>]*>)")
 _NEARLY_CLOSED = re.compile(r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)")

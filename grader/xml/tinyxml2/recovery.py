@@ -1,7 +1,6 @@
 """What can be read of a text that TinyXML2 refuses: every element but the broken ones as it stands, and what was assumed."""
 
 import re
-from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
 from grader.text import enumerated
@@ -9,8 +8,7 @@ from grader.xml import catalogue
 from grader.xml.tinyxml2.difference import Difference
 from grader.xml.tinyxml2.tags import MalformedTagError, Tag, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
-
-Children = Mapping[str, tuple[str, ...]]
+from grader.xml.urdf_format import CHILDREN
 
 # What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
 _OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!.*?(?:>|\Z)", re.DOTALL)
@@ -21,6 +19,7 @@ _ATTRIBUTE = re.compile(
 )
 _NEXT_NAME = re.compile(r"<\s*([A-Za-z_][\w:.-]*)")
 _TOP = ("gazebo", "transmission", "ros2_control")  # elements for other tools, which stand in the robot
+_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags)}
 _MAX_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
 
@@ -36,11 +35,8 @@ class Recovered(NamedTuple):
 class Recovery:
     """One pass over a text. A tag that does not fit closes those that are in its way, as the format of a URDF tells."""
 
-    def __init__(self, text: str, children: Children) -> None:
-        """`children` are the tags that may be in each element of a URDF."""
+    def __init__(self, text: str) -> None:
         self._text = text
-        self._children = children
-        self._tags = {*children, *(tag for tags in children.values() for tag in tags)}
         self._xml: list[str] = []
         self._offsets: list[int] = []
         self._assumed: list[Difference] = []
@@ -98,12 +94,12 @@ class Recovery:
 
     def _is_before_child(self, tag: Tag, end: int) -> bool:
         found = _NEXT_NAME.search(self._text, end)
-        return found is not None and found[1] in self._children.get(tag.name, ())
+        return found is not None and found[1] in CHILDREN.get(tag.name, ())
 
     def _start(self, tag: Tag) -> None:
-        parents = {"robot"} if tag.name in _TOP else {name for name, tags in self._children.items() if tag.name in tags}
+        parents = {"robot"} if tag.name in _TOP else {name for name, tags in CHILDREN.items() if tag.name in tags}
         around = [opened.name for opened in self._open]
-        if around and around[-1] not in parents and parents.intersection(around) and self._tags.issuperset(around):
+        if around and around[-1] not in parents and parents.intersection(around) and _TAGS.issuperset(around):
             self._leave(max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset)
         if len(self._open) < _MAX_DEPTH:
             self._xml.append(tag.xml)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.problems import Kind
 from grader.xml import catalogue
 from grader.xml.tinyxml2.difference import Difference
-from grader.xml.tinyxml2.recovery import Children, Recovery
+from grader.xml.tinyxml2.recovery import Recovery
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
@@ -37,10 +37,8 @@ class Scan(NamedTuple):
 class Scanner:
     """One pass over a text. Where TinyXML2 would stop at an error, it goes on, to find other broken tags."""
 
-    def __init__(self, text: str, children: Children) -> None:
-        """`children` are the tags that may be in each element of a URDF."""
+    def __init__(self, text: str) -> None:
         self._text = text
-        self._children = children
         self._xml: list[str] = []
         self._offsets: list[int] = []  # of the start tags that were written
         self._differences: list[Difference] = []
@@ -58,7 +56,7 @@ class Scanner:
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
             errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
-            recovered = Recovery(self._text, self._children).run()
+            recovered = Recovery(self._text).run()
             return Scan(b"", recovered.offsets, first_tag, [*errors, *recovered.assumed], recovered.xml)
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)

@@ -1,0 +1,124 @@
+"""A broken tag costs the criteria that need it, and `urdf-loads`: the elements before and after it are graded as they stand."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lxml import etree
+
+from grader.xml.tinyxml2.recovery import Recovery
+from tests.command_line import ROOT, run
+
+TEXT = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+LIDAR = '  <link name="lidar">\n    <visual>\n'
+SHAPE = '      <geometry>\n        <cylinder radius="0.1" length="0.05"/>\n      </geometry>\n      <material name="white"/>\n'
+
+
+def replaced(*pairs: tuple[str, str]) -> str:
+    """Return the reference with texts replaced, each of which it has."""
+    text = TEXT
+    for old, new in pairs:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
+def report(text: str, folder: Path, *more: str) -> dict[str, Any]:
+    """Return the JSON report on a URDF, without hints."""
+    path = folder / "my_robot.urdf"
+    path.write_text(text, encoding="utf-8")
+    done = run(("grade", path, "--format", "json", "--hints", "none", *more))
+    assert (done.returncode, done.stderr) == (1, b"")
+    return dict(json.loads(done.stdout))
+
+
+def lost(found: dict[str, Any]) -> set[str]:
+    """Return the criteria without points."""
+    return {row["id"] for row in found["results"] if row["status"] in ("failed", "skipped") and not row["carried"]}
+
+
+BROKEN = {
+    "a visual that is not closed": (LIDAR + SHAPE + "    </visual>\n", LIDAR + SHAPE),
+    "a link that is not closed": (SHAPE + "    </visual>\n  </link>\n", SHAPE + "    </visual>\n"),
+    "an origin that is not closed": ('<origin xyz="0 0 0.1" rpy="0 0 0"/>', '<origin xyz="0 0 0.1" rpy="0 0 0">'),
+    "a parent that is not closed": ('<parent link="base_link"/>\n    <child link="lidar"/>', '<parent link="base_link">\n    <child link="lidar"/>'),
+    "an opening tag for a closing one": (SHAPE + "    </visual>\n  </link>", SHAPE + "    </visual>\n  <link>"),
+    "a misspelt closing tag": (SHAPE + "    </visual>\n  </link>", SHAPE + "    </visual>\n  </lnk>"),
+    "a surplus closing tag": ("  <!-- Wheels", "  </link>\n  <!-- Wheels"),
+    "no > at the end of a tag": ('<link name="lidar">', '<link name="lidar"'),
+    "a quote that is not closed": ('<link name="lidar">', '<link name="lidar>'),
+    "a value without quotes": ('<link name="lidar">', "<link name=lidar>"),
+    "a comma between attributes": ('radius="0.1" length="0.05"', 'radius="0.1", length="0.05"'),
+    "an attribute twice": ('<link name="lidar">', '<link name="lidar" name="lidar">'),
+    "typographic quotes": ('<link name="lidar">', "<link name=\u201clidar\u201d>"),
+    "a robot that is not closed": ("</robot>", ""),
+    "a < in the text": ("  <!-- Wheels", "  a < 3\n  <!-- Wheels"),
+    "text after the robot": ("</robot>", "</robot>\nthe end"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_only_the_loading_is_lost(name: str, tmp_path: Path) -> None:
+    """If what was meant is evident, all but `urdf-loads` passes, and the report says what was assumed."""
+    found = report(replaced(BROKEN[name]), tmp_path)
+    assert (found["score"], lost(found)) == (67, {"urdf-loads"})
+    codes = {problem["code"] for problem in found["problems"]}
+    assert codes - {"URDF001", "URDF002", "URDF006"} == ({"URDF015"} if name != "text after the robot" else set())
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_the_second_mistake_is_visible(name: str, tmp_path: Path) -> None:
+    """A broken tag does not hide another mistake, wherever it is."""
+    text = replaced(BROKEN[name], ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"'), ("0.2 0 -0.05", "-0.2 0 -0.05"))
+    assert lost(report(text, tmp_path)) == {"urdf-loads", "base-green", "caster-placed"}
+
+
+def test_an_attribute_that_cannot_be_read_is_missing(tmp_path: Path) -> None:
+    """What needs the broken value fails; the terminal names the assumption."""
+    text = replaced(('<origin xyz="0 0 0.1" rpy="0 0 0"/>', '<origin="0 0 0.1"/>'))
+    assert lost(report(text, tmp_path)) == {"urdf-loads", "base-on-ground"}
+    shown = " ".join(run(("grade", tmp_path / "my_robot.urdf", "--hints", "none")).stdout.decode().split())
+    assert "URDF015 warning my_robot.urdf:18: assumed for grading: <origin> is read without attributes" in shown
+
+
+def test_consequences_are_not_reported(tmp_path: Path) -> None:
+    """A broken joint leaves its link without one, but two roots are no second problem; `urdf-loads` names the broken tag."""
+    text = replaced(
+        ('<parent link="base_link"/>\n    <child link="lidar"/>', '<parent="base_link"/>\n    <child link="lidar"/>')
+    )
+    found = report(text, tmp_path)
+    assert [problem["code"] for problem in found["problems"]] == ["URDF001", "URDF015"]
+    assert found["results"][0]["message"].startswith("<parent= has no attribute name")
+    assert lost(found) == {"urdf-loads", "lidar-fixed", "lidar-frame", "lidar-on-top"}
+
+
+def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
+    """xacro stops at a broken tag; the rest is expanded and graded."""
+    text = replaced(BROKEN["a visual that is not closed"], ('<robot name="my_robot">', '<robot name="my_robot" xmlns:xacro="x">\n<xacro:property name="r" value="0.05"/>'), ('sphere radius="0.05"', 'sphere radius="${r}"'))  # fmt: skip
+    path = tmp_path / "my_robot.urdf.xacro"
+    path.write_text(text, encoding="utf-8")
+    found = json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout)
+    assert (found["score"], lost(found)) == (67, {"urdf-loads"})
+    assert {problem["code"] for problem in found["problems"]} == {"XACRO001", "URDF015"}
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.data())
+def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
+    """Whatever is cut out of a URDF or put into it, what is read is XML whose tags are where they are in the text."""
+    start = data.draw(st.integers(0, len(TEXT)))
+    end = data.draw(st.integers(start, min(len(TEXT), start + 40)))
+    inserted = data.draw(
+        st.text(alphabet="<>/=\"' abx\n&\u201c", max_size=6)
+        | st.sampled_from(("<link>", "</link>", "<!--", "<![CDATA[", "\0"))
+    )
+    text = TEXT[:start] + inserted + TEXT[end:]
+    found = Recovery(text).run()
+    if found.xml:
+        elements = list(etree.fromstring(found.xml).iter(etree.Element))
+        assert len(elements) == len(found.offsets)
+        assert all(text[offset] == "<" for offset in found.offsets)
+        assert found.offsets == sorted(found.offsets)
