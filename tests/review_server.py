@@ -1,6 +1,7 @@
 """A review server in this process, for tests of its answers and of its page."""
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from http.client import HTTPConnection, HTTPResponse
@@ -62,8 +63,14 @@ class Review(NamedTuple):
         return self.ask("POST", f"/{self.token}/{path}", own | headers, json.dumps(sent).encode())
 
     def mark(self, path: str, points: str, comment: str = "", shown: int = 0) -> dict[str, Any]:
-        """Mark an item and return the answer."""
-        return self.post(path, {"do": "mark", "points": points, "comment": comment, "shown": shown}).json
+        """Mark an item as its page does, and return the answer."""
+        sent = {"do": "mark", "points": points, "comment": comment, "shown": shown, "item": self.item(path)}
+        return self.post(path, sent).json
+
+    def item(self, path: str) -> str:
+        """Return what the page of an item sends back to say which item it shows; empty for an address without an item."""
+        found = re.search(r'"item":"(\w+)"', self.get(path).text)
+        return found[1] if found is not None else ""
 
 
 @contextmanager

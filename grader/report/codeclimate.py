@@ -20,7 +20,7 @@ def render_codeclimate(report: Report, base: Base) -> str:
         cost = f" ({counted_points(finding.lost)} lost)" if finding.lost else ""
         issues.append(
             {
-                "description": finding.text.replace("\n", " ") + cost,
+                "description": finding.text.replace("\n", " ") + cost or finding.rule,
                 "check_name": finding.rule,
                 "fingerprint": finding.fingerprint,
                 "severity": _SEVERITIES[finding.level],

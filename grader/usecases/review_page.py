@@ -14,11 +14,12 @@ from grader.classroom.review.pictures import item_pictures
 from grader.classroom.review.session import ReviewSession
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import GraderError, InputError
-from grader.report.pages.review import Place, end_page, error_page, item_page
+from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
 from grader.usecases.local_server import Request, Response
 
 Album = tuple[Picture | NotShown, ...]
+_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _HTML, _JSON = "text/html; charset=utf-8", "application/json"
@@ -88,6 +89,8 @@ class ReviewPage:
             return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
         self.session.go(position)
         try:
+            if sent["do"] == "mark" and sent["item"] != stamp_of(self.session.current_item()):
+                return _json({"error": _CHANGED, "go": request.path[0]})
             self._follow(sent)
         except NewerMarkError as error:
             return _json({"newer": mark_text(error.mark), "shown": error.mark.id})
@@ -149,7 +152,7 @@ def _read(body: bytes) -> dict[str, Any] | None:
     if not isinstance(sent, dict) or sent.get("do") not in ("mark", "next", "back", "undo"):
         return None
     if sent["do"] == "mark":
-        wanted = {"points": str, "comment": str, "shown": int}
+        wanted = {"points": str, "comment": str, "shown": int, "item": str}
         return sent if all(type(sent.get(name)) is kind for name, kind in wanted.items()) else None
     return sent
 

@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -229,3 +230,46 @@ def test_the_page_fits(open_page: Open, review: Review) -> None:
         assert page.evaluate("document.activeElement.id") == "points"
         unnamed = "[...document.querySelectorAll('input, textarea')].filter(field => !field.labels.length).length"
         assert page.evaluate(unnamed) == 0
+
+
+@pytest.mark.parametrize("delay", [10, 40])
+def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, delay: int, tmp_path: Path) -> None:
+    """200 items at 10 ms a key, without a look at the page: each item has its own points, and none is lost."""
+    top = tmp_path / "fast"
+    for number in range(200):
+        write_submission(top / "class" / f"s{number:03}")
+    book = graded_in(top)
+    wanted = [Decimal(number % 41) / 10 for number in range(200)]
+    with running(book, "essay") as review:
+        page = open_page(review.url).page
+        page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=delay)
+        page.wait_for_url("**/end")
+    found = {key: points for key, _, points, _ in marks(book)}
+    assert list(found.values()) == [float(points) for points in wanted]
+    assert list(found) == [f"s{number:03}" for number in range(200)]
+
+
+def test_keys_after_a_refused_mark_are_discarded(open_page: Open, review: Review, book: Path) -> None:
+    """They were meant for the next item, which is not shown: the page says so, and nothing is saved for either."""
+    page = open_page(review.url).page
+    page.keyboard.type("9\n2\n")
+    page.wait_for_function("() => document.getElementById('error').textContent.endsWith('is discarded.')")
+    assert page.locator("#points").input_value() == "9"
+    assert page.url.endswith("/1")
+    assert marks(book) == []
+    page.keyboard.type("3\n1\n")
+    page.wait_for_url("**/3")
+    assert [row[:3] for row in marks(book)] == [("ash", "essay", 3), ("birch", "essay", 1)]
+
+
+def test_an_item_that_has_changed_is_not_marked(open_page: Open, review: Review, book: Path) -> None:
+    """A mark of a page that shows another state of the submission is refused, and the page shows the new one."""
+    page = open_page(review.url).page
+    item = review.item("1")
+    page.route("**/1", lambda route: route.continue_(post_data=str(route.request.post_data).replace(item, "0")))
+    press(page, "2 Enter")
+    page.wait_for_function(
+        "() => document.getElementById('error').textContent.startsWith('Not saved: this item has changed')"
+    )
+    assert page.url.endswith("/1")
+    assert marks(book) == []

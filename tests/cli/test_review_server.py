@@ -270,7 +270,7 @@ def test_another_host_name_is_refused(host: str, review: Review) -> None:
 )
 def test_only_the_page_itself_can_mark(headers: dict[str, str], status: int, review: Review, book: Path) -> None:
     """Another origin, a form, and a body that is too large are refused before anything is read."""
-    sent = {"do": "mark", "points": "4", "comment": "", "shown": 0}
+    sent = {"do": "mark", "points": "4", "comment": "", "shown": 0, "item": review.item("1")}
     assert review.post("1", sent, **headers).status == status
     assert marks(book) == []
     assert review.post("1", sent, Sec_Fetch_Site="same-origin").status == 200
@@ -281,8 +281,8 @@ def test_only_the_page_itself_can_mark(headers: dict[str, str], status: int, rev
     "sent",
     [
         None, [], "mark", {}, {"do": "delete"}, {"do": ["mark"]}, {"do": "mark"},
-        {"do": "mark", "points": 4, "comment": "", "shown": 0}, {"do": "mark", "points": "4", "comment": None, "shown": 0},
-        {"do": "mark", "points": "4", "comment": "", "shown": "0"}, {"do": "mark", "points": "4", "comment": "", "shown": True},
+        {"do": "mark", "points": 4, "comment": "", "shown": 0, "item": ""}, {"do": "mark", "points": "4", "comment": None, "shown": 0, "item": ""},
+        {"do": "mark", "points": "4", "comment": "", "shown": "0", "item": ""}, {"do": "mark", "points": "4", "comment": "", "shown": 0}, {"do": "mark", "points": "4", "comment": "", "shown": True, "item": ""},
     ],
 )  # fmt: skip
 def test_a_body_of_another_form_is_refused(sent: object, review: Review, book: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from grader import __version__
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.documents.pictures import NotShown, Picture
+from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
 from grader.report.pages.shell import render_page
 from grader.report.review import files_text, marked_text, message_text, place_text, who
@@ -55,11 +56,17 @@ def item_page(
     }
     data = {
         "shown": item.newest,
+        "item": stamp_of(item),
         "points": format_points(given.points) if given is not None else "",
         "comment": given.comment if given is not None else comment.text if comment is not None else "",
         "comments": [*comments],
     }
     return _page("review.html", values, data)
+
+
+def stamp_of(item: QueuedResult) -> str:
+    """Return a text that tells whether an item is the one that a page shows, without the name of its student."""
+    return sha256_of(f"{item.grade.student.key}\n{item.result.criterion.id}\n{item.grade.result}".encode())[:16]
 
 
 def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:

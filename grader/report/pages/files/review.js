@@ -1,11 +1,9 @@
 "use strict";
 {
-  const data = JSON.parse(document.getElementById("data").textContent);
   const find = (id) => document.getElementById(id);
-  const [form, points, comment, error, newer] = ["form", "points", "comment", "error", "newer"].map(find);
-  const [large, picture, help] = ["large", "large-picture", "help"].map(find);
-  const pictures = [...document.querySelectorAll("[data-picture]")];
-  let shown = data.shown, busy = false, leaving = "", current = 0;
+  let data, form, points, comment, error, newer, large, picture, help, pictures, choices;  // of the page that is shown
+  let shown, busy = false, leaving = "", current = 0;
+  let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
   const say = (text) => { error.textContent = text; };
   const isChanged = () => form !== null && (points.value !== data.points || comment.value !== data.comment);
@@ -20,32 +18,64 @@
     }
     busy = true;
     say("Saving ...");
+    find("main").inert = true;
     try {
-      const sent = action === "mark" ? { do: action, points: points.value, comment: comment.value, shown } : { do: action };
+      const mark = { points: points?.value, comment: comment?.value, shown, item: data.item };
+      const sent = action === "mark" ? { do: action, ...mark } : { do: action };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
-      if (answer.go) {
-        location.assign(answer.go);
-        return;
-      }
+      if (answer.go) show(answer.go, await (await fetch(answer.go)).text());
+      busy = false;
+      find("main").inert = false;
       if (answer.newer) askToKeep(answer);
-      else refuse(answer.error);
+      else if (answer.error) refuse(answer.error);
     } catch {
+      busy = false;
+      find("main").inert = false;
       refuse("The review does not respond. Check that its command is still running, then try again.");
     }
-    busy = false;
+    const keys = typed.splice(0);
+    for (const key of keys) {
+      if (busy) typed.push(key);
+      else if (!act(key, document.activeElement)) insertKey(key.key);
+    }
   }
 
   function refuse(why) {
-    say(why);
+    say(typed.length ? `${why} What was typed after it is discarded.` : why);
+    typed = [];
     if (points) { points.focus(); points.select(); }
+  }
+
+  /** Show another page without loading it, so that no key is lost. */
+  function show(address, text) {
+    const page = new DOMParser().parseFromString(text, "text/html");
+    document.title = page.title;
+    document.querySelector("header.bar")?.remove();
+    const header = page.querySelector("header.bar");
+    if (header) find("main").before(document.adoptNode(header));
+    find("main").replaceWith(document.adoptNode(page.getElementById("main")));
+    find("data").textContent = page.getElementById("data").textContent;
+    if (!location.pathname.endsWith(`/${address}`)) history.pushState(null, "", address);
+    scrollTo(0, 0);
+    start();
+  }
+
+  /** Insert a key into the field that has the focus, as the browser does. */
+  function insertKey(key) {
+    const field = document.activeElement;
+    if (field !== points && field !== comment) return;
+    const [start, end] = [field.selectionStart, field.selectionEnd];
+    if (key === "Backspace") field.setRangeText("", start === end ? Math.max(0, start - 1) : start, end, "end");
+    else if ([...key].length === 1) field.setRangeText(key, start, end, "end");
   }
 
   function askToKeep(answer) {
     find("newer-text").textContent = answer.newer;
     newer.dataset.shown = answer.shown;
     newer.hidden = false;
-    say("");
+    say(typed.length ? "What was typed after it is discarded." : "");
+    typed = [];
     find("keep").focus();
   }
 
@@ -83,7 +113,6 @@
     else large.classList.add("own-size");
   }
 
-  const choices = [...document.querySelectorAll("[data-points]")];
   const keys = {
     n: () => send("next"), s: () => send("next"), b: () => send("back"), u: () => send("undo"), z: zoom,
     f: () => setPoints(choices.at(-1)), h: () => setPoints(choices.find((button) => button.dataset.name === "half")),
@@ -94,46 +123,58 @@
 
   function onKey(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.isComposing) return;
+    const pressed = { key: event.key, code: event.code, shiftKey: event.shiftKey, repeat: event.repeat };
+    if (busy ? typed.push(pressed) : act(pressed, event.target)) event.preventDefault();
+  }
+
+  /** Do what a key means; return whether it means anything but itself. */
+  function act(event, target) {
     const isOther = event.key.length === 1 && event.key > "~" && event.code.startsWith("Key");  // a layout without Latin letters
     const key = isOther ? event.code.slice(3).toLowerCase() : event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (help?.open) {
-      if (key === "?") { event.preventDefault(); help.close(); }
-      return;
+      if (key === "?") help.close();
+      return key === "?";
     }
     if (large?.open) {
       const steps = { z: zoom, ArrowRight: () => enlarge(current + 1), ArrowLeft: () => enlarge(current - 1) };
-      if (steps[key]) { event.preventDefault(); steps[key](); }
-      return;
+      steps[key]?.();
+      return key in steps;
     }
-    const isField = event.target === points || event.target === comment;
-    if (key === "Escape" && isField) { event.target.blur(); return; }
-    if (key === "Enter" && form && !event.shiftKey && (isField || event.target === document.body)) {
-      event.preventDefault();
+    const isField = target === points || target === comment;
+    if (key === "Escape" && isField) { target.blur(); return true; }
+    if (key === "Enter" && form && !event.shiftKey && (isField || target === document.body)) {
       if (!event.repeat) send("mark");
-      return;
+      return true;
     }
-    if (event.target === comment) return;
+    if (target === comment) return false;
     const action = (form ? keys : keysOfEnd)[key];
     if (action) {
-      event.preventDefault();
       if (!event.repeat) action();
-    } else if (form && !isField && /^[0-9]$/.test(key)) {
-      event.preventDefault();
-      key === "0" ? setPoints(choices[0]) : insert(Number(key));
-    } else if (event.target === points && /^[a-z]$/.test(key)) {
-      event.preventDefault();
+      return true;
     }
+    if (form && !isField && /^[0-9]$/.test(key)) {
+      key === "0" ? setPoints(choices[0]) : insert(Number(key));
+      return true;
+    }
+    return target === points && /^[a-z]$/.test(key);
   }
 
-  document.addEventListener("keydown", onKey);
-  for (const button of document.querySelectorAll("[data-do]")) button.addEventListener("click", () => send(button.dataset.do));
-  const status = find("status");
-  if (status?.textContent) {  // screen readers read a live region when it changes
-    const text = status.textContent;
-    status.textContent = "";
-    setTimeout(() => { status.textContent = text; }, 100);
-  }
-  if (form) {
+  /** Prepare the page that is shown. */
+  function start() {
+    data = JSON.parse(find("data").textContent);
+    [form, points, comment, error, newer] = ["form", "points", "comment", "error", "newer"].map(find);
+    [large, picture, help] = ["large", "large-picture", "help"].map(find);
+    pictures = [...document.querySelectorAll("[data-picture]")];
+    choices = [...document.querySelectorAll("[data-points]")];
+    [shown, leaving, current] = [data.shown, "", 0];
+    for (const button of document.querySelectorAll("[data-do]")) button.addEventListener("click", () => send(button.dataset.do));
+    const status = find("status");
+    if (status?.textContent) {  // screen readers read a live region when it changes
+      const text = status.textContent;
+      status.textContent = "";
+      setTimeout(() => { status.textContent = text; }, 100);
+    }
+    if (!form) return;
     points.value = data.points;
     comment.value = data.comment;
     form.addEventListener("submit", (event) => { event.preventDefault(); send("mark"); });
@@ -147,4 +188,8 @@
     points.focus();
     points.select();
   }
+
+  document.addEventListener("keydown", onKey);
+  addEventListener("popstate", () => location.reload());
+  start();
 }
