@@ -1,6 +1,6 @@
 """The kinds of problems that the XML of a URDF can have, with what ROS 2 does about them. `docs/problems.md` is generated from it."""
 
-from grader.problems import notes, rejects, warns
+from grader.problems import Kind, notes, rejects, warns
 
 MALFORMED_TAG = rejects(
     "URDF001",
@@ -57,9 +57,11 @@ SEVERAL_ROOTS = warns(
     "More than one element at the top level",
     "ROS 2 reads the first <robot> at the top level and ignores every other top-level element.",
 )
-RECOVERED = warns(
+RECOVERED = Kind(
     "URDF015",
     "An assumption about a broken tag",
     "ROS 2 loads nothing of a file with a broken tag. To grade the rest of it, the grader assumes where an element ends, or reads "
     "a tag without the attributes that are broken. Fix the tag: with other assumptions the file means something else.",
+    severity="warning",
+    effect="other",
 )
