@@ -6,6 +6,7 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
+from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedSubmission
@@ -133,9 +134,10 @@ class Report:
 
     @property
     def unearned(self) -> tuple[Result, ...]:
-        """The criteria that did not pass, except adjusted ones, extra credit and those that need manual grading."""
-        counting = (result for result in self.results if not (result.is_adjusted or result.criterion.bonus))
-        return tuple(result for result in counting if result.outcome.status not in ("passed", "pending"))
+        """The automatic criteria that did not pass, except adjusted ones and extra credit."""
+        automatic = (result for result in self.results if result.criterion.check.function not in MANUAL_CHECKS)
+        counting = (result for result in automatic if not (result.is_adjusted or result.criterion.bonus))
+        return tuple(result for result in counting if result.outcome.status != "passed")
 
     @property
     def has_failures(self) -> bool:
