@@ -12,7 +12,7 @@ from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label,
 from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal
 from grader.source import Location
 
-_MAX_LINES, _MAX_TEXT = 60, 4000
+_MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
 _MAX_SHOWN = 40  # characters of a heading
@@ -134,16 +134,13 @@ class _Search:
         lines, start, end = document.lines, head.start, head.end
         while start < end and not has_words(lines[start]):
             start += 1
-        kept = [
-            "[picture]" if line == PICTURE else line.rstrip() for line in lines[start : min(end, start + _MAX_LINES)]
-        ]
+        kept = ["[picture]" if line == PICTURE else line.rstrip() for line in lines[start:end]]
         while kept and not kept[-1]:
             kept.pop()
         text = "\n".join(kept)
         if not text.strip():
             return None
-        is_cut = len(text) > _MAX_TEXT or end > start + _MAX_LINES
-        text = text[:_MAX_TEXT] + (" [...]" if is_cut else "")
+        text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
         at = Location(document.file.path, start + 1, 1)
         return Passage(text, at, _where(document, head, at), is_empty=self._is_question_only(text))
 
