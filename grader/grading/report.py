@@ -101,6 +101,17 @@ class Result(NamedTuple):
         return self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
 
 
+class Grade(NamedTuple):
+    """The grade of a student in a class: the points that count, None for an excused student, and the late penalty in them (0 or less).
+
+    `is_final` says that a final mark replaces the points of the criteria.
+    """
+
+    points: Decimal | None
+    late: Decimal = _NOTHING
+    is_final: bool = False
+
+
 class Exhibits(NamedTuple):
     """A piece of evidence, the files that were found for it, and those that are perhaps meant."""
 
@@ -114,7 +125,7 @@ class Report:
     """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece of
-    evidence asks for. `notes` are sentences on how the submission was read.
+    evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria, whatever the `grade` is.
     """
 
     submission: GradedSubmission
@@ -126,11 +137,23 @@ class Report:
     others: "tuple[Exhibit, ...]" = ()
     notes: tuple[str, ...] = ()
     version: str = __version__  # of the grader
+    grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
 
     @property
     def score(self) -> Decimal:
         """The points earned so far, without those that need manual grading."""
         return _sum(result.points for result in self.results)
+
+    @property
+    def counting(self) -> Decimal | None:
+        """The points that count for the student: the grade, else the score; None for an excused student."""
+        return self.grade.points if self.grade is not None else self.score
+
+    @property
+    def open_points(self) -> Decimal:
+        """The points that need manual grading and can change what counts: none with a final mark or an excuse."""
+        is_decided = self.grade is not None and (self.grade.is_final or self.grade.points is None)
+        return _NOTHING if is_decided else self.pending
 
     @property
     def unearned(self) -> tuple[Result, ...]:
