@@ -8,7 +8,6 @@ https://github.com/foundation50/classroom50
 
 import re
 from collections.abc import Mapping
-from decimal import Decimal
 from typing import Any
 
 from grader.errors import InputError
@@ -60,22 +59,16 @@ def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
         {
             "schema": "classroom50/result/v1",
             **identity,
-            "score": int(min(_counting(report), report.max_score) * scale),
+            "score": int(min(report.score, report.max_score) * scale),
             "max-score": int(report.max_score * scale),
             "tests": [_test(result, report, scale) for result in report.results],
         }
     )
 
 
-def _counting(report: Report) -> Decimal:
-    """Return the points that count; of an excused student, those of the criteria."""
-    return report.counting if report.counting is not None else report.score
-
-
 def _scale(report: Report) -> int:
     """Return the factor that makes all points whole: 1, 10, 100 and so on."""
     points = [number for result in report.results for number in (result.points, result.criterion.points)]
-    points.append(_counting(report))
     digits = max((-int(number.normalize().as_tuple().exponent) for number in points), default=0)
     return int(10 ** max(0, digits))
 

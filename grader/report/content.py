@@ -238,7 +238,7 @@ def next_command(report: Report) -> str:
 def what_is_left(report: Report) -> str:
     """Return what is left where no command follows; points may be lost by a manual mark."""
     start = "No check failed" if failures(report) else "Nothing to fix"
-    return f"{start}: {pending_points(report)}." if report.pending else f"{start}."
+    return f"{start}: {pending_points(report)}." if report.open_points else f"{start}."
 
 
 def explain_command(name: str, report: Report) -> str:

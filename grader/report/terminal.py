@@ -59,7 +59,9 @@ def _show_pending(order: Order, page: Page) -> None:
     if not order.pending:
         return
     page.console.print()
-    wrapped(page.console, Text(content.pending_points(page.report), "bold"), 0)
+    wrapped(
+        page.console, Text(content.pending_points(page.report) if page.report.open_points else "Not graded", "bold"), 0
+    )
     for reason, results in alike(order.pending, content.pending_reason):
         has_answers = page.is_verbose or any(result.criterion.answer for result in results)
         if (content.is_manual(results[0]) and has_answers) or any(result.comment for result in results):
