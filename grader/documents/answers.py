@@ -13,6 +13,7 @@ from grader.documents.questions import Answer, Match, Ordinal, match_answer, rea
 from grader.source import Location
 
 _MAX_TEXT = 32_000  # characters, which no written answer has
+_MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
 _MAX_SHOWN = 40  # characters of a heading
@@ -93,7 +94,7 @@ class _Search:
                 passage = self._cut(document, head)
                 if passage is None:
                     continue
-                is_short = len(passage.text.split()) <= _MAX_HEADING_WORDS
+                is_short = len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
                 found = (passage.is_empty, is_short, head.is_item, head.is_mention)
                 if best is None or found < rank:
                     best, rank = self._explained(passage, document, head, wanted), found
@@ -146,7 +147,7 @@ class _Search:
 
     def _is_question_only(self, text: str) -> bool:
         """Return whether a passage holds no word besides the question's; one that ends in "?" may be worded differently."""
-        if "[picture]" in text:
+        if "[picture]" in text or len(text) > _MAX_QUESTION:
             return False
         asked, mark, rest = text.lower().rpartition("?")
         others = [word not in self._copied for word in _own_words(asked)]
