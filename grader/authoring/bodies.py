@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, exact, length, lengths, shown
+from grader.authoring.fact import Fact, exact, length, lengths, shown, whole_angle
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
 from grader.xml.wanted_element import readable
@@ -25,7 +25,10 @@ def body_facts(link: Link) -> Iterator[Fact]:
         yield _mass(link.name, exact(link.inertial.mass))
         if link.inertial.mass > 0:
             yield _inertia(link, link.inertial)
-    others = [_collision(link.name, collision, index) for index, collision in enumerate(link.collisions)]
+    others = [
+        _collision(link.name, collision, index, only=len(link.collisions) == 1)
+        for index, collision in enumerate(link.collisions)
+    ]
     if others and any(not is_empty(visual.geometry) for visual in link.visuals):
         title = f"The collision shapes of {link.name} are those that it shows"
         fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name}, is_doubtful=True)
@@ -67,26 +70,30 @@ def _numbers_of(link: str, inertial: Inertial) -> Iterator[Fact]:
         yield _element(link, "mass-centre", title, "inertial/origin", {"@xyz": xyz}, _CENTRE_TOLERANCE)
 
 
-def _collision(link: str, collision: Collision, index: int) -> Fact:
+def _collision(link: str, collision: Collision, index: int, *, only: bool) -> Fact:
     """Return the size of a collision shape that is no visual shape, and where it is."""
-    values: dict[str, Any]
+    aspect, xyz = f"collision-{index + 1}" if index else "collision", lengths(collision.origin.xyz)
+    shape: dict[str, Any]
     match collision.geometry:
         case Box(size=size):
-            values, what = {"geometry/box/@size": shown(map(length, size))}, f"box {shown(size)} m"
+            shape, what = {"box": lengths(size)}, f"box {shown(size)} m"
         case Cylinder(radius=radius, length=long):
-            values = {"geometry/cylinder/@radius": length(radius), "geometry/cylinder/@length": length(long)}
+            shape = {"cylinder": [length(radius), length(long)]}
             what = f"cylinder of radius {shown([radius])} m and length {shown([long])} m"
         case Sphere(radius=radius):
-            values, what = {"geometry/sphere/@radius": length(radius)}, f"sphere of radius {shown([radius])} m"
+            shape, what = {"sphere": length(radius)}, f"sphere of radius {shown([radius])} m"
         case Mesh(filename=file, scale=scale):
-            values, what = {"geometry/mesh/@filename": readable(file)}, f"mesh {readable(file)}"
+            values = {"geometry/mesh/@filename": readable(file)}
             values |= {"geometry/mesh/@scale": shown(scale)} if scale != (1.0, 1.0, 1.0) else {}
-    title = f"{link} collides as a {what}"
-    if any(collision.origin.xyz):
-        values["origin/@xyz"] = shown(lengths(collision.origin.xyz))
-        title += f" at {values['origin/@xyz']} m in its frame"
-    return _element(
-        link, f"collision-{index + 1}" if index else "collision", title, "collision", values, _CENTRE_TOLERANCE
+            values |= {"origin/@xyz": shown(xyz)} if any(xyz) else {}
+            title = (
+                f"{link} collides as a mesh {readable(file)}{f' at {shown(xyz)} m in its frame' if any(xyz) else ''}"
+            )
+            return _element(link, aspect, title, "collision", values, _CENTRE_TOLERANCE)
+    title = f"{link} collides as a {what}{f' at {shown(xyz)} m in its frame' if any(xyz) else ''}"
+    place = {"xyz": xyz, "rpy": [whole_angle(angle) for angle in collision.origin.rpy]}
+    return Fact(
+        link, aspect, title, "collides_as", {"link": link, **shape, **place, **({"only": True} if only else {})}
     )
 
 

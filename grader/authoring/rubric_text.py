@@ -25,6 +25,7 @@ _DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
     "collision_matches_visual": ({"tolerance": 0.002}, "metres"),
+    "collides_as": ({"tolerance": 0.002}, "metres"),
     "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
 }
 

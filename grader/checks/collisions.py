@@ -4,18 +4,19 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
-from grader.checks.toml_types import NonNegative
+from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals
-from grader.errors import MissingElement, NotDecided
+from grader.errors import MissingElement, NotDecided, RubricError
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.likeness import Mismatch, mismatch, turn_between
-from grader.robot.model import Box, Collision, Cylinder, Geometry, Mesh, Sphere, Visual
-from grader.robot.shapes import is_empty
-from grader.robot.transforms import IDENTITY, minus
+from grader.robot.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
+from grader.robot.shapes import Shape, is_empty
+from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.source import LazyLocation
 from grader.text import counted
 
+_ZERO: Vector = (0.0, 0.0, 0.0)
 _MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
 
 Element = Visual | Collision
@@ -32,14 +33,9 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
         link: The link that is examined.
         tolerance: How far a centre, a size or a point of the surface may be off, in metres.
     """
-    found = robot.link(link)
-    for part in ("visual", "collision"):
-        check_resolved(found, part, has_none=True)
+    check_resolved(robot.link(link), "visual", has_none=True)
     shown = visuals(robot, link)
-    solid = tuple(collision for collision in found.collisions if not is_empty(collision.geometry))
-    if not solid:
-        message = f"link {link!r} has no collision shape with a size; it should have the shapes that it shows"
-        raise MissingElement("collision", link, message=message, location=place(found.location))
+    solid = _solid(robot, link, "the shapes that it shows")
     if max(len(shown), len(solid)) > MAX_SHAPES:
         raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
     partners = _partners(shown, solid, tolerance)
@@ -53,6 +49,75 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     if not others:
         return failed(f"no collision shape of {link!r} is {_described(lonely[0])}, as shown", lonely[0].location)
     return _unlike(link, lonely, others, tolerance)
+
+
+def collides_as(
+    robot: Configuration,
+    *,
+    link: str,
+    tolerance: NonNegative,
+    box: Size | None = None,
+    cylinder: RadiusAndLength | None = None,
+    sphere: NonNegative | None = None,
+    xyz: Vector | None = None,
+    rpy: Vector | None = None,
+    relative_to: str = "",
+    only: bool = False,
+) -> Outcome:
+    """A link collides as a box, a cylinder or a sphere of the given size in the given place.
+
+    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a cylinder about its axis
+    changes nothing. Shapes without a size do not count.
+
+    Args:
+        link: The link that is examined.
+        tolerance: How far the centre, a size or a point of the surface may be off, in metres.
+        box: The lengths of the edges along the box's own x, y and z axes, in metres.
+        cylinder: The radius and the length, in metres.
+        sphere: The radius, in metres.
+        xyz: The centre, in metres.
+        rpy: The orientation: roll, pitch and yaw about fixed axes, in radians.
+        relative_to: The link in whose frame the place is given, by default the link itself.
+        only: Whether the link has no other collision shape.
+    """
+    shapes: list[Shape] = [Box(box)] if box is not None else []
+    shapes += [Cylinder(*cylinder)] if cylinder is not None else []
+    shapes += [Sphere(sphere)] if sphere is not None else []
+    if len(shapes) != 1:
+        raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
+    what = f"{_sized(shapes[0])}{f' at {point(xyz)} m' if xyz else ''}{f' with rpy {point(rpy)}' if any(rpy or ()) else ''}"
+    what += f" in {relative_to!r}" if relative_to else ""
+    T_link_wanted = placed_by(robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO))
+
+    def off(collision: Collision) -> Mismatch | None:
+        if isinstance(collision.geometry, Mesh):
+            return None
+        T_link_shape = placed_by(IDENTITY, collision.origin)
+        found = mismatch(
+            shapes[0], T_link_wanted, collision.geometry, T_link_shape, tolerance + SLACK, turned=rpy is not None
+        )
+        return found if found is None or xyz is not None else found._replace(apart=0.0)
+
+    solid = _solid(robot, link, what)
+    nearest, *others = sorted(solid, key=lambda one: (not _fits(off(one), tolerance), _rank(off(one))))
+    if not _fits(off(nearest), tolerance):
+        differences, at = _differences(nearest, off(nearest), tolerance)
+        message = f"no collision shape of {link!r} is {what}; the nearest is {_described(nearest)}{differences}"
+        return failed(message, at or nearest.location)
+    if only and others:
+        message = f"{link!r} has another collision shape, {_described(others[0])}; it should have only {what}"
+        return failed(message, others[0].location)
+    return passed(f"{link!r} collides as {what}")
+
+
+def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
+    """Return the collision shapes of a link that have a size; raise MissingElement if there is none."""
+    check_resolved(robot.link(link), "collision", has_none=True)
+    solid = tuple(collision for collision in robot.link(link).collisions if not is_empty(collision.geometry))
+    if not solid:
+        message = f"link {link!r} has no collision shape with a size; it should have {expected}"
+        raise MissingElement("collision", link, message=message, location=place(robot.link(link).location))
+    return solid
 
 
 def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: float) -> dict[int, int]:
@@ -75,7 +140,10 @@ def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: fl
 
 
 def _is_like(visual: Visual, collision: Collision, tolerance: float) -> bool:
-    off = _mismatch(visual, collision, tolerance)
+    return _fits(_mismatch(visual, collision, tolerance), tolerance)
+
+
+def _fits(off: Mismatch | None, tolerance: float) -> bool:
     return off is not None and off.largest <= tolerance + SLACK
 
 

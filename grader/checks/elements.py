@@ -1,6 +1,7 @@
 """Checks of the XML elements of a URDF, whatever reads them: Gazebo, ros2_control, transmissions."""
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
@@ -24,6 +25,7 @@ from grader.xml.element_values import (
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import WantedElement, readable
 
+_PARTS = ("inertial", "visual", "collision")  # of a link
 _MAX_NAMED = 5  # elements and values in a message
 
 
@@ -52,7 +54,6 @@ def element_present(
             of values, each must be that of a different element.
         tolerance: How far a number may be off, in the number's own unit.
     """
-    del robot  # the elements are read from the text, but only where there is a robot
     wanted = WantedElement(tag, attributes or {}, path, values or {}, tolerance)
     reading = submission.needed_urdf()
     if reading.root is None:
@@ -60,9 +61,38 @@ def element_present(
             raise NotDecided(reading.undetermined, reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
     outcome = _searched(reading, reading.root, wanted)
-    if outcome.status == "failed":
+    is_dropped = outcome.status == "passed" and tag == "link" and not _having(_kept(robot, reading.root), wanted)
+    if outcome.status == "failed" or is_dropped:
         _check_known(reading, reading.root, wanted)
+    if is_dropped:
+        link = _having(reading.root, wanted)[0]
+        steps = (step for key in (path, *wanted.values) for step in steps_of(key))
+        part = next(step for step in steps if step in _PARTS)
+        message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
+        raise MissingElement(part, attribute(link, "name") or "", message=message, location=at)
     return outcome
+
+
+def _kept(robot: Configuration, root: Element) -> Element:
+    """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2 drops."""
+    parts = (part for link in robot.robot.links for part in (link.inertial, *link.visuals, *link.collisions))
+    tags = {part.location.tag for part in parts if part is not None and part.location is not None}
+    copy = deepcopy(root)
+    for tag, element in enumerate([*copy.iter()]):
+        above = element.getparent()
+        if above is not None and name_of(above) == "link" and name_of(element) in _PARTS and tag not in tags:
+            above.remove(element)
+    return copy
+
+
+def _having(root: Element, wanted: WantedElement) -> list[Element]:
+    """Return the elements below <robot> that have the wanted content."""
+    fitting = (child for child in root if name_of(child) == wanted.tag and wanted.fits(child))
+    return [
+        child
+        for child in fitting
+        if any(not wanted.wrong(inner) for inner in elements_at(child, steps_of(wanted.path)))
+    ]
 
 
 def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
@@ -75,8 +105,10 @@ def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome
     found = [inner for element in fitting for inner in elements_at(element, steps_of(wanted.path))]
     if not found:
         return _no_path(reading, fitting[0], wanted)
-    best = min(found, key=lambda element: len(wanted.wrong(element)))
+    best = wanted.nearest(found)
     wrong = wanted.wrong(best)
+    if len(found) > 1 and wanted.identity in wrong:
+        return _no_identity(reading, fitting[0], found, wanted)
     if not wrong:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
@@ -113,6 +145,17 @@ def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outco
     above = elements_at(element, steps[:-1])[0]
     message = f"there is no {wanted.inner}"
     return failed(message, _place(reading, above), detail=did_you_mean(steps[-1], {name_of(child) for child in above}))
+
+
+def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wanted: WantedElement) -> Outcome:
+    """Return the failure of several elements of which none has the identifying attribute."""
+    names = [text.text for element in found for text in texts_at(element, wanted.identity)]
+    value = str(wanted.values[wanted.identity])
+    detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""
+    detail += _case(names, [value])
+    return failed(
+        f"no {wanted.inner} has the {wanted.identity!r} {quoted(value)}", _place(reading, above), detail=detail
+    )
 
 
 def _fault(key: str, found: Sequence[Found], expected: Content) -> str:

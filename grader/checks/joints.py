@@ -3,11 +3,12 @@
 from math import degrees, hypot, isfinite
 
 from grader.checks.comparison import Number, compared, named, number_text, numbers_of
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
+from grader.robot.diagnostics import FULL_TURN
 from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
@@ -28,7 +29,8 @@ def joint_limits(
 ) -> Outcome:
     """The joint that moves a link has the given limits.
 
-    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6.
+    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If the limits are the expected
+    ones, but in metres instead of degrees or the other way round, the joint has the wrong type.
 
     Args:
         link: The link that the joint moves.
@@ -49,12 +51,24 @@ def joint_limits(
     fault = f"it should be {_range(lower, upper)} {units}"
     if limit is None:
         return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=named(joint))
-    low, high = (degrees(end) if joint.type == "revolute" else end for end in (limit.lower, limit.upper))
+    given = (limit.lower, limit.upper)
+    ends = {"prismatic": given, "revolute": (degrees(limit.lower), degrees(limit.upper))}
+    low, high = ends.pop(joint.type)
+    [(other, as_other)] = ends.items()
     numbers = [
         Number("lower", low, lower, tolerance, fault),
         Number("upper", high, upper, tolerance, fault),
         *numbers_of({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT),
     ]
+    is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
+    if (
+        is_meant and (numbers[0].is_wrong or numbers[1].is_wrong) and max(map(abs, given)) <= FULL_TURN
+    ):  # else in degrees
+        range_of_other = f"{_range(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
+        message = (
+            f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range of {range_of_other}"
+        )
+        return failed(message, place(joint.location, "type"), detail=named(joint))
     message = f"the range of the joint that moves {link!r} is {_range(low, high)} {units}"
     return compared(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
 

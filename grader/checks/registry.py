@@ -51,6 +51,7 @@ CHECKS = (
     "inertia.mass_is",
     "inertia.inertia_plausible",
     "collisions.collision_matches_visual",
+    "collisions.collides_as",
     "meshes.shows_mesh",
     "reference.kinematics_match_reference",
     "elements.element_present",

@@ -48,6 +48,7 @@ NotZero = Constraint("a direction: not 0 in each number", any, {"contains": {"no
 NonNegative = Annotated[float, AtLeastZero]
 Count = Annotated[int, AtLeastZero]
 Size = Annotated[Vector, EachAtLeastZero]
+RadiusAndLength = Annotated[tuple[float, float], EachAtLeastZero]
 Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
 

@@ -108,16 +108,19 @@ def new_rubric(
 
 
 @rubric.command("check")
-def check_rubric(file: RubricArgument) -> str:
+def check_rubric(file: RubricArgument) -> int:
     """Check a rubric and its reference solution.
 
-    Exits 2 if there are mistakes, and lists all of them with their lines.
+    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria cannot be decided on the
+    reference, such as the radius of a wheel that is a mesh.
 
     Examples:
 
       grader rubric check my_lab.toml
     """
-    return rubrics.check(file, warn) + "\n"
+    text, code = rubrics.check(file, warn)
+    write_stdout(text)
+    return code
 
 
 @rubric.command("test")

@@ -12,7 +12,8 @@ from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label,
 from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal
 from grader.source import Location
 
-_MAX_LINES, _MAX_TEXT = 60, 4000
+_MAX_TEXT = 32_000  # characters, which no written answer has
+_MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
 _MAX_SHOWN = 40  # characters of a heading
@@ -93,7 +94,7 @@ class _Search:
                 passage = self._cut(document, head)
                 if passage is None:
                     continue
-                is_short = len(passage.text.split()) <= _MAX_HEADING_WORDS
+                is_short = len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
                 found = (passage.is_empty, is_short, head.is_item, head.is_mention)
                 if best is None or found < rank:
                     best, rank = self._explained(passage, document, head, wanted), found
@@ -134,22 +135,19 @@ class _Search:
         lines, start, end = document.lines, head.start, head.end
         while start < end and not has_words(lines[start]):
             start += 1
-        kept = [
-            "[picture]" if line == PICTURE else line.rstrip() for line in lines[start : min(end, start + _MAX_LINES)]
-        ]
+        kept = ["[picture]" if line == PICTURE else line.rstrip() for line in lines[start:end]]
         while kept and not kept[-1]:
             kept.pop()
         text = "\n".join(kept)
         if not text.strip():
             return None
-        is_cut = len(text) > _MAX_TEXT or end > start + _MAX_LINES
-        text = text[:_MAX_TEXT] + (" [...]" if is_cut else "")
+        text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
         at = Location(document.file.path, start + 1, 1)
         return Passage(text, at, _where(document, head, at), is_empty=self._is_question_only(text))
 
     def _is_question_only(self, text: str) -> bool:
         """Return whether a passage holds no word besides the question's; one that ends in "?" may be worded differently."""
-        if "[picture]" in text:
+        if "[picture]" in text or len(text) > _MAX_QUESTION:
             return False
         asked, mark, rest = text.lower().rpartition("?")
         others = [word not in self._copied for word in _own_words(asked)]

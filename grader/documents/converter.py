@@ -21,6 +21,10 @@ PAGE_BREAK = "\f"  # a line of its own before every page but the first
 PICTURE = "\ufffc"  # a line of its own after the text that a picture is below, or at the end of its page
 MARKS = ("drawing", "pict")  # elements of Word that contain pictures
 _MAX_TEXT = 1024 * 1024
+_MIN_WORDS = 2  # in a line, on average
+_MAX_PLACED = 20_000  # characters of a page whose words are joined by their positions
+_WEIGHT = 4.0  # of the length of texts, by which pypdf divides to get the width of a column
+_MOST = 0.9  # of the characters of a page
 _MAX_MEMORY = 1024 * 1024 * 1024
 _MAX_UNPACKED = 64 * 1024 * 1024
 _PR_SET_PDEATHSIG = 1
@@ -215,13 +219,30 @@ def _pdf(data: bytes) -> bytes:
     pages = pypdf.PdfReader(io.BytesIO(data)).pages
     texts = []
     for page in pages[:MAX_PAGES]:
-        text = _without_marks(page.extract_text())
+        text = _without_marks(_page_text(page))
         with suppress(Exception):  # a damaged picture does not hide the text
             text += f"\n{PICTURE}" if page.images.keys() else ""
         texts.append(text)
     if len(pages) > MAX_PAGES:
         texts.append("")
     return _encoded(f"\n{PAGE_BREAK}\n".join(texts))
+
+
+def _page_text(page: Any) -> str:
+    """Return the text of a page; if most lines are one word, as in PDFs of Google Docs, the words are joined by their positions."""
+    text: str = page.extract_text()
+    words = text.split()
+    if _MIN_WORDS * len([line for line in text.split("\n") if line.strip()]) <= len(words) or len(text) > _MAX_PLACED:
+        return text
+    with suppress(Exception):  # of a crafted page, also MemoryError
+        # Narrow columns keep every space between words that are placed one by one.
+        placed = page.extract_text(
+            extraction_mode="layout", layout_mode_space_vertically=False, layout_mode_scale_weight=_WEIGHT
+        )
+        joined = "\n".join(" ".join(line.split()) for line in placed.split("\n"))
+        if len("".join(joined.split())) >= _MOST * len("".join(words)):  # it omits rotated text and forms
+            return joined
+    return text
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif",
 _EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
 _COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
+_PRELAB = re.compile(r"(?<![^\W\d_])pre[\W_]?lab", re.IGNORECASE)  # work before the lab, which has no evidence of it
 _MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
 _MAX_OPENED = 50  # files at once whose dimensions are read
 _MAX_SHOWN = 60  # characters of a heading
@@ -87,8 +88,39 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: Docu
     if meant or certain:
         return Found((*describe(meant), *certain))
     listed = {proof.file.path for proof in perhaps}
-    whole = [file for file in _whole_documents(documents) if file.path not in listed] if documents is not None else []
+    searched = _whole_documents(documents) if documents is not None else ()
+    whole = [file for file in searched if file.path not in listed and not _PRELAB.search(file.name)]
     return Found((), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole)))
+
+
+def find_all_evidence(
+    proofs: Sequence[Proof], names: Sequence[Sequence[str]], documents: DocumentCollection | None
+) -> list[Found]:
+    """Return the evidence for each of several lists of names.
+
+    A file is perhaps meant for one of them, unless its headings say more or could not be read. One that names another step is perhaps meant for the
+    nearest step of its task without a file.
+    """
+    found = [find_evidence(proofs, one, documents) for one in names]
+    claimed = {exhibit.path for one in found for exhibit in one.files}
+    unread = {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
+    for index, one in enumerate(found):
+        perhaps = tuple(exhibit for exhibit in one.perhaps if exhibit.heading or exhibit.path not in claimed - unread)
+        claimed |= {exhibit.path for exhibit in perhaps}
+        found[index] = Found(one.files, perhaps)
+    steps = [
+        (label, index)
+        for index, one in enumerate(found)
+        if not one.files
+        for label in map(read_label, names[index])
+        if label.is_complete
+    ]
+    for proof in (proof for proof in proofs if proof.file.path not in claimed and proof.loose.is_complete):
+        of_task = [(label, index) for label, index in steps if label.task == proof.loose.task]
+        if of_task:
+            near = min((abs(min(label.steps) - min(proof.loose.steps)), index) for label, index in of_task)[1]
+            found[near] = Found((), (*found[near].perhaps, *describe([proof])))
+    return found
 
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:

@@ -1,10 +1,12 @@
 """The evidence in a report: what was found for each piece that the lab asks for."""
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import TYPE_CHECKING
 
+from grader.checks.manual import evidence_shown
 from grader.grading.report import Exhibits
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Evidence, Rubric
 from grader.submission.submission import Submission
 from grader.text import enumerated
 
@@ -22,13 +24,21 @@ def exhibits_of(
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
     if not wanted:
         return (), ()
-    from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
+    from grader.documents.evidence import describe, find_all_evidence  # a URDF on its own has none
 
-    proofs, documents = submission.proofs, submission.readable_documents
-    found = tuple(Exhibits(evidence, *find_evidence(proofs, evidence.names, documents)) for evidence in wanted)
-    listed = {exhibit.path for exhibits in found for exhibit in (*exhibits.files, *exhibits.perhaps)}
+    names = [_names(evidence, rubric) for evidence in wanted]
+    found = find_all_evidence(submission.proofs, names, submission.readable_documents)
+    exhibits = tuple(Exhibits(evidence, *one) for evidence, one in zip(wanted, found, strict=True))
+    listed = {exhibit.path for one in found for exhibit in (*one.files, *one.perhaps)}
     others = [proof for proof in submission.proofs if proof.file.path not in listed]
-    return found, describe(others[:_MAX_PICTURES])
+    return exhibits, describe(others[:_MAX_PICTURES])
+
+
+def _names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+    """Return the names of a piece of evidence, and of a criterion about it: what counts for the criterion is not missing."""
+    shown = (row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown)
+    same = (names for names in shown if set(names) & set(evidence.names))
+    return tuple(dict.fromkeys(chain(evidence.names, *same)))
 
 
 def not_searched(submission: Submission, exhibits: Sequence[Exhibits]) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
+from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedSubmission
@@ -100,6 +101,17 @@ class Result(NamedTuple):
         return self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
 
 
+class Grade(NamedTuple):
+    """The grade of a student in a class: the points that count, None for an excused student, and the late penalty in them (0 or less).
+
+    `is_final` says that a final mark replaces the points of the criteria.
+    """
+
+    points: Decimal | None
+    late: Decimal = _NOTHING
+    is_final: bool = False
+
+
 class Exhibits(NamedTuple):
     """A piece of evidence, the files that were found for it, and those that are perhaps meant."""
 
@@ -113,7 +125,7 @@ class Report:
     """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece of
-    evidence asks for. `notes` are sentences on how the submission was read.
+    evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria, whatever the `grade` is.
     """
 
     submission: GradedSubmission
@@ -125,6 +137,7 @@ class Report:
     others: "tuple[Exhibit, ...]" = ()
     notes: tuple[str, ...] = ()
     version: str = __version__  # of the grader
+    grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
 
     @property
     def score(self) -> Decimal:
@@ -132,10 +145,22 @@ class Report:
         return _sum(result.points for result in self.results)
 
     @property
+    def counting(self) -> Decimal | None:
+        """The points that count for the student: the grade, else the score; None for an excused student."""
+        return self.grade.points if self.grade is not None else self.score
+
+    @property
+    def open_points(self) -> Decimal:
+        """The points that need manual grading and can change what counts: none with a final mark or an excuse."""
+        is_decided = self.grade is not None and (self.grade.is_final or self.grade.points is None)
+        return _NOTHING if is_decided else self.pending
+
+    @property
     def unearned(self) -> tuple[Result, ...]:
-        """The criteria that did not pass, except adjusted ones, extra credit and those that need manual grading."""
-        counting = (result for result in self.results if not (result.is_adjusted or result.criterion.bonus))
-        return tuple(result for result in counting if result.outcome.status not in ("passed", "pending"))
+        """The automatic criteria that did not pass, except adjusted ones and extra credit."""
+        automatic = (result for result in self.results if result.criterion.check.function not in MANUAL_CHECKS)
+        counting = (result for result in automatic if not (result.is_adjusted or result.criterion.bonus))
+        return tuple(result for result in counting if result.outcome.status != "passed")
 
     @property
     def has_failures(self) -> bool:

@@ -78,7 +78,7 @@ class RubricTest(NamedTuple):
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """The criteria that the reference does not pass, without extra credit and those that need manual grading."""
+        """The criteria that the reference does not pass, without extra credit and those for manual grading."""
         return tuple(found.criterion.id for found in self.reference.unearned)
 
     @property

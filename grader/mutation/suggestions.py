@@ -35,7 +35,7 @@ _RULES = (
     Rule("axis", ("joint_axis", "axis_along")),
     Rule("mass", ("mass_is",)),
     Rule("inertial", ("inertia_plausible", "mass_is")),
-    Rule("collision", ("collision_matches_visual",)),
+    Rule("collision", ("collision_matches_visual", "collides_as")),
     Rule("gazebo", ("element_present",)),
     Rule("ros2_control", ("element_present",)),
     Rule("transmission", ("element_present",)),

@@ -5,7 +5,6 @@ from functools import cached_property
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import InputError
-from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import decide
 from grader.grading.hints.trials import is_worse
 from grader.grading.report import Report, Result
@@ -61,7 +60,8 @@ class Trial:
     def submission(self, mutant: Mutant) -> Submission | None:
         """Return the reference with a mistake; None where nothing of it can be read any more."""
         if mutant.renamed or mutant.is_deleted:
-            files = {mutant.path: None, **({mutant.renamed: self._bytes(mutant.path)} if mutant.renamed else {})}
+            file = self.reference.everything.files[mutant.path]
+            files = {mutant.path: None, **({mutant.renamed: file.read(file.size)} if mutant.renamed else {})}
         else:
             files = {mutant.path: mutant.applied(self.text(mutant.path)).encode("utf-8", "surrogateescape")}
             if mutant.path in self.robot_files:
@@ -70,9 +70,6 @@ class Trial:
             return with_files(self.reference, files)
         except InputError:
             return None
-
-    def _bytes(self, path: str) -> bytes:
-        return self.reference.everything.files[path].read(URDF_LIMIT)
 
     def results(self, mutant: Mutant, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
         """Yield the results of the wanted criteria that a mutant can change."""

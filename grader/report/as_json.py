@@ -33,6 +33,7 @@ def report_data(report: Report) -> dict[str, Any]:
         "score": exact(report.score),
         "max_score": exact(report.max_score),
         "pending": exact(report.pending),
+        **grade_data(report),
         "problems": [problem(found) for found in report.problems],
         "results": [_result(result) for result in report.results],
         "evidence": [
@@ -47,6 +48,14 @@ def report_data(report: Report) -> dict[str, Any]:
         ],
         "other_pictures": list(map(asdict, report.others)),
     }
+
+
+def grade_data(report: Report) -> dict[str, Any]:
+    """Return the key with the grade of a student in a class, if a person or the late penalty changes the score."""
+    if report.grade is None:
+        return {}
+    points, late, is_final = report.grade
+    return {"grade": {"points": exact(points) if points is not None else None, "late": exact(late), "final": is_final}}
 
 
 def _result(result: Result) -> dict[str, Any]:

@@ -23,15 +23,51 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "m
 
 
 def score_text(report: Report) -> str:
-    """Return the score and the maximum: 58.5 / 70 points."""
-    return f"{format_points(report.score)} / {format_points(report.max_score)} points"
+    """Return the points that count and the maximum, 58.5 / 70 points, or that the student is excused."""
+    points = counting_text(report)
+    return f"{points} / {format_points(report.max_score)} points" if report.counting is not None else points
+
+
+def counting_text(report: Report) -> str:
+    """Return the points that count for the student: 58.5, excused, or a dash if nothing is decided."""
+    if report.grade is None:
+        return _earned(report.results)
+    return format_points(report.grade.points) if report.grade.points is not None else "Excused"
+
+
+def headline(report: Report) -> str:
+    """Return the points that count and the maximum in short: 58.5/70."""
+    most = earned_text(report.results).partition("/")[2]
+    return f"{counting_text(report)}/{most}" if report.counting is not None else counting_text(report)
+
+
+def grade_line(report: Report) -> str:
+    """Return how the grade of a student in a class came about; empty if it is the score of automatic criteria."""
+    if report.grade is None:
+        return ""
+    manual = sum((result.points for result in report.results if result.manual_mark is not None), Decimal(0))
+    has_marks = any(result.manual_mark is not None for result in report.results)
+    text = (
+        f"{format_points(report.score - manual)} automatic{f' + {format_points(manual)} manual' if has_marks else ''}"
+    )
+    text += f" - {format_points(-report.grade.late)} late" if report.grade.late else ""
+    if report.grade.points is None:
+        return f"Excused; the criteria give {text} points."
+    return f"Final mark, instead of {text} points." if report.grade.is_final else f"Points: {text}."
 
 
 def earned_text(results: tuple[Result, ...]) -> str:
-    """Return the points of some criteria together: 8/14, above the maximum with extra credit; extra credit alone: 5/5 bonus."""
-    earned = sum((result.points for result in results), Decimal(0))
+    """Return the points of some criteria together: 8/14, above the maximum with extra credit; extra credit alone: 5/5 bonus.
+
+    If all of them need manual grading: –/14.
+    """
     most = worth(result.criterion for result in results)
-    return f"{format_points(earned)}/{format_points(most.points) if most.points or not most.bonus else most.short}"
+    return f"{_earned(results)}/{format_points(most.points) if most.points or not most.bonus else most.short}"
+
+
+def _earned(results: tuple[Result, ...]) -> str:
+    is_open = bool(results) and all(result.is_open for result in results)
+    return "–" if is_open else format_points(sum((result.points for result in results), Decimal(0)))
 
 
 def points_of(results: Iterable[Result]) -> str:
@@ -83,8 +119,8 @@ def bonus_line(report: Report) -> str:
 
 
 def summaries(report: Report) -> list[str]:
-    """Return what a report says first: the URDF, how many criteria passed, the extra credit, and the package."""
-    return [*filter(None, (summary(report), bonus_line(report), package_line(report)))]
+    """Return what a report says first: how the grade came about, the URDF, how many criteria passed, the extra credit, the package."""
+    return [*filter(None, (grade_line(report), summary(report), bonus_line(report), package_line(report)))]
 
 
 def package_line(report: Report) -> str:
@@ -99,7 +135,7 @@ def pending_line(report: Report) -> str:
     """Return how many points need manual grading, and which automatic criteria are among them; empty if none do."""
     names = [printable(result.criterion.id) for result in undecided(report)]
     rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
-    return f"{pending_points(report)}{rest}" if report.pending else ""
+    return f"{pending_points(report)}{rest}" if report.open_points else ""
 
 
 def pending_points(report: Report) -> str:
@@ -202,7 +238,7 @@ def next_command(report: Report) -> str:
 def what_is_left(report: Report) -> str:
     """Return what is left where no command follows; points may be lost by a manual mark."""
     start = "No check failed" if failures(report) else "Nothing to fix"
-    return f"{start}: {pending_points(report)}." if report.pending else f"{start}."
+    return f"{start}: {pending_points(report)}." if report.open_points else f"{start}."
 
 
 def explain_command(name: str, report: Report) -> str:

@@ -20,7 +20,7 @@ def render_gradescope(report: Report) -> str:
     """Return the report. Students see it at once, unless the assignment's settings hide it."""
     return to_json(
         {
-            "score": exact(report.score),
+            "score": exact(report.counting if report.counting is not None else report.score),
             "output": overview_markdown(report),
             "output_format": "md",
             "test_output_format": "md",

@@ -10,7 +10,7 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import earned_text, other_problems, score_text
+from grader.report.content import counting_text, earned_text, other_problems, score_text
 from grader.report.details import result_details
 from grader.report.locations import Base, archive_around
 from grader.report.order import is_failure
@@ -65,6 +65,7 @@ def _submission_properties(report: Report) -> dict[str, str]:
         "score": format_points(report.score),
         "max_score": format_points(report.max_score),
         "pending": format_points(report.pending),
+        **({"grade": counting_text(report)} if report.grade is not None else {}),
         "submission": printable(submission.id),
         "submission_sha256": submission.sha256 or "",
         "rubric": printable(report.rubric.id),

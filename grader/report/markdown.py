@@ -109,7 +109,7 @@ def _passed(group: Group) -> str:
 def _head(report: Report) -> Iterator[str]:
     yield f"# {escaped(content.score_text(report))}: {escaped(printable(report.rubric.title))}"
     yield from map(escaped, content.summaries(report))
-    if report.pending:
+    if report.open_points:
         yield f"**{escaped(content.pending_line(report))}**"
     yield escaped(provenance(report))
     yield from map(escaped, (*content.notes(report), *content.ignored_lines(report)))

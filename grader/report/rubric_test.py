@@ -45,7 +45,9 @@ def _percent(found: MutantResults) -> str:
 
 def _counts(test: RubricTest) -> Iterator[str]:
     report, equivalents, samples = test.reference, test.equivalents, test.samples
-    decided = worth(result.criterion for result in report.results if not result.is_open)
+    decided = worth(
+        result.criterion for result in report.results if not result.is_open or result.criterion.id in test.lost
+    )
     yield f"Reference    {format_points(report.score)} of {decided.text}"
     if equivalents.tried:
         losing = _some(len(equivalents.losses), "loses", "lose")
@@ -70,7 +72,7 @@ def _some(count: int, one: str, several: str) -> str:
 
 def _reference(test: RubricTest) -> Iterator[str]:
     if test.lost:
-        yield from ("", "The reference loses points:")
+        yield from ("", "The reference does not get full marks:")
     for result in test.reference.results:
         if result.criterion.id in test.lost:
             yield f"  {result.criterion.id}: {result.outcome.message}"

@@ -72,11 +72,13 @@ REPORT_SCHEMA = document(
         "submission": _SUBMISSION,
         **each(array(TEXT), "notes parts"),
         **each(POINTS, "score max_score pending"),
+        "grade": record({"points": nullable(POINTS), "late": NUMBER, "final": FLAG}),
         "problems": array(_PROBLEM),
         "results": array(_RESULT),
         "evidence": array(record({**each(TEXT, "id part title"), **each(array(_EXHIBIT), "files perhaps")})),
         "other_pictures": array(_EXHIBIT),
     },
+    optional=("grade",),
 )
 
 _VECTOR = {**array(NUMBER), "minItems": 3, "maxItems": 3}

@@ -7,7 +7,7 @@ from lxml import etree
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH
 from grader.grading.report import Report
-from grader.report.content import bonus_line, score_text, summary, why_no_picture
+from grader.report.content import bonus_line, grade_line, score_text, summary, why_no_picture
 from grader.report.details import result_details
 from grader.report.drawing import drawing_element, empty_element
 from grader.report.inspection import Inspection, effect
@@ -22,7 +22,7 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    words = (summary(report), bonus_line(report), *_remark_lines(report))
+    words = (grade_line(report), summary(report), bonus_line(report), *_remark_lines(report))
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
 
 

@@ -59,7 +59,9 @@ def _show_pending(order: Order, page: Page) -> None:
     if not order.pending:
         return
     page.console.print()
-    wrapped(page.console, Text(content.pending_points(page.report), "bold"), 0)
+    wrapped(
+        page.console, Text(content.pending_points(page.report) if page.report.open_points else "Not graded", "bold"), 0
+    )
     for reason, results in alike(order.pending, content.pending_reason):
         has_answers = page.is_verbose or any(result.criterion.answer for result in results)
         if (content.is_manual(results[0]) and has_answers) or any(result.comment for result in results):
@@ -96,10 +98,13 @@ def _show_end(page: Page) -> None:
     console.print()
     if page.is_verbose and report.submission.has_urdf:
         wrapped(console, Text("grader inspect shows the whole robot.", "dim"), 0)
-    style = "bold green" if report.score + report.pending >= report.max_score else "bold"
-    score = Text(content.earned_text(report.results), style)
+    counting = report.counting
+    is_full = counting is not None and counting + report.open_points >= report.max_score
+    score = Text(content.headline(report), "bold green" if is_full else "bold")
     wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)
     command = content.next_command(report)
     end = f"Next: {command}" if command else content.what_is_left(report)
-    for line in filter(None, (content.verdict_and_counts(report), content.bonus_line(report), end)):
+    for line in filter(
+        None, (content.grade_line(report), content.verdict_and_counts(report), content.bonus_line(report), end)
+    ):
         wrapped(console, Text(line), INDENT, Text())

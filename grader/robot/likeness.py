@@ -30,13 +30,15 @@ class Mismatch(NamedTuple):
         return max(three) if sum(three) < inf else nan
 
 
-def mismatch(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float) -> Mismatch | None:
+def mismatch(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, tolerance: float, *, turned: bool = True
+) -> Mismatch | None:
     """Return how two shapes differ, with as few differences beyond a tolerance as their symmetries allow.
 
-    None for shapes of different kinds.
+    None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    ways = [Mismatch(apart, *way) for way in _ways(a, T_w_a, b, T_w_b)]
+    ways = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _ways(a, T_w_a, b, T_w_b)]
     return min(ways, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
 
 

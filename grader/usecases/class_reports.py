@@ -16,7 +16,7 @@ from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError, RubricError
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.report import Report, Result
+from grader.grading.report import Grade, Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
@@ -137,7 +137,7 @@ def _write_some(
 
 
 def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
-    """Return the report on a student's newest submission, with a note for a final mark, an excuse, a comment and a late penalty.
+    """Return the report on a student's newest submission, with the grade and a note for a final mark, an excuse, a comment and a late penalty.
 
     Without a submission, the report has the notes, but no points. A note says who graded if a person did, and always in
     `feedback`. Without notes, the report is the same as that of `grader grade`.
@@ -148,7 +148,10 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
         note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
     remarks = remarks_of(grades, grade)
     graded = remarks.graded if feedback or remarks.graders.is_manual else []
-    return replace(report, notes=(*report.notes, *remarks.notes, *graded, *([note] if note else [])))
+    is_changed = grade.is_decided or grade.late.points or any(result.manual_mark for result in report.results)
+    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
+    notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
+    return replace(report, notes=notes, grade=counting if is_changed else None)
 
 
 def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
 from grader.text import counted, printable
 from grader.usecases import Warn
+from grader.usecases.exit_codes import ExitCode
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
@@ -53,20 +54,26 @@ def _size(rubric: "Rubric") -> str:
     return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
 
 
-def check(name: str, warn: Warn) -> str:
-    """Check a rubric and return a summary. Raises RubricError if its reference solution does not get full marks."""
+def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
+    """Check a rubric and return a summary, and the exit code: 1 if criteria cannot be decided on its reference solution.
+
+    Raises RubricError if the reference loses points.
+    """
     from grader.grading.grade import grade
 
     rubric = load(name, warn)
     found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
     if rubric.solution is None:
-        return found
-    lost = grade(rubric, rubric.solution.submission).unearned
-    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost]
-    lines += _unresolved(rubric)
-    if lines:
-        raise RubricError(tuple(map(printable, lines)))
-    return f"{found}; its reference gets full marks"
+        return f"{found}\n", ExitCode.PASSED
+    unearned = grade(rubric, rubric.solution.submission).unearned
+    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in unearned]
+    unresolved = [*_unresolved(rubric)]
+    if unresolved or any(result.outcome.status != "pending" for result in unearned):
+        raise RubricError(tuple(map(printable, lines + unresolved)))
+    if not lines:
+        return f"{found}; its reference gets full marks\n", ExitCode.PASSED
+    found += f"; its reference does not get full marks: {counted(len(lines), 'criterion', 'criteria')} cannot be decided on it"
+    return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
 
 
 def _unresolved(rubric: "Rubric") -> Iterator[str]:

@@ -1,7 +1,7 @@
 """An element that is looked for in an XML file: its tag, its attributes, a path in it, and the values there."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from grader.xml.element_values import Found, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
@@ -9,6 +9,7 @@ from grader.xml.parsing import Element, Unresolved
 
 Value = Scalar | list[Scalar]
 
+_IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
 
 
@@ -48,6 +49,16 @@ class WantedElement(NamedTuple):
     def wrong(self, element: Element) -> list[str]:
         """Return the keys of the values that an element does not have."""
         return [key for key, value in self.values.items() if not self._has(element, key, value)]
+
+    @property
+    def identity(self) -> str:
+        """The key of the attribute that identifies one of several elements; empty if the values have none."""
+        return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
+
+    def nearest(self, elements: Sequence[Element]) -> Element:
+        """Return the element with the identifying attribute and the most of the other values."""
+        wrong = {element: self.wrong(element) for element in elements}
+        return min(elements, key=lambda element: (self.identity in wrong[element], len(wrong[element])))
 
     def has(self, key: str, found: Found) -> bool:
         """Return whether a text is the value at a path, or one of several."""

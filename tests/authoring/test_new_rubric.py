@@ -495,8 +495,29 @@ def test_what_a_mesh_leaves_open_is_demanded_by_numbers(tmp_path: Path) -> None:
     assert found["hand-mass-centre"]["values"] == {"@xyz": "0 0 0.02"}
     (tmp_path / "lab.toml").unlink()
     rubric, _ = rubric_of(robot(hand.replace(cylinder, mesh + collision)), tmp_path)
-    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "element_present"}
-    assert found["hand-collision"]["values"] == {"geometry/sphere/@radius": 0.05, "origin/@xyz": "0 0 0.1"}
+    found = {row["id"]: row["with"] for row in rubric["criterion"] if row["check"] == "collides_as"}
+    assert found == {
+        "hand-collision": {"link": "hand", "sphere": 0.05, "xyz": [0, 0, 0.1], "rpy": [0, 0, 0], "only": True}
+    }
+
+
+def test_a_collision_that_is_no_visual_must_be_turned_as_in_the_reference(tmp_path: Path) -> None:
+    """The generated criterion passes for a cylinder that is turned the other way round, and fails for one that is not turned."""
+    turned = '<collision><origin xyz="0 0 0.1" rpy="0 1.5708 0"/><geometry><cylinder radius="0.02" length="0.3"/></geometry></collision>'
+    text = robot().replace("</link>", f"{turned}</link>", 1)
+    rubric, _ = rubric_of(text, tmp_path)
+    found = next(row for row in rubric["criterion"] if row["check"] == "collides_as")
+    assert found["with"]["rpy"] == [0, 1.5708, 0]
+    lost = {}
+    for name, rpy in (("opposite", 'rpy="0 -1.5708 0"'), ("upright", "")):
+        (tmp_path / f"{name}.urdf").write_text(text.replace('rpy="0 1.5708 0"', rpy), "utf-8")
+        done = run(("grade", tmp_path / f"{name}.urdf", "--rubric", tmp_path / "lab.toml", "--format", "json"))
+        lost[name] = [row["id"] for row in json.loads(done.stdout)["results"] if row["points"] == 0]
+    assert lost == {"opposite": [], "upright": [found["id"]]}
+    more = text.replace("</link>", '<collision><geometry><sphere radius="9"/></geometry></collision></link>', 1)
+    (tmp_path / "more.urdf").write_text(more, "utf-8")
+    done = run(("grade", tmp_path / "more.urdf", "--rubric", tmp_path / "lab.toml"))
+    assert b"has another collision shape, a sphere of radius 9 m" in b" ".join(done.stdout.split())
 
 
 def test_a_path_of_one_machine_is_odd_and_not_demanded(tmp_path: Path) -> None:

@@ -530,6 +530,25 @@ CASES = (
         edges={"tolerance": lambda off: colliding(z=0.1 + off)},
     ),
     Case(
+        collisions.collides_as,
+        {
+            "link": "block",
+            "box": (0.6, 0.4, 0.2),
+            "xyz": (0.0, 0.0, 0.1),
+            "rpy": (0.0, 0.0, 0.0),
+            "tolerance": 0.002,
+            "only": True,
+        },
+        passing=colliding(),
+        pass_message="'block' collides as a box 0.6 0.4 0.2 m at 0 0 0.1 m",
+        failing=colliding(z=0.0),
+        fail_message="no collision shape of 'block' is a box 0.6 0.4 0.2 m at 0 0 0.1 m;"
+        " the nearest is a box 0.6 0.4 0.2 m at 0 0 0 m (100 mm away)",
+        at='xyz="0.0 0.0 0.0"',
+        edges={"tolerance": lambda off: colliding(z=0.1 + off)},
+        mesh_status="failed",
+    ),
+    Case(
         meshes.shows_mesh,
         {
             "link": "block",

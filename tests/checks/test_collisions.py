@@ -6,12 +6,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.collisions import collision_matches_visual
+from grader.checks.collisions import collides_as, collision_matches_visual
+from grader.errors import RubricError
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, rotation_about, rotation_from_rpy
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
-from tests.checks.robots import Numbers, Scene, box, collision, cylinder, link, mesh, scene, sphere, turned, visual
+from tests.checks.robots import (
+    Numbers,
+    Scene,
+    box,
+    collision,
+    cylinder,
+    joint,
+    link,
+    mesh,
+    scene,
+    sphere,
+    turned,
+    visual,
+)
 
 CLOSE: Arguments = {"link": "arm", "tolerance": 0.002}
 BRICK, ROD, BALL = box(0.6, 0.4, 0.2), cylinder(0.1, 0.5), sphere(0.1)
@@ -220,3 +234,47 @@ def test_very_many_shapes() -> None:
     """A link with more shapes than are compared needs manual grading."""
     shapes = [shape for _ in range(51) for shape in (visual(BALL), collision(BALL))]
     assert graded(collision_matches_visual, arm(*shapes), **CLOSE).status == "pending"
+
+
+# --- A given shape ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "shape", "status"),
+    [
+        ({"box": (0.6, 0.4, 0.2)}, collision(box(0.2, 0.4, 0.6), xyz="1 2 3"), "passed"),  # no place is asked for
+        ({"box": (0.6, 0.4, 0.2), "rpy": (0, 0, 0)}, collision(box(0.2, 0.4, 0.6)), "failed"),
+        ({"box": (0.6, 0.4, 0.2), "rpy": (0, 0, 0)}, collision(box(0.2, 0.4, 0.6), rpy=turned(pitch=90)), "passed"),
+        ({"cylinder": (0.1, 0.5), "rpy": (0, pi / 2, 0)}, collision(ROD, rpy=turned(pitch=-90)), "passed"),
+        ({"cylinder": (0.1, 0.5), "rpy": (0, pi / 2, 0)}, collision(ROD), "failed"),
+        ({"cylinder": (0.1, 0.5)}, collision(ROD, rpy=turned(pitch=-90)), "passed"),
+        ({"cylinder": (0.1, 0.5)}, collision(BALL), "failed"),
+        ({"cylinder": (0.1, 0.5)}, collision(mesh()), "failed"),
+        ({"sphere": 0.1, "xyz": (0, 0, 1)}, collision(BALL, xyz="0 0 1", rpy=turned(yaw=37)), "passed"),
+        ({"sphere": 0.1, "xyz": (0, 0, 1)}, collision(BALL), "failed"),
+        ({"sphere": 0.1}, collision(ROD) + collision(BALL), "passed"),
+        ({"sphere": 0.1, "only": True}, collision(ROD) + collision(BALL), "failed"),
+        ({"sphere": 0.1, "only": True}, collision(sphere(0)) + collision(BALL), "passed"),
+    ],
+)
+def test_a_collision_is_a_given_shape(arguments: Arguments, shape: str, status: str) -> None:
+    """Of its size, and in its place as far as one is given; symmetries do not matter, and other shapes only if asked for."""
+    assert graded(collides_as, arm(visual(BRICK), shape), **CLOSE, **arguments).status == status
+
+
+def test_the_place_can_be_given_in_another_frame() -> None:
+    """The collision is placed by the joints between."""
+    held = scene(link("base"), link("arm", collision(BALL)), joint("j", "fixed", "base", "arm", xyz="0 0 2"))
+    given: Arguments = {**CLOSE, "sphere": 0.1, "relative_to": "base"}
+    assert passes(collides_as, held, xyz=(0.0, 0.0, 2.0), **given) == (
+        "'arm' collides as a sphere of radius 0.1 m at 0 0 2 m in 'base'"
+    )
+    assert fails(collides_as, held, xyz=(0.0, 0.0, 0.0), **given).endswith("(2000 mm away)")
+    assert missing(collides_as, scene(link("arm", visual(BALL))), **CLOSE, sphere=0.1).kind == "collision"
+
+
+@pytest.mark.parametrize("shapes", [{}, {"sphere": 0.1, "box": (1.0, 1.0, 1.0)}])
+def test_exactly_one_shape_is_given(shapes: Arguments) -> None:
+    """Otherwise the rubric is refused."""
+    with pytest.raises(RubricError, match="exactly one of box, cylinder and sphere"):
+        ask(collides_as, arm(collision(BALL)), **CLOSE, **shapes)

@@ -90,10 +90,57 @@ def test_one_element_has_all_values() -> None:
         CONTROL, tag="ros2_control", path="joint", values={"@name": "joint_2", "command_interface/@name": "position"}
     )
     assert outcome.status == "failed"
-    assert outcome.message == "<joint> in <ros2_control>: '@name' is 'joint_1'; it should be 'joint_2'"
+    assert (
+        outcome.message == "<joint> in <ros2_control>: 'command_interface/@name' is 'effort'; it should be 'position'"
+    )
     lists = "<a><b>1</b><c>2</c></a><a><b>1</b><c>1</c><d>4</d></a>"
     message = in_gazebo(lists, {"b": 1.0, "c": 3.0, "d": 4.0}, path="a").message
     assert message == "<a> in <gazebo>: 'c' is 1; it should be 3"
+
+
+def test_the_sibling_with_the_identifying_attribute_is_described() -> None:
+    """Another one that has more of the other values is not meant; without one, the attributes of all are listed."""
+    arguments: dict[str, Any] = {"tag": "ros2_control", "path": "joint"}
+    wanted = {"command_interface/@name": "position", "state_interface/@name": "position"}
+    message = found(CONTROL, **arguments, values={"@name": "joint_2", **wanted}).message
+    assert message.startswith(
+        "<joint> in <ros2_control>: 'command_interface/@name' is 'effort'; it should be 'position'; "
+    )
+    message = found(CONTROL, **arguments, values={"@name": "Joint_2", **wanted}).message
+    assert message == (
+        "no <joint> in <ros2_control> has the '@name' 'Joint_2'; the file has 'joint_1' and 'joint_2'"
+        " (upper and lower case differ)"
+    )
+    sensors = '<sensor type="ray"><rate>30</rate></sensor><sensor type="camera"><rate>10</rate></sensor>'
+    message = in_gazebo(sensors, {"@type": "camera", "rate": 30.0}, path="sensor").message
+    assert message == "<sensor> in <gazebo>: 'rate' is 10; it should be 30"
+
+
+DROPPED = {"tag": "link", "attributes": {"name": "a"}}
+
+
+@pytest.mark.parametrize(
+    ("inside", "arguments", "status"),
+    [
+        ('<inertial><mass value="x"/></inertial>{ball}', {"path": "collision"}, "failed"),
+        ('<inertial><mass value="x"/></inertial>{ball}', {"path": "collision/geometry/sphere"}, "failed"),
+        ('<inertial><mass value="x"/></inertial>{ball}', {"values": {"collision/geometry/sphere/@radius": 1.0}}, "failed"),
+        ('<inertial><mass value="x"/></inertial>{ball}', {"path": "inertial/mass"}, "failed"),
+        ('<inertial><mass value="x"/></inertial>{ball}', {}, "passed"),
+        ("<collision><geometry><box/></geometry></collision>{ball}", {"path": "collision/geometry/sphere"}, "failed"),
+        ("{ball}<collision><geometry><box/></geometry></collision>", {"path": "collision/geometry/sphere"}, "passed"),
+        ("{ball}", {"path": "collision/geometry/sphere"}, "passed"),
+    ],
+)  # fmt: skip
+def test_what_ros_2_drops_of_a_link_is_not_there(inside: str, arguments: dict[str, Any], status: str) -> None:
+    """A bad inertial loses the collisions of its link, and a bad collision those after it; the message says so."""
+    ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'
+    robot = scene(link("base"), f'<link name="a">{inside.format(ball=ball)}</link>')
+    outcome = graded(element_present, robot, **DROPPED, **arguments)
+    assert outcome.status == status
+    assert ("ROS 2 drops " in outcome.message) == (status == "failed")
+    if status == "failed":
+        assert outcome.problem in outcome.message and "link 'a'" in outcome.problem
 
 
 # --- Which element is found -------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.checks.collisions import collides_as
 from grader.checks.registry import describe
 from tests.checks.cases import CASES, Case
 from tests.checks.outcomes import ask, graded, missing
@@ -97,8 +98,8 @@ def test_a_shape_without_size_is_no_shape(case: Case) -> None:
     empty = case.passing.with_shape(box(0.0, 0.0, 0.0))
     if case.needs_size:
         error = missing(case.check, empty, **case.arguments)
-        assert error.kind == "visual"
-        assert f"{error.name!r} has no visual" in str(error)
+        assert error.kind == ("collision" if case.check is collides_as else "visual")
+        assert f"{error.name!r} has no {error.kind}" in str(error)
     else:
         assert ask(case.check, empty, **case.arguments).status == "passed"
 

@@ -277,6 +277,25 @@ def test_a_rotation_of_the_frame_with_its_contents_changes_nothing(
 LEFT = 'joint="left_joint"'
 
 
+@pytest.mark.parametrize(
+    ("kind", "limit", "wanted", "message"),
+    [
+        ("revolute", 'upper="0.3"', (0.0, 0.3, 0.002), "is revolute; it should be prismatic, with a range of 0 to 0.3 m"),
+        ("prismatic", 'lower="-1.5708" upper="0.7854"', (-90.0, 45.0, 1.0),
+         "is prismatic; it should be revolute, with a range of -90 to 45 degrees"),
+        ("revolute", 'upper="0.4"', (0.0, 0.3, 0.002), "range of the joint that moves 'tip' is 0 to 22.918 degrees"),
+        ("revolute", 'lower="-90" upper="45"', (-90.0, 45.0, 1.0), "is -5156.6 to 2578.3 degrees; it should be -90 to"),
+    ],
+)  # fmt: skip
+def test_a_joint_of_the_wrong_type(kind: str, limit: str, wanted: tuple[float, float, float], message: str) -> None:
+    """The limits are the expected ones in the other unit, and not degrees in place of radians: the type is what is wrong."""
+    lower, upper, tolerance = wanted
+    found = limited(limit, kind)
+    at = f'type="{kind}"' if "should be" in message and "range of " in message else None
+    outcome = fails(joint_limits, found, at=at, link="tip", lower=lower, upper=upper, tolerance=tolerance)
+    assert message in outcome
+
+
 def test_what_is_absent_in_the_rubric_is_not_checked() -> None:
     """Multiplier and offset count only if they are given; the file's defaults are 1 and 0."""
     passes(mimics, gripping(LEFT, 'multiplier="7" offset="3"'), **MIMIC)

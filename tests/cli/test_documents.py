@@ -126,6 +126,43 @@ def test_a_report_names_misspelt_pictures(tmp_path: Path) -> None:
     assert report["other_pictures"] == []
 
 
+def test_a_pdf_of_google_docs_is_read_as_it_looks(tmp_path: Path) -> None:
+    """Each word has a place of its own: headings are found, and `review` shows an answer whole, with its reason at the end."""
+    answer = [f"It vanishes from the view, says line {number}." for number in range(90)]
+    lines = ["Task 1: Step 15", "REQUIRED Question: what happens and why?", *answer, "The reason: it has two roots."]
+    pages = [lines[start : start + 40] for start in range(0, len(lines), 40)]
+    data = pdf(*pages, ["Task 2", "REQUIRED Question:", "rviz2 shows the robot."], by_word=True)
+    submitted(tmp_path / "class" / "Ash", {"report.pdf": data, "robot.urdf": urdf().encode()})
+    text = grade(tmp_path / "class" / "Ash")
+    assert "The answer on page 1 of report.pdf" in text
+    assert "The answer on page 4 of report.pdf" in text
+    book = tmp_path / "book.db"
+    grader("batch", tmp_path / "class", "--gradebook", book, "--rubric", "lab6")
+    shown = grader("review", "--gradebook", book, "--criterion", "answer-floating-link", stdin="q\n").stdout
+    assert [line.strip() for line in shown.splitlines() if line.strip() in lines] == lines[1:]
+
+
+def test_evidence_does_not_contradict_itself(tmp_path: Path) -> None:
+    """What a criterion takes as its picture is not missing, no file is offered twice, and a wrong step is near the right one."""
+    scan = pdf([PICTURE], [PICTURE])
+    files = {"Task3_desk.png": png(), "report.pdf": scan, "prelab.pdf": scan, "Task2_Step3.png": png()}
+    path = submitted(tmp_path / "Ash", files)
+    report = as_json(path)
+    listed = {row["id"]: [file["path"] for file in (*row["files"], *row["perhaps"])] for row in report["evidence"]}
+    assert listed == {
+        "task1-step8": ["report.pdf"],
+        "task1-step18": [],
+        "task1-step36": [],
+        "task2-step6": ["Task2_Step3.png"],
+        "task3-step3": ["Task3_desk.png"],
+    }
+    (webcam,) = (row for row in report["results"] if row["id"] == "evidence-webcam")
+    assert webcam["measured"] == ["Task3_desk.png"]
+    text = grade(path)
+    assert "Step 3: the camera image in RViz: Task3_desk.png" in text
+    assert "Step 6: the robot, started by the launch file: perhaps Task2_Step3.png" in text
+
+
 def test_without_the_extra_one_line_says_what_was_not_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """If the packages for Word and PDF are not installed, a note names the document; its evidence is not called missing."""
     monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends

@@ -200,7 +200,10 @@ def test_a_reference_that_loses_points_fails(tmp_path: Path) -> None:
     """The criteria and their messages are listed, and the exit code is 1."""
     done = command(write_rubric(tmp_path, TOP + BOX.replace("0.12", "0.2")), "--mutants", 20)
     assert done.returncode == 1
-    assert "The reference loses points:\n  plate-box: 'plate' shows a box 0.1 0.12 0.02 m" in done.stdout.decode()
+    assert (
+        "The reference does not get full marks:\n  plate-box: 'plate' shows a box 0.1 0.12 0.02 m"
+        in done.stdout.decode()
+    )
     assert data(tmp_path / "arm.toml", "--mutants", 20)["reference"]["lost"] == ["plate-box"]
 
 
@@ -364,3 +367,44 @@ def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str
     assert {row["path"] for row in found["ignored"]} <= changed
     without = data(write_rubric(tmp_path, top), "--mutants", 0)["mutants"]["total"]
     assert (found["mutants"]["total"] > without) == (len(changed) > 1)
+
+
+MESH = '<visual><geometry><mesh filename="package://ash/meshes/wheel.stl"/></geometry></visual>'
+WHEEL = """<robot name="r"><link name="base"/><link name="wheel">{}</link><joint name="j" type="continuous">\
+<parent link="base"/><child link="wheel"/><origin rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint></robot>"""
+ROLLS = """\
+[[criterion]]
+id = "forward"
+part = "model"
+title = "It drives forward"
+points = 4
+check = "rolls_forward"
+with = { link = "wheel", base = "base", tolerance = 5 }
+"""
+
+
+@pytest.mark.parametrize("bonus", ["", "bonus = true\n"])
+def test_a_reference_on_which_a_criterion_cannot_be_decided_does_not_get_full_marks(tmp_path: Path, bonus: str) -> None:
+    """Both commands name the criterion and exit with 1; one for manual grading or extra credit does not matter."""
+    rubric = write_rubric(tmp_path, TOP + PENDING + ROLLS.replace("points", f"{bonus}points"), WHEEL.format(MESH))
+    done = run(("rubric", "check", rubric))
+    text = " ".join(done.stdout.decode().split())
+    assert (done.returncode, "does not get forward: the size of mesh" in text) == (int(not bonus), not bonus)
+    assert ("its reference gets full marks" in text) == bool(bonus)
+    assert "by-hand" not in text
+    tested = command(rubric, "--mutants", 0)
+    assert (tested.returncode, b"  forward: the size of mesh" in tested.stdout) == (int(not bonus), not bonus)
+
+
+def test_a_reference_may_have_large_files_that_are_not_parsed(tmp_path: Path) -> None:
+    """A mesh above the limit of the XML parser: `rubric new`, `check` and `test` accept it."""
+    package = tmp_path / "ash"
+    (package / "meshes").mkdir(parents=True)
+    (package / "meshes" / "wheel.stl").write_bytes(bytes((1 << 20) + 1))
+    (package / "ash.urdf").write_text(WHEEL.format(MESH), "utf-8")
+    (package / "package.xml").write_text("<package><name>ash</name></package>", "utf-8")
+    rubric = tmp_path / "lab.toml"
+    assert run(("rubric", "new", rubric, "--from", package)).returncode == 0
+    assert run(("rubric", "check", rubric)).returncode == 0
+    found = data(rubric)
+    assert found["mutants"]["tried"] and found["reference"]["lost"] == []

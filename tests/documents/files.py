@@ -9,9 +9,9 @@ import pytest
 PICTURE = "[picture]"  # a line that stands for a picture
 
 
-def pdf(*pages: Sequence[str]) -> bytes:
-    """Return a PDF with a page for each list of lines."""
-    objects = ["<</Type/Catalog/Pages 2 0 R>>", "", "<</Type/Font/Subtype/Type1/BaseFont/Helvetica>>", _IMAGE]
+def pdf(*pages: Sequence[str], by_word: bool = False) -> bytes:
+    """Return a PDF with a page for each list of lines; each word has a place of its own, as Google Docs writes it, or each line."""
+    objects = ["<</Type/Catalog/Pages 2 0 R>>", "", "<</Type/Font/Subtype/Type1/BaseFont/Courier>>", _IMAGE]
     kids = []
     for lines in pages:
         resources = "/Font<</F1 3 0 R>>" + ("/XObject<</Im1 4 0 R>>" if PICTURE in lines else "")
@@ -20,7 +20,7 @@ def pdf(*pages: Sequence[str]) -> bytes:
         objects.append(
             f"<</Type/Page/Parent 2 0 R/MediaBox[0 0 595 842]/Resources<<{resources}>>/Contents {number + 1} 0 R>>"
         )
-        objects.append(_stream(_content(lines)))
+        objects.append(_stream((_placed if by_word else _content)(lines)))
     objects[1] = f"<</Type/Pages/Kids[{' '.join(kids)}]/Count {len(kids)}>>"
     return _written(objects)
 
@@ -72,6 +72,21 @@ def _content(lines: Sequence[str]) -> str:
         shown.append(
             f"q 100 0 0 10 50 {height} cm /Im1 Do Q" if is_picture else f"BT /F1 12 Tf 50 {height} Td ({text}) Tj ET"
         )
+    return "\n".join(shown)
+
+
+def _placed(lines: Sequence[str]) -> str:
+    """Return lines as Skia/PDF writes them: upside down, without spaces, with a text object and a place for each word."""
+    shown = ["1 0 0 -1 0 842 cm"]
+    for index, line in enumerate(lines):
+        y, column = 40 + 16 * index, 0
+        for word in line.split(" "):
+            if line == PICTURE:
+                shown.append(f"q 100 0 0 10 50 {y} cm /Im1 Do Q")
+            elif word:
+                place = f"{50 + 7.2 * column:.1f} {-y} Td <{word.encode('latin-1').hex()}> Tj"  # 12 points of Courier
+                shown.append(f"BT /F1 12 Tf 1 0 0 -1 0 .48 Tm {place} ET")
+            column += len(word) + 1
     return "\n".join(shown)
 
 

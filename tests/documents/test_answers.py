@@ -83,14 +83,18 @@ def is_certain(outcome: Outcome) -> bool:
 
 @pytest.mark.parametrize(
     ("kind", "first", "second"),
-    [(kind, *pair) for kind, step in {"md": 1, "txt": 2, "docx": 4, "pdf": 3}.items() for pair in HEADINGS[::step]],
+    [
+        (kind, *pair)
+        for kind, step in {"md": 1, "txt": 2, "docx": 4, "pdf": 3, "google.pdf": 2}.items()
+        for pair in HEADINGS[::step]
+    ],
 )
 def test_headings_that_students_use(kind: str, first: str, second: str) -> None:
-    """Each heading is found in Markdown, text, Word and PDF, and its answer ends at the next heading."""
-    if kind in ("docx", "pdf"):  # whose headings are no Markdown
+    """Each heading is found in Markdown, text, Word and PDF, also of Google Docs, and its answer ends at the next heading."""
+    if kind.endswith(("docx", "pdf")):  # whose headings are no Markdown
         first, second = (text.replace("#", "").replace("*", "").replace("__", "") for text in (first, second))
     lines = ["Lab 6", *first.splitlines(), VANISHES, *second.splitlines(), NODES]
-    made = {"pdf": lambda: pdf(lines), "docx": lambda: docx(*lines)}
+    made = {"pdf": lambda: pdf(lines), "google.pdf": lambda: pdf(lines, by_word=True), "docx": lambda: docx(*lines)}
     one, two = both({f"report.{kind}": made.get(kind, lambda: "\n".join(lines).encode())()})
     assert is_certain(one), one
     assert is_certain(two), two
@@ -98,6 +102,42 @@ def test_headings_that_students_use(kind: str, first: str, second: str) -> None:
     assert NODES not in str(one.measured)
     assert NODES in str(two.measured)
     assert VANISHES not in str(two.measured)
+
+
+@pytest.mark.parametrize("by_word", [False, True])
+def test_a_pdf_has_the_lines_that_it_shows(by_word: bool) -> None:
+    """Also one in which each word has a place of its own, of any length; short lines and numbers stay lines."""
+    lines = [
+        "Task 1: Step 15",
+        "It vanishes, as it has two roots.",
+        "a  b c",
+        "1.",
+        "WWWWWWWWWWWWWWWWWWWW i i i i",
+        "So it does.",
+    ]
+    shown = str(ask({"report.pdf": pdf(lines, ["and", "more"], by_word=by_word)}, FIRST).measured)
+    assert [" ".join(line.split()) for line in shown.splitlines() if line] == [
+        *(" ".join(line.split()) for line in lines), "and", "more",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        " ".join(f"BT /F1 12 Tf 1 0 0 -1 0 0 Tm {x} {-x} Td (w) Tj ET" for x in (1, 10**9, 10**30)),
+        " ".join(f"BT /F1 12 Tf 1 0 0 -1 0 0 Tm {x} 9 Td (w) Tj ET" for x in range(0, 10**12, 10**8)),
+        "q " * 5000 + "BT /F1 12 Tf 1 0 0 -1 0 0 Tm 1 1 Td (w) Tj 1 0 0 -1 0 0 Tm 9 20 Td (w) Tj ET",
+        "BT /F1 12 Tf " + " ".join(f"1 0 0 -1 0 0 Tm 1 {y} Td (w) Tj" for y in range(12_000)) + " ET",
+    ],
+)
+def test_a_crafted_page_is_read_within_limits(content: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Words that are very far apart or very many take bounded time and memory, and the text is there."""
+    monkeypatch.setattr(
+        "tests.documents.files._placed", lambda _: f"BT /F1 12 Tf 50 800 Td (Task 1: Step 15) Tj ET {content}"
+    )
+    outcome = ask({"report.pdf": pdf([""], by_word=True)}, FIRST)
+    assert "w" in str(outcome.measured)
+    assert len(str(outcome.measured)) < 40_000
 
 
 def test_the_page_of_an_answer_is_named() -> None:

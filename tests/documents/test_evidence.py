@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from grader.documents.evidence import Found, find_evidence
+from grader.documents.evidence import Found, find_all_evidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
 
@@ -138,3 +138,56 @@ def test_a_long_heading_is_cut() -> None:
     """Only the beginning of a long heading is shown."""
     (exhibit,) = find({"a.pdf": pdf(["Task 1: Step 8 " + "x" * 500, PICTURE])}, STEP_8).files
     assert exhibit.words == f"Task 1: Step 8 {'x' * 42}..., page 1 of a.pdf"
+
+
+# --- Several pieces of evidence -----------------------------------------------------------------------------------------
+
+STEPS = [["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], WEBCAM]
+
+
+def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str], list[str]]]:
+    """Return for each piece of evidence the files that are found, and those that are perhaps meant."""
+    submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
+    found = find_all_evidence(submission.proofs, names, submission.readable_documents)
+    return [([it.path for it in one.files], [it.path for it in one.perhaps]) for one in found]
+
+
+def test_a_file_is_offered_once() -> None:
+    """A document of pictures is perhaps meant for the first piece only, and that of the prelab for none."""
+    scan = pdf([PICTURE], [PICTURE])
+    assert offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan}) == [
+        ([], ["report.pdf"]), ([], []), ([], []), ([], [])
+    ]  # fmt: skip
+    assert offered({"report.pdf": scan, "Task1_Step8.png": png()})[:2] == [
+        (["Task1_Step8.png"], []),
+        ([], ["report.pdf"]),
+    ]
+    assert offered({"step8.png": png()}, [["task 1 step 8"], ["task 2 step 8"]]) == [([], ["step8.png"]), ([], [])]
+
+
+def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:
+    """Its text says more."""
+    data = pdf(["Task 1: Step 8", PICTURE], ["Task 1: Step 18", PICTURE])
+    assert offered({"report.pdf": data})[:2] == [(["report.pdf"], []), (["report.pdf"], [])]
+    contents = docx("Task 1: Step 8", "See below.", "Task 1: Step 18", "See below.")
+    assert offered({"a.docx": contents})[:2] == [([], ["a.docx"]), ([], ["a.docx"])]
+
+
+@pytest.mark.parametrize(
+    ("files", "step"),
+    [
+        (["Task2_Step3.png"], 2),
+        (["Task1_Step9.png"], 0),
+        (["Task1_Step14.png"], 1),
+        (["Task1_Step13.png"], 0),  # as near as the other
+        (["Task1_Step9.png", "Task1_Step8.png"], 1),  # which is filled
+        (["Task3_Step1.png"], 3),
+        (["Task4_Step6.png"], None),
+        (["Task2_Step3.png", "Task2_Step6.png"], None),
+    ],
+)
+def test_a_file_of_another_step_is_offered_for_the_nearest_one(files: list[str], step: int | None) -> None:
+    """Of its task, and without a file; a file of another task is not."""
+    names = [*STEPS[:3], ["task 3 step 3", "webcam"]]
+    perhaps = [index for index, (_, files) in enumerate(offered(dict.fromkeys(files, png()), names)) if files]
+    assert perhaps == ([step] if step is not None else [])

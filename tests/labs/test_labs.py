@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -136,9 +137,11 @@ def test_every_criterion_is_lost_by_some_robot(lab: str) -> None:
 
 @every_lab
 def test_a_rubric_passes_its_check(lab: str) -> None:
-    """`grader rubric check` accepts the rubric, and the reference gets full marks."""
+    """`grader rubric check` accepts the rubric, and the reference gets full marks, except for what a mesh leaves open."""
     done = run(["rubric", "check", FOLDER / lab / "rubric.toml"])
-    assert (done.returncode, done.stderr) == (0, b""), done.stdout.decode()
+    named = re.findall(r"the reference does not get (\S+):", done.stdout.decode())
+    assert (named, done.stderr) == (["palm-inertia"] if lab == "gripper" else [], b"")
+    assert done.returncode == bool(named)
 
 
 @every_lab

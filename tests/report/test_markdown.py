@@ -24,7 +24,7 @@ NOTICE = "The report is cut off here, because it is too long."
 ELEMENTS = {"div", "h1", "h2", "p", "ul", "li", "code", "pre", "em", "strong", "details", "summary"}
 TITLES = ("Failed", "Needs manual grading", "Marked manually", "Passed", "Evidence")
 JOINER = "\u2060"  # prevents GitHub from finding a mention
-ITEM = re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")  # a criterion with its mark and its points
+ITEM = re.compile("[\u2713\u2717\u2212?!] (?:[0-9.]+|–)/[0-9.]+ .+")  # a criterion with its mark and its points
 
 
 @cache

@@ -27,12 +27,16 @@ _TAG = re.compile(r"<[^>]*+>")
 
 @dataclass(frozen=True, slots=True)
 class FeedbackItem:
-    """One line of a comment: a criterion, or several that share a cause; without points, a remark on the whole submission."""
+    """One line of a comment: a criterion, or several that share a cause; without points, a remark on the whole submission.
+
+    `is_open` says that it needs manual grading.
+    """
 
     title: str
     points: Decimal | None
     out_of: Decimal
     message: str = ""
+    is_open: bool = False
 
 
 def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
@@ -59,11 +63,13 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
                     f"{message}. {comment}" if result.outcome.status != "passed" or result.is_adjusted else comment
                 )
             title = f"{result.criterion.title} (extra credit)" if result.criterion.bonus else result.criterion.title
-            yield FeedbackItem(title, result.points, out_of, message)
+            yield FeedbackItem(title, result.points, out_of, message, result.is_open)
         elif kind == "skipped":
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
         else:
-            yield FeedbackItem(f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalised(cause))
+            yield FeedbackItem(
+                f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalised(cause), is_open=True
+            )
 
 
 def _comment(result: Result) -> str:
@@ -116,7 +122,7 @@ def _item(item: FeedbackItem) -> str:
     message = _escaped(item.message)
     if item.points is None:
         return f"<li>{_escaped(item.title)}: {message}</li>"
-    points = format_points(item.points)
+    points = "–" if item.is_open else format_points(item.points)
     if item.points >= 0:  # a late penalty is negative, and has no maximum
         points += f" of {format_points(item.out_of)}"
     return f"<li>{_escaped(item.title)}: {points}.{' ' if message else ''}{message}</li>"

@@ -29,7 +29,7 @@ _NUMBERS = ("xyz", "size", "radius", "length", "colour")  # arguments of checks
 # Those about the joint that moves a link.
 _JOINT_NUMBERS = ("lower", "upper", "effort", "velocity", "multiplier", "offset", "damping", "friction")
 _SHAPE_CHECKS = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
-_BODY_CHECKS = ("mass_is", "inertia_plausible", "collision_matches_visual")
+_BODY_CHECKS = ("mass_is", "inertia_plausible", "collision_matches_visual", "collides_as")
 NO_TARGETS = Targets((), ())
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.documents.pictures import NotShown, Picture
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
@@ -40,9 +41,7 @@ def item_page(
         "criterion": criterion,
         "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
-        "score": ""
-        if item.is_second
-        else f"{format_points(item.grade.score)} of {format_points(item.grade.out_of)} points so far",
+        "score": "" if item.is_second else _grade(item.grade),
         "message": message_text(item),
         "answer": _lines(answer),
         "model": _lines(criterion.answer),
@@ -67,6 +66,15 @@ def item_page(
 def stamp_of(item: QueuedResult) -> str:
     """Return a text that tells whether an item is the one that a page shows, without the name of its student."""
     return sha256_of(f"{item.grade.student.key}\n{item.result.criterion.id}\n{item.grade.result}".encode())[:16]
+
+
+def _grade(grade: StudentGrade) -> str:
+    """Return the points that count for a student, and what they are: a final mark, points after the late penalty, points so far."""
+    if grade.is_excused:
+        return "excused"
+    late = " after the late penalty" if grade.late.points else ""
+    how = "final mark" if grade.final is not None else f"points so far{late}"
+    return f"{format_points(grade.total)} of {format_points(grade.out_of)} {how}"
 
 
 def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:

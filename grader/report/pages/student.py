@@ -66,8 +66,8 @@ def _summary(report: Report) -> dict[str, object]:
         "version": report.version,
         "title": f"{content.score_text(report)}: {printable(report.rubric.title)}",
         "heading": report.rubric.title,
-        "score": format_points(report.score),
-        "maximum": format_points(report.max_score),
+        "score": content.counting_text(report),
+        "maximum": format_points(report.max_score) if report.counting is not None else "",
         "shares": _shares(report),
         "summary": content.summaries(report),
         "pending": content.pending_line(report),
@@ -107,7 +107,8 @@ def _others(report: Report) -> dict[str, object]:
 def _shares(report: Report) -> tuple[float, float]:
     """Return the percentages of the maximum that are earned, and that are earned or need manual grading."""
     whole = report.max_score or Decimal(1)
-    earned, possible = (float(100 * points / whole) for points in (report.score, report.score + report.pending))
+    counting = report.counting or Decimal(0)
+    earned, possible = (float(100 * points / whole) for points in (counting, counting + report.open_points))
     return min(100, round(earned, 2)), min(100, round(possible, 2))
 
 

@@ -29,7 +29,8 @@ def element_proposals(draft: Draft, reference: Draft, wanted: WantedElement) -> 
     tags = [child for child in draft.root if name_of(child) == wanted.tag]
     fitting = [element for element in tags if wanted.fits(element)]
     found = [inner for element in fitting for inner in elements_at(element, steps_of(wanted.path))]
-    for best in sorted(found, key=lambda element: len(wanted.wrong(element)))[:1]:
+    if found:
+        best = wanted.nearest(found)
         keys = wanted.wrong(best)
         what = f"the value of {keys[0]!r}" if len(keys) == 1 else "the values"
         edits = tuple(edit for key in keys for edit in _corrected(draft, best, key, wanted))

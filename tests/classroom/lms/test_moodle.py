@@ -311,7 +311,13 @@ def test_feedback_is_grouped_by_cause() -> None:
     ]
     pending = Outcome("pending", "nobody can tell; needs manual grading")
     assert list(feedback_items([result(name, pending) for name in ("box", "tall")])) == [
-        FeedbackItem("2 criteria need manual grading", Decimal(0), Decimal(3), "Nobody can tell; needs manual grading")
+        FeedbackItem(
+            "2 criteria need manual grading",
+            Decimal(0),
+            Decimal(3),
+            "Nobody can tell; needs manual grading",
+            is_open=True,
+        )
     ]
 
 
