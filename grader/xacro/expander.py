@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.static_python.closed import Budget, OutOfSteps
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, text_of
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
@@ -198,4 +198,4 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        return read_yaml_values(self.files.read(self.files.path(str(name))), self.texts.constant)
+        return read_yaml_values(self.files.read(self.files.path(text_of(name))), self.texts.constant)
