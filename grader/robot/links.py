@@ -81,10 +81,11 @@ class Materials:
                 message = f"cannot read rgba={shown(text)}: {error}; {consequence}"
                 self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
                 self._problems.check_printed(f"{name} {text}", colour, "rgba")
-        if channels is None and filename is None:
+        unresolved = self._problems.parts(element)
+        if channels is None and filename is None and not unresolved:
             return None, reported
         location = self._problems.location(element if colour is None else colour)
-        return Material(name, channels or _BLACK, filename or "", location), reported
+        return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
