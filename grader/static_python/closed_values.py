@@ -60,7 +60,7 @@ def check_size(value: Value) -> int:
             pending += [*part.keys(), *part.values()] if isinstance(part, dict) else part
         elif isinstance(part, int) and part.bit_length() > MAX_BITS:
             too_large("number")
-        elif isinstance(part, range) and len(part) > MAX_ITEMS:
+        elif isinstance(part, range) and part[MAX_ITEMS:]:
             too_large("range")
         if count > MAX_ITEMS:
             too_large("value")
@@ -74,7 +74,10 @@ def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
     except (ExpressionFails, Undetermined, RecursionError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
-        message = str(error) if _has_text([*args, *kwargs.values()]) else "unsupported value"
+        given = [*args, *kwargs.values()]
+        if any(isinstance(value, Namespace) for value in given):
+            raise Undetermined("this use of a namespace is not supported") from None
+        message = str(error) if _has_text(given) else "unsupported value"
         raise ExpressionFails(f"{type(error).__name__}: {message}") from None
 
 
@@ -99,7 +102,7 @@ def text_of(value: Value) -> str:
 def check_text(value: Value) -> None:
     """Raise Undetermined for a value whose text is too long, or differs between runs: the order of a set, an address."""
     check_size(value)
-    if not _has_text(value):
+    if not isinstance(value, PLAIN) or not _has_text(value):
         raise Undetermined("the text of this value differs between runs")
 
 
@@ -109,7 +112,7 @@ def _has_text(value: Value) -> bool:
         return all(map(_has_text, (*value.keys(), *value.values())))
     if isinstance(value, CONTAINERS):
         return not (isinstance(value, SETS) and len(value) > 1) and all(map(_has_text, value))
-    return isinstance(value, PLAIN)
+    return not isinstance(value, Function | Namespace | _ITERATOR)
 
 
 def too_large(what: str) -> NoReturn:

@@ -133,8 +133,11 @@ class Expander:
         if not isinstance(error, Reported):
             self.report(error, place, attribute)
 
-    def report(self, error: ExpressionFails, place: Place, attribute: str | None) -> None:
-        """List a problem at a place."""
+    def report(self, error: ExpressionFails | Undetermined, place: Place, attribute: str | None) -> None:
+        """List a problem at a place, or what cannot be determined."""
+        if isinstance(error, Undetermined):
+            self.note(error, place, attribute)
+            return
         message = str(error)
         if self._is_new(message, place, attribute):
             location = self._placed(place).at(attribute)
