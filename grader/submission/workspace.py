@@ -52,9 +52,12 @@ class Surroundings:
 
     def _installed(self, name: str, inside: str) -> str | None:
         """Return the file that is at a path in a package once it is built; without any package, the most similar path."""
+        from grader.package.cmake import read_cmake  # late: most URDFs are no xacro
+
         for package in self.packages:
             if package.name == name:
-                source = package.installed.get(f"share/{name}/{inside}")
+                installed = read_cmake(package.tree).installed if package.is_cmake else package.installed
+                source = installed.get(f"share/{name}/{inside}")
                 return package.path(source) if source is not None else None
         if self.packages:
             return None

@@ -61,3 +61,101 @@ def test_a_macro_may_have_a_parameter_twice(tmp_path: Path) -> None:
     path = tmp_path / "my_robot.urdf.xacro"
     path.write_text(f"{before}{macro}<xacro:m/>{after.partition('</material>')[2]}")
     assert graded(path)[1]["score"] == 70
+
+
+# --- What the launch file gives xacro ---------------------------------------------------------------------------------
+
+LAUNCH = """import os
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import Command, LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.substitutions import ExecutableInPackage
+
+
+def generate_launch_description():
+    share = get_package_share_directory('my_robot')
+    path = os.path.join(share, 'my_robot.urdf.xacro')
+    return LaunchDescription([
+        DeclareLaunchArgument('color', default_value='0.6'),
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             parameters=[{'robot_description': Command([COMMAND])}]),
+        Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui'),
+        Node(package='rviz2', executable='rviz2', arguments=['-d', os.path.join(share, 'my_robot.rviz')]),
+    ])
+"""
+CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(my_robot)
+find_package(ament_cmake REQUIRED)
+install(DIRECTORY urdf/ rviz/ DESTINATION share/${PROJECT_NAME})
+install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})
+ament_package()
+"""
+
+
+def package_with(folder: Path, command: str, green: str, before: str = "") -> Path:
+    """Return the reference package with xacro whose green is an expression, and a launch file that runs a command on it."""
+    package = folder / "my_robot"
+    shutil.copytree(PACKAGE, package)
+    (package / "urdf/my_robot.urdf").unlink()
+    text = ROBOT.replace(GREEN, green).replace("<material", f"{before}<material", 1)
+    (package / "urdf/my_robot.urdf.xacro").write_text(text)
+    (package / "launch/my_robot_rviz.launch.py").write_text(LAUNCH.replace("COMMAND", command))
+    (package / "config").mkdir()
+    (package / "config/params.yaml").write_text(f"green: {GREEN}\n")
+    return package
+
+
+@pytest.mark.parametrize("build", ["ament_python", "ament_cmake"])
+@pytest.mark.parametrize("target", ["config", "parameters"])
+def test_a_parameter_file_in_the_share_folder(build: str, target: str, tmp_path: Path) -> None:
+    """The launch file gives xacro the path at which a build installs the file: it is read from where it is installed from."""
+    command = f"'xacro ', path, ' params:=', share + '/{target}/params.yaml'"
+    arg = '<xacro:arg name="params" default=""/><xacro:property name="p" value="${xacro.load_yaml(xacro.arg(\'params\'))}"/>'
+    package = package_with(tmp_path, command, "${p['green']}", arg)
+    setup = package / "setup.py"
+    if build == "ament_cmake":
+        setup.unlink()
+        (package / "CMakeLists.txt").write_text(
+            CMAKE.replace("launch config", "launch").replace(
+                "ament_package()",
+                f"install(DIRECTORY config/ DESTINATION share/${{PROJECT_NAME}}/{target})\nament_package()",
+            )
+        )
+        manifest = package / "package.xml"
+        manifest.write_text(manifest.read_text().replace("ament_python", "ament_cmake"))
+    else:
+        files = f"    (os.path.join('share', package_name, '{target}'), ['config/params.yaml']),\n    ],\n    install_requires"
+        setup.write_text(setup.read_text().replace("],\n    install_requires", files))
+    report = graded(tmp_path)[1]
+    assert {name: statuses(report)[name] for name in ("urdf-loads", "base-green")} == dict.fromkeys(
+        ("urdf-loads", "base-green"), "passed"
+    )
+    assert [problem for problem in report["problems"] if problem["code"].startswith("XACRO")] == []
+
+
+def test_a_parameter_file_of_another_package_is_undecided(tmp_path: Path) -> None:
+    """The share folder of a package that was not submitted is outside of the submission."""
+    command = "'xacro ', path, ' params:=', get_package_share_directory('other') + '/config/params.yaml'"
+    arg = '<xacro:arg name="params" default=""/><xacro:property name="p" value="${xacro.load_yaml(xacro.arg(\'params\'))}"/>'
+    package_with(tmp_path, command, "${p['green']}", arg)
+    report = graded(tmp_path)[1]
+    assert statuses(report)["base-green"] == "pending"
+    assert "the package other is not part of the submission" in {problem["message"] for problem in report["problems"]}
+
+
+@pytest.mark.parametrize(
+    "program", ["ExecutableInPackage('xacro', 'xacro')", "ExecutableInPackage(executable='xacro', package='xacro')"]
+)
+def test_a_command_with_executable_in_package(program: str, tmp_path: Path) -> None:
+    """The xacro of the package xacro is run with the arguments of the command."""
+    package_with(
+        tmp_path,
+        f"{program}, ' ', path, ' color:=', LaunchConfiguration('color')",
+        "0 $(arg color) 0 1",
+        '<xacro:arg name="color" default="1"/>',
+    )
+    found = statuses(graded(tmp_path)[1])
+    assert [found[name] for name in ("base-green", "launch-finds-files", "launch-nodes")] == ["passed"] * 3
