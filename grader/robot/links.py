@@ -5,7 +5,19 @@ The colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import ElementReader, Problems, first_children, shown
-from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Material, Mesh, Sphere, Visual
+from grader.robot.model import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    Link,
+    Material,
+    Mesh,
+    Sphere,
+    UnresolvedPart,
+    Visual,
+)
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -56,6 +68,7 @@ class Materials:
         if own is None:
             if found is None and name and not reported:
                 self._undefined(name, element, link)
+                found = self._elsewhere(name)
         elif found is None:
             found = self.known[name] = own
         elif (own.rgba, own.texture) != (found.rgba, found.texture):
@@ -86,6 +99,14 @@ class Materials:
             return None, reported
         location = self._problems.location(element if colour is None else colour)
         return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
+
+    def _elsewhere(self, name: str) -> Material | None:
+        """Return a material that may be defined in a part of the robot that xacro leaves open."""
+        root = self._problems.root
+        found = self._problems.unresolved.get(root)
+        if found is None or not found.content:
+            return None
+        return Material(name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))})
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems

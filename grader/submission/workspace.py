@@ -20,12 +20,17 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True)
 class Surroundings:
-    """The files and packages of a submission; `arguments` are those that the user gives xacro."""
+    """The files and packages of a submission; `arguments` are those that the user gives xacro.
+
+    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single file.
+    """
 
     tree: Tree = field(default=_NO_FILES, repr=False)
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = field(default_factory=dict)
+    asked: list[str] = field(default_factory=list, repr=False)
+    is_single: bool = False
 
     def robot_references(self, path: str) -> list[Reference]:
         """Return where the launch files of the graded package read a URDF."""
@@ -37,12 +42,17 @@ class Surroundings:
 
         folders = {package.name: package.folder for package in reversed(self.packages)}
         is_part = not folders and bool(self.tree.files)
-        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part)
+        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part, self.asked.append)
 
     def _read(self, path: str) -> bytes:
         file = self.tree.files.get(path)
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if file is None and ignored is not None:
+            raise NotDecided(str(ignored))
         if file is None and not self.tree.files:
             raise NotDecided(f"the included file {path} is not read with a single file: give the folder with both")
+        if file is None and self.is_single and not self.packages:
+            raise NotDecided(f"there is no file {path} in the folder of this single file: give the folder with both")
         if file is None:
             raise InputError(f"there is no file {path} in the submission")
         try:

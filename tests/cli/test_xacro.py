@@ -2,12 +2,13 @@
 
 import json
 import shutil
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.command_line import run
+from tests.command_line import run, run_with_input
 from tests.samples import ROOT
 
 PACKAGE = ROOT / "rubrics/lab6/my_robot"
@@ -159,3 +160,144 @@ def test_a_command_with_executable_in_package(program: str, tmp_path: Path) -> N
     )
     found = statuses(graded(tmp_path)[1])
     assert [found[name] for name in ("base-green", "launch-finds-files", "launch-nodes")] == ["passed"] * 3
+
+
+# --- A single file that includes its neighbours -----------------------------------------------------------------------
+
+MATERIALS = '<material name="green"><color rgba="0 0.6 0 1"/></material>'
+PART = f"<robot {NAMESPACE}>{MATERIALS}</robot>"
+BEFORE, _, AFTER = ROBOT.partition('<material name="green">')
+AFTER = AFTER.partition("</material>")[2]
+
+
+def including(folder: Path, text: str, *, name: str = "urdf/my_robot.urdf.xacro") -> Path:
+    """Write the reference as xacro with a text in place of its green, and a macro file, parameters and a package beside it."""
+    path = folder / name
+    path.parent.mkdir(parents=True)
+    path.write_text(f"{BEFORE}{text}{AFTER}")
+    (path.parent / "materials.xacro").write_text(PART)
+    (folder / "config").mkdir()
+    (folder / "config/params.yaml").write_text(f"green: {GREEN}\n")
+    shutil.copy(PACKAGE / "package.xml", folder)
+    return path
+
+
+INCLUDE = '<xacro:include filename="materials.xacro"/>'
+YAML = "<xacro:property name=\"p\" value=\"${{xacro.load_yaml('{}')['green']}}\"/>" + MATERIALS.replace(GREEN, "${{p}}")
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        (INCLUDE, "package.xml and urdf/materials.xacro"),
+        ('<xacro:include filename="$(find my_robot)/urdf/materials.xacro"/>', "package.xml and urdf/materials.xacro"),
+        (YAML.format("../config/params.yaml"), "config/params.yaml and package.xml"),
+        (YAML.format("$(find my_robot)/config/params.yaml"), "config/params.yaml and package.xml"),
+    ],
+)
+def test_a_single_file_reads_the_package_around_it(text: str, read: str, tmp_path: Path) -> None:
+    """Includes, $(find) and load_yaml are read from the package; one note says which files; `inspect` does the same."""
+    path = including(tmp_path / "my_robot", text)
+    code, report = graded(path)
+    assert (code, report["score"], report["max_score"]) == (0, 70, 70)
+    assert report["submission"]["path"] == "urdf/my_robot.urdf.xacro"
+    note = f"{read} were read besides urdf/my_robot.urdf.xacro"
+    assert [found for found in report["notes"] if "besides" in found] == [note]
+    done = run(("inspect", path))
+    assert (done.returncode, done.stderr.decode().count(f"grader: {note}\n")) == (0, 1)
+
+
+def test_a_single_file_without_a_package_reads_its_folder(tmp_path: Path) -> None:
+    """The folder of the file is all that is read; a file that is not in it needs manual grading."""
+    path = including(tmp_path / "my_robot", INCLUDE, name="my_robot.urdf.xacro")
+    (tmp_path / "my_robot/package.xml").unlink()
+    assert graded(path)[1]["score"] == 70
+    (tmp_path / "my_robot/materials.xacro").rename(tmp_path / "materials.xacro")
+    code, report = graded(path)
+    assert (code, statuses(report)["urdf-loads"]) == (1, "pending")
+
+
+def test_what_is_read_besides_counts_in_the_sha256(tmp_path: Path) -> None:
+    """Another content of an included file gives another hash, another file beside it does not."""
+    path = including(tmp_path / "my_robot", INCLUDE)
+    first = graded(path)[1]["submission"]["sha256"]
+    (path.parent / "other.xacro").write_text(PART)
+    assert graded(path)[1]["submission"]["sha256"] == first
+    (path.parent / "materials.xacro").write_text(PART.replace("/>", " />"))
+    assert graded(path)[1]["submission"]["sha256"] != first
+
+
+@pytest.mark.parametrize("text", [MATERIALS, MATERIALS.replace(GREEN, "0 ${0.6} 0 1")])
+def test_a_single_file_without_includes_is_as_before(text: str, tmp_path: Path) -> None:
+    """Its report is the same wherever it is, and its hash is that of its bytes; standard input reads no file."""
+    path = including(tmp_path / "my_robot", text)
+    alone = tmp_path / "my_robot.urdf.xacro"
+    shutil.copy(path, alone)
+    reports = [run(("grade", it, "--format", "json")).stdout for it in (path, alone)]
+    assert reports[0] == reports[1]
+    assert json.loads(reports[0])["submission"]["sha256"] == sha256(path.read_bytes()).hexdigest()
+
+
+def test_standard_input_includes_nothing(tmp_path: Path) -> None:
+    """It is in no folder."""
+    path = including(tmp_path / "my_robot", INCLUDE)
+    done = run_with_input(("grade", "-", "--format", "json"), path.read_bytes(), folder=path.parent)
+    assert statuses(json.loads(done.stdout))["base-green"] != "passed"
+
+
+def test_a_single_file_reads_nothing_outside_of_its_package(tmp_path: Path) -> None:
+    """A path out of it, a symlink out of it and a file that is too large need manual grading."""
+    outside = tmp_path / "materials.xacro"
+    outside.write_text(PART)
+    for number, include in enumerate(("../../materials.xacro", str(outside), "link.xacro", "large.xacro")):
+        path = including(tmp_path / str(number), f'<xacro:include filename="{include}"/>')
+        (path.parent / "link.xacro").symlink_to(outside)
+        (path.parent / "large.xacro").write_text(PART + " " * 1024 * 1024)
+        code, report = graded(path)
+        assert (code, statuses(report)["urdf-loads"], statuses(report)["base-green"]) == (1, "pending", "pending")
+
+
+def test_a_file_that_the_package_does_not_have(tmp_path: Path) -> None:
+    """In a package it is missing for xacro too."""
+    path = including(tmp_path / "my_robot", INCLUDE.replace("materials", "material"))
+    code, report = graded(path)
+    message = "there is no file urdf/material.xacro in the submission; xacro stops here, and ROS 2 gets no robot"
+    assert (code, statuses(report)["urdf-loads"]) == (1, "failed")
+    assert message in {problem["message"] for problem in report["problems"]}
+
+
+def test_a_single_file_in_a_class_has_no_neighbours(tmp_path: Path) -> None:
+    """The file of another student completes none."""
+    folder = tmp_path / "class"
+    path = including(tmp_path / "my_robot", INCLUDE)
+    folder.mkdir()
+    shutil.copy(path, folder / "ash.urdf.xacro")
+    shutil.copy(path.parent / "materials.xacro", folder)
+    reports = tmp_path / "reports"
+    more = ("--gradebook", tmp_path / "g.db", "--reports", reports, "--report-format", "json", "--part", "task1")
+    assert run(("batch", folder, *more)).returncode == 0
+    found = statuses(json.loads((reports / "ash.json").read_text()))
+    assert (found["urdf-loads"], found["base-green"]) == ("pending", "pending")
+
+
+def test_a_fix_of_an_included_file(tmp_path: Path) -> None:
+    """It is written into a folder under its path, never into a file of the student or in place of the graded file."""
+    path = including(tmp_path / "my_robot", INCLUDE)
+    part = path.parent / "materials.xacro"
+    part.write_text(PART.replace(GREEN, "0 0.9 0 1"))
+    before = {file: file.read_bytes() for file in sorted(tmp_path.rglob("*")) if file.is_file()}
+    for target, message in (
+        (
+            tmp_path / "fixed.urdf.xacro",
+            b"the edits change urdf/materials.xacro, not urdf/my_robot.urdf.xacro: name a folder",
+        ),
+        (tmp_path / "my_robot", b"which is graded: choose another file or folder"),
+    ):
+        done = run(("grade", path, "--fix", target), COLUMNS="1000")
+        assert (done.returncode, message in done.stderr) == (2, True), done.stderr
+        assert {file: file.read_bytes() for file in sorted(tmp_path.rglob("*")) if file.is_file()} == before
+    (tmp_path / "fixed").mkdir()
+    run(("grade", path, "--fix", tmp_path / "fixed"))
+    fixed = tmp_path / "fixed/urdf"
+    assert [file.name for file in fixed.iterdir()] == ["materials.xacro"]
+    assert fixed.joinpath("materials.xacro").read_text() == PART
