@@ -57,7 +57,7 @@ def changes(watched: Watched) -> Iterator[bool]:
     Raises:
         InputError: The submission cannot be watched.
     """
-    seen: object = None
+    seen: tuple[_Target, dict[str, _Stamp], _Stamp] | None = None
     before: object = None
     existed = True
     recheck_at = inf
@@ -72,9 +72,9 @@ def changes(watched: Watched) -> Iterator[bool]:
         is_certain = now != seen or (has_changed and not target.files)
         if (is_certain and (exists or existed)) or time.monotonic() > recheck_at:  # not if it is still missing
             recheck_at = inf if target.files or not is_certain else time.monotonic() + _RECHECK
-            yield is_certain
-            target = _target(watched)  # a file that was read for the first time has not changed
-            now = target, {**_stamps(target), **{file: now[1][file] for file in target.files & now[1].keys()}}, now[2]
+            # A file that was read for the first time may have changed since: grade again, but do not report a change.
+            is_wider = seen is not None and bool(seen[1]) and seen[1].items() < now[1].items() and now[2] == seen[2]
+            yield is_certain and not is_wider
         seen, existed = now, exists
 
 
