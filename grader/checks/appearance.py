@@ -127,7 +127,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """
     robot.link(link)
     try:
-        shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]
+        shown = [visual for visual in visuals(robot, link) if visual.material is None or _rgba(visual.material)[3] > 0]
     except MissingElement:
         shown = []
     if not shown:
@@ -168,9 +168,16 @@ def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> fl
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
 
 
+def _rgba(material: Material) -> tuple[float, ...]:
+    """Return the colour of a material; raise NotDecided if xacro leaves it open."""
+    for part in material.unresolved.values():
+        part.check()
+    return material.rgba
+
+
 def _has_only_texture(material: Material) -> bool:
     # ROS 2 gives a material black where it has a texture and no colour.
-    return material.texture != "" and material.rgba == Material("").rgba
+    return _rgba(material) == Material("").rgba and material.texture != ""
 
 
 def _colourless(link: str, visual: Visual) -> Outcome:

@@ -35,7 +35,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
 
 
 def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
-    """The RViz file's Fixed Frame is this link.
+    """The RViz file's Fixed Frame is this link, after the `frame_prefix` that the launch file gives robot_state_publisher.
 
     Args:
         name: The name of the RViz file, such as view.rviz.
@@ -45,23 +45,27 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     """
     package = submission.needed_package()
     rviz = _read(package, name, launch)
-    actual = rviz.fixed_frame
+    opened = _launch(package, launch)
+    frames = _frames(opened, frame)
+    actual, expected = rviz.fixed_frame, next(filter(None, frames), frame)
     if not actual:
-        return failed(f"the RViz file sets no Fixed Frame; it should be {frame!r}", rviz.frame_location)
+        return failed(f"the RViz file sets no Fixed Frame; it should be {expected!r}", rviz.frame_location)
+    if None in frames and actual.endswith(frame):
+        return _unknown_prefix()
     robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
-    links = [link.name for link in robot.links] if robot is not None else []
+    links = [it for link in robot.links for it in _frames(opened, link.name) if it] if robot is not None else []
     message, detail = f"the Fixed Frame is {actual!r}", ""
-    if actual != frame:
-        message += f"; it should be {frame!r}"
-        if links and actual not in links:
+    if actual not in frames:
+        message += f"; it should be {expected!r}{_by_prefix(expected, frame)}"
+        if links and actual not in links and actual != frame:
             detail = f"; the robot has no link {actual!r}{did_you_mean(actual, links)}"
-    elif links and frame not in links:
+    elif links and actual not in links:
         message += ", which the robot does not have"
-    return judged(actual == frame, message, actual, frame, at=rviz.frame_location, detail=detail)
+    return judged(actual in frames, message, actual, expected, at=rviz.frame_location, detail=detail)
 
 
 def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_description", launch: str = "") -> Outcome:
-    """A RobotModel display of the RViz file is on, and reads the robot from this topic.
+    """A RobotModel display of the RViz file is on, reads the robot from this topic, and has the prefix of its frames.
 
     Args:
         name: The name of the RViz file, such as view.rviz.
@@ -73,7 +77,8 @@ def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_descri
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
     if not models:
         return _no_display(rviz, "RobotModel")
-    verdicts = [(_fault_of(model, topic), model) for model in models]
+    opened = _launch(package, launch)
+    verdicts = [(_fault_of(model, topic, opened), model) for model in models]
     fine = [model for (status, _), model in verdicts if status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
@@ -125,7 +130,22 @@ def _off(display: "Display") -> str:
     return f"the {display.kind} display is off{': its group is off' if display.is_enabled else ''}"
 
 
-def _fault_of(model: "Display", topic: str) -> tuple[Status, str]:
+def _frames(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
+    return opened.frames_of(link) if opened is not None else (link,)
+
+
+def _by_prefix(frame: str, link: str) -> str:
+    """Return why a frame is not called like its link."""
+    prefix = frame.removesuffix(link)
+    return f", because the frame_prefix of robot_state_publisher is {prefix!r}" if prefix else ""
+
+
+def _unknown_prefix() -> Outcome:
+    message = "the frame_prefix of robot_state_publisher is known only at run time"
+    return pending(f"{message}; needs manual grading", message)
+
+
+def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
     """Return whether a RobotModel display shows the robot, and if not, why."""
     fault = _class_of_ros1(model) or _off(model)
     if fault:
@@ -140,10 +160,24 @@ def _fault_of(model: "Display", topic: str) -> tuple[Status, str]:
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
     actual = (value.text or "" if value is not None else "").strip()
     if actual.strip("/") == topic.strip("/"):
-        return "passed", ""
+        return _fault_of_prefix(model, opened)
     if not actual:
         return "failed", f"the RobotModel display has no Description Topic; it should be {topic!r}"
     return "failed", f"the RobotModel display reads the topic {actual!r}; it should read {topic!r}"
+
+
+def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
+    """Return whether a RobotModel display finds the frames of the links: it puts its TF Prefix and a slash before their names."""
+    node = model.node.get("TF Prefix")
+    own = node.text or "" if node is not None else ""
+    found, prefixes = f"{own}/" if own else "", _frames(opened, "")
+    if found in prefixes:
+        return "passed", ""
+    if None in prefixes:
+        return "pending", _unknown_prefix().message
+    expected = prefixes[0] or ""
+    message = f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like '{found}LINK'; "
+    return "failed", f"{message}robot_state_publisher publishes '{expected}LINK'"
 
 
 def _launch(package: Package, launch: str) -> "Launch | None":

@@ -135,7 +135,10 @@ def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource
     from grader.submission.workspace import Surroundings
     from grader.xacro.expansion import ExpandedSource, expand
 
-    around = Surroundings(submission.everything, submission.package, submission.packages, submission.arguments)
+    packages = submission.packages or submission.neighbours
+    around = Surroundings(
+        submission.everything, submission.package, packages, submission.arguments, is_single=submission.is_single
+    )
     expansion = expand(data, path, around.workspace(), submission.arguments)
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source

@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
-from grader.static_python.inspection import path_text
+from grader.static_python.inspection import distinct, items_of, path_text
 from grader.static_python.operators import WalkFolders
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value, unknown_in
@@ -24,6 +24,8 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     """Return the functions by full name; `root` is the absolute path that represents the package's folder."""
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
+        "builtins.set": folder.set,
+        "builtins.frozenset": folder.set,
         "glob.glob": folder.glob,
         "glob.iglob": folder.glob,
         "glob.escape": folder.escape,
@@ -49,7 +51,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
 def _evaluated(
     function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
-    """Evaluate a search, count its steps and record whether its result depends on the order of the files in a folder."""
+    """Evaluate a search, count its steps and record whether its result depends on the order of the files in a folder, or of a set."""
     before = listing.names_read
     try:
         found = function(evaluation, call)
@@ -89,6 +91,11 @@ class _PackageFolder:
         if real is None and ignored_part(posixpath.normpath(path)):
             raise SearchError(f"{path} is an ignored file")
         return real
+
+    def set(self, _: Evaluation, call: Call) -> Value:
+        items = items_of(call.args[0]) if call.args else []
+        unknown = call.unknown("the items of this value are known only at run time")
+        return self.listing.ordered(distinct(items)) if items is not None else unknown
 
     def glob(self, evaluation: Evaluation, call: Call) -> Value:
         pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")

@@ -14,7 +14,7 @@ from grader.files.tree import Tree
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
 
-# The file system lists a folder in any order: a result that depends on the order differs between these.
+# The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it searches for files outside of the package"
@@ -48,11 +48,20 @@ class PackageListing:
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
-        for path in sorted([*tree.files, *tree.folders, *tree.unseen], reverse=order == "reversed"):
+        self._order = order
+        for path in sorted([*tree.files, *tree.folders, *tree.unseen]):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
-        if order == "rotated":
-            self._children = {folder: [*names[1:], names[0]] for folder, names in self._children.items()}
+        self._children = {folder: self.ordered(names) for folder, names in self._children.items()}
+
+    def ordered(self, values: list[Value]) -> list[Value]:
+        """Return sorted values in this order."""
+        match self._order:
+            case "reversed":
+                return values[::-1]
+            case "rotated":
+                return [*values[1:], *values[:1]]
+        return values
 
     def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
         """Keep the position of a search for each path that it found, up to a limit, and return the paths."""

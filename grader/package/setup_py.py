@@ -59,18 +59,18 @@ def location_in(source: Source, position: Position) -> Location:
 def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     """Evaluate the setup.py of a package with these files. Never raises.
 
-    The file system lists a folder in any order. Where a search finds several files, other orders are evaluated as well; what
+    The file system lists a folder, and Python a set, in any order. Where there are several files or values, other orders are evaluated as well; what
     differs between them is unknown.
     """
     if isinstance(code, SyntaxFault):
         return Setup(code.source, code)
     setup, order_matters = _evaluate(code, tree, ORDERS[0])
     others = [_evaluate(code, tree, order)[0] for order in ORDERS[1:]] if order_matters else []
-    results = {(frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
+    results = {(it.name, frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
     if len(results) == 1:
         return setup
-    doubt = Unknown("the result depends on the order in which folders are listed", START)
-    return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
+    doubt = Unknown("the result depends on the order of the files in a folder, or of a set", START)
+    return replace(setup, name=None, copies=(), stops=(), unknown=(*setup.unknown, doubt))
 
 
 def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:

@@ -52,7 +52,7 @@ class Problems:
         return LazyLocation(self.source, self._indices[element])
 
     def parts(self, element: Element) -> UnresolvedParts:
-        """Return what xacro left unresolved of a link or joint, by the tag of its child; "@name" for its own attribute."""
+        """Return what xacro left unresolved of a link, joint or material, by the tag of its child; "@name" for its own attribute."""
         if not self.unresolved:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}

@@ -5,7 +5,19 @@ The colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import ElementReader, Problems, first_children, shown
-from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Material, Mesh, Sphere, Visual
+from grader.robot.model import (
+    Box,
+    Collision,
+    Cylinder,
+    Geometry,
+    Inertial,
+    Link,
+    Material,
+    Mesh,
+    Sphere,
+    UnresolvedPart,
+    Visual,
+)
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -56,6 +68,7 @@ class Materials:
         if own is None:
             if found is None and name and not reported:
                 self._undefined(name, element, link)
+                found = self._elsewhere(name)
         elif found is None:
             found = self.known[name] = own
         elif (own.rgba, own.texture) != (found.rgba, found.texture):
@@ -81,10 +94,19 @@ class Materials:
                 message = f"cannot read rgba={shown(text)}: {error}; {consequence}"
                 self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
                 self._problems.check_printed(f"{name} {text}", colour, "rgba")
-        if channels is None and filename is None:
+        unresolved = self._problems.parts(element)
+        if channels is None and filename is None and not unresolved:
             return None, reported
         location = self._problems.location(element if colour is None else colour)
-        return Material(name, channels or _BLACK, filename or "", location), reported
+        return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
+
+    def _elsewhere(self, name: str) -> Material | None:
+        """Return a material that may be defined in a part of the robot that xacro leaves open."""
+        root = self._problems.root
+        found = self._problems.unresolved.get(root)
+        if found is None or not found.content:
+            return None
+        return Material(name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))})
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems

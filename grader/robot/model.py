@@ -18,7 +18,7 @@ Vector = tuple[float, float, float]
 
 
 class UnresolvedPart(NamedTuple):
-    """A part of a link or joint that xacro leaves open: why it cannot be determined; empty where xacro refuses it."""
+    """A part of a link, joint or material that xacro leaves open: why it cannot be determined; empty where xacro refuses it."""
 
     reason: str
     location: LazyLocation
@@ -88,6 +88,7 @@ class Material:
     rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     texture: str = ""
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

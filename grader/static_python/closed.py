@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
-from grader.static_python.closed_functions import call
+from grader.static_python.closed_functions import call, make_dict
 from grader.static_python.closed_methods import attribute, format_value
 from grader.static_python.closed_operators import compare, operate, subscript
 from grader.static_python.closed_values import (
@@ -167,7 +167,7 @@ class _Evaluator:
         kwargs: dict[str, Value] = {}
         for keyword in node.keywords:
             value = self.value(keyword.value, local)
-            more = {keyword.arg: value} if keyword.arg is not None else run(dict, value)
+            more = {keyword.arg: value} if keyword.arg is not None else run(make_dict, value)
             if repeated := kwargs.keys() & more.keys():
                 raise ExpressionFails(f"SyntaxError: keyword argument repeated: {min(repeated)}")
             kwargs |= more
@@ -189,7 +189,7 @@ class _Evaluator:
         table: dict[Value, Value] = {}
         for key, node in zip(keys, values, strict=True):
             if key is None:
-                run(table.update, self.value(node, local))
+                table |= run(make_dict, self.value(node, local))
             else:
                 run(table.__setitem__, self.value(key, local), self.value(node, local))
         return table

@@ -6,6 +6,7 @@ from typing import Any
 
 from grader.static_python.closed_values import (
     CONTAINERS,
+    SETS,
     Function,
     Undetermined,
     Value,
@@ -44,6 +45,10 @@ def _items(value: Value) -> list[Value]:
     return list(items_of(value))
 
 
+def _members(value: Value) -> Value:
+    return value if isinstance(value, SETS) else _items(value)
+
+
 def _of_items(function: Callable[..., Value]) -> Callable[..., Value]:
     """Return a function whose first argument is a loop's items, as list and sum take it."""
     return lambda *args, **kwargs: function(*map(_items, args[:1]), *args[1:], **kwargs)
@@ -54,13 +59,22 @@ def _with_key(function: Callable[..., Value]) -> Callable[..., Value]:
 
     def keyed(*args: Value, key: Value = None, **kwargs: Value) -> Value:
         by = None if key is None else lambda item: call(key, [item], {})
-        values = [_items(args[0])] if len(args) == 1 else args
+        values = [(sorted if by is None and _is_sortable(args[0]) else _items)(args[0])] if len(args) == 1 else args
         return function(*values, key=by, **kwargs)
 
     return keyed
 
 
-def _dict(*args: Value, **kwargs: Value) -> Value:
+def _is_sortable(value: Value) -> bool:
+    """Return whether a value is a set whose items have one order, whichever they are taken in."""
+    return isinstance(value, SETS) and (
+        all(isinstance(item, str) for item in value)
+        or all(isinstance(item, int | float) and item == item for item in value)  # not NaN
+    )
+
+
+def make_dict(*args: Value, **kwargs: Value) -> Value:
+    """Return dict() of values."""
     if args and not isinstance(args[0], dict):
         return dict(*([_items(pair) for pair in items_of(value)] for value in args), **kwargs)
     return dict(*args, **kwargs)
@@ -109,8 +123,8 @@ def _range(*bounds: int) -> range:
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "list": lambda *args: list(*map(_items, args)), "tuple": lambda *args: tuple(*map(_items, args)),
-    "set": lambda *args: set(*map(_items, args)), "frozenset": lambda *args: frozenset(*map(_items, args)),
-    "dict": _dict, "str": lambda *args: text_of(*args) if args else "", "repr": lambda value: text_of([value])[1:-1],
+    "set": lambda *args: set(*map(_members, args)), "frozenset": lambda *args: frozenset(*map(_members, args)),
+    "dict": make_dict, "str": lambda *args: text_of(*args) if args else "", "repr": lambda value: text_of([value])[1:-1],
     "float": float, "int": int, "bool": bool, "complex": complex, "len": len, "abs": abs, "round": _round, "ord": ord,
     "divmod": divmod, "range": _range, "min": _with_key(min), "max": _with_key(max), "sorted": _with_key(sorted),
     "sum": _of_items(sum), "all": _of_items(all), "any": _of_items(any), "map": _map, "filter": _filter,

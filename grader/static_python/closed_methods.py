@@ -28,6 +28,8 @@ def attribute(owner: Value, name: str) -> Value:
     if name.startswith("__"):
         raise ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
     if isinstance(owner, Namespace):
+        if hasattr(dict, name):  # a namespace of xacro is a dict
+            raise Undetermined(f"the method {name} of a namespace is not supported")
         return owner.find(name)
     kind = next((kind for kind in _METHODS if isinstance(owner, kind)), None)
     if kind is not None and name in _METHODS[kind]:

@@ -12,7 +12,7 @@ from grader.static_python.closed_values import (
     Namespace,
     Undetermined,
     Value,
-    check_size,
+    check_text,
     run,
     too_large,
 )
@@ -65,7 +65,7 @@ def subscript(owner: Value, key: Value) -> Value:
 def _percent_format(template: str, value: Value) -> str:
     if "*" in template or _LONG_NUMBER.search(template):
         raise Undetermined("this format is not supported")
-    check_size(value)
+    check_text(value)
     return str(template % value)
 
 

@@ -11,7 +11,8 @@ MAX_ITEMS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
 _VIEWS: tuple[Any, ...] = (type({}.keys()), type({}.values()), type({}.items()))
 _ITERATOR: Any = type(iter([]))
-CONTAINERS: tuple[Any, ...] = (list, tuple, set, frozenset, dict, *_VIEWS)
+SETS = (set, frozenset)
+CONTAINERS: tuple[Any, ...] = (list, tuple, *SETS, dict, *_VIEWS)
 PLAIN: tuple[Any, ...] = (str, int, float, complex, type(None), range, *CONTAINERS)
 
 
@@ -59,7 +60,7 @@ def check_size(value: Value) -> int:
             pending += [*part.keys(), *part.values()] if isinstance(part, dict) else part
         elif isinstance(part, int) and part.bit_length() > MAX_BITS:
             too_large("number")
-        elif isinstance(part, range) and len(part) > MAX_ITEMS:
+        elif isinstance(part, range) and part[MAX_ITEMS:]:
             too_large("range")
         if count > MAX_ITEMS:
             too_large("value")
@@ -73,7 +74,11 @@ def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
     except (ExpressionFails, Undetermined, RecursionError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
-        raise ExpressionFails(f"{type(error).__name__}: {error}") from None
+        given = [*args, *kwargs.values()]
+        if any(isinstance(value, Namespace) for value in given):
+            raise Undetermined("this use of a namespace is not supported") from None
+        message = str(error) if _has_text(given) else "unsupported value"
+        raise ExpressionFails(f"{type(error).__name__}: {message}") from None
 
 
 def items_of(value: Value) -> Iterator[Value]:
@@ -82,16 +87,32 @@ def items_of(value: Value) -> Iterator[Value]:
         return value  # type: ignore[no-any-return]
     if isinstance(value, PLAIN):
         check_size(value)
+        if isinstance(value, SETS) and len(value) > 1:
+            raise Undetermined("the order of a set differs between runs")
         return iter(list(run(iter, value)))
     raise Undetermined("this loop is not supported")
 
 
 def text_of(value: Value) -> str:
     """Return str() of a value."""
-    if not isinstance(value, PLAIN):
-        raise Undetermined("this value has no text")
-    check_size(value)
+    check_text(value)
     return str(value)
+
+
+def check_text(value: Value) -> None:
+    """Raise Undetermined for a value whose text is too long, or differs between runs: the order of a set, an address."""
+    check_size(value)
+    if not isinstance(value, PLAIN) or not _has_text(value):
+        raise Undetermined("the text of this value differs between runs")
+
+
+def _has_text(value: Value) -> bool:
+    """Return whether the text of a value is the same in every run."""
+    if isinstance(value, dict):
+        return all(map(_has_text, (*value.keys(), *value.values())))
+    if isinstance(value, CONTAINERS):
+        return not (isinstance(value, SETS) and len(value) > 1) and all(map(_has_text, value))
+    return not isinstance(value, Function | Namespace | _ITERATOR)
 
 
 def too_large(what: str) -> NoReturn:

@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Callable, Iterator
 
-from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
+from grader.static_python.inspection import MAX_ITEMS, items_of, truth
 from grader.static_python.operators import store
 from grader.static_python.parse import Position, position_of
 from grader.static_python.simple_expressions import SimpleEvaluator
@@ -21,7 +21,9 @@ class ExpressionEvaluator(SimpleEvaluator):
         match node:
             case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element) | ast.SetComp(elt=element):
                 values = self._comprehension(node.generators, None, element, scope, at)
-                return distinct(values) if isinstance(node, ast.SetComp) and isinstance(values, list) else values
+                return (
+                    self.make_set(values, at) if isinstance(node, ast.SetComp) and isinstance(values, list) else values
+                )
             case ast.DictComp(key=key, value=element):
                 values = self._comprehension(node.generators, key, element, scope, at)
                 return dict(values) if isinstance(values, list) else values

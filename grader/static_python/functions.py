@@ -161,9 +161,14 @@ def _range(evaluation: Evaluation, call: Call) -> Value:
     return list(numbers) if len(numbers) <= MAX_ITEMS else Unknown("the range is too long", call.at)
 
 
+def _set(_: Evaluation, items: list[Value], call: Call) -> Value:
+    values = distinct(items)
+    return values if len(values) < 2 else Unknown("the order of a set differs between runs", call.at)
+
+
 _OF_ITEMS: dict[tuple[str, ...], Callable[[Evaluation, list[Value], Call], Any]] = {
     ("builtins.list", "builtins.tuple", "builtins.iter"): lambda _, items, __: items,
-    ("builtins.set", "builtins.frozenset"): lambda _, items, __: distinct(items),
+    ("builtins.set", "builtins.frozenset"): _set,
     ("builtins.reversed",): lambda _, items, __: items[::-1],
     ("builtins.enumerate",): _enumerated,
     ("builtins.sorted",): in_order,

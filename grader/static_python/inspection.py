@@ -51,7 +51,7 @@ def as_text(value: Value) -> str | None:
 
 
 def distinct(values: list[Value]) -> list[Value]:
-    """Return the values of a set, without duplicates."""
+    """Return the values of a set, without duplicates. Their order is not that of the set, which differs between runs."""
     plain = all(isinstance(value, str | int | float | PurePosixPath | None) for value in values)
     return list(dict.fromkeys(values)) if plain else values
 

@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.inspection import MAX_TEXT, as_text, distinct, size, truth
+from grader.static_python.inspection import MAX_TEXT, as_text, size, truth
 from grader.static_python.methods import attribute, call_method
 from grader.static_python.operators import compare, extend, operate, subscript, type_name
 from grader.static_python.parse import Position, position_of
@@ -83,7 +83,7 @@ class SimpleEvaluator(Evaluation):
             case ast.Tuple(elts=elements):
                 return tuple(self._elements(elements, scope))
             case ast.Set(elts=elements):
-                return distinct(self._elements(elements, scope))
+                return self.make_set(self._elements(elements, scope), at)
             case ast.Dict():
                 return self._dict(node, scope)
             case ast.JoinedStr(values=pieces):
@@ -119,6 +119,10 @@ class SimpleEvaluator(Evaluation):
         if not isinstance(key, ast.Slice):
             return self.evaluate(key, scope)
         return slice(*(self.evaluate(bound, scope) if bound else None for bound in (key.lower, key.upper, key.step)))
+
+    def make_set(self, values: list[Value], at: Position) -> Value:
+        """Return the value of a set with these values."""
+        return call_value(self, QualifiedName("builtins.set"), Call("", [values], {}, at))
 
     def _elements(self, nodes: list[ast.expr], scope: Scope) -> list[Value]:
         values: list[Value] = []

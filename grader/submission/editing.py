@@ -49,13 +49,14 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     """Return a submission with the URDF read again, and nothing else: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
-    if submission.is_single:
-        path, data = next(((path, data) for path, data in files.items() if data is not None), (urdf.path, urdf.data))
-        return replace(submission, urdf=read_as_ros(data, path, Surroundings(arguments=submission.arguments)))
-    data = files.get(urdf.path) or urdf.data
-    everything = overlaid(submission.everything, files)
-    around = Surroundings(everything, submission.package, submission.packages, submission.arguments)
-    return replace(submission, urdf=read_as_ros(data, urdf.path, around), everything=everything)
+    is_renamed = files.get(urdf.path, b"") is None
+    path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
+    everything = overlaid(submission.everything, files) if submission.everything.files else submission.everything
+    packages = submission.packages or submission.neighbours
+    around = Surroundings(
+        everything, submission.package, packages, submission.arguments, is_single=submission.is_single
+    )
+    return replace(submission, urdf=read_as_ros(files.get(path) or urdf.data, path, around), everything=everything)
 
 
 def with_files(submission: Submission, files: Files) -> Submission:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.limits import MAX_FILE_SIZE
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
@@ -45,6 +46,8 @@ class Submission:
     other_lab: str = ""  # the folder of another lab, where it is graded
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
     arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
+    neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
+    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
     reopen: Callable[[Tree], Submission] | None = field(default=None, repr=False)  # opens other files in the same way
 
     @cached_property
@@ -79,8 +82,13 @@ class Submission:
 
     @property
     def sha256(self) -> str | None:
-        """The hash of the URDF's bytes."""
-        return sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the hashes of all."""
+        own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        if own is None or not self.besides:
+            return own
+        hashes = [sha256_of(self.everything.files[path].read(MAX_FILE_SIZE)) for path in self.besides]
+        lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
+        return sha256_of("".join([f"{own}\n", *lines]).encode())
 
     @property
     def has_urdf(self) -> bool:

@@ -1,5 +1,6 @@
 """The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -124,10 +125,17 @@ def _needs_xacro(data: bytes) -> bool:
 
 
 def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
-    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text."""
-    from grader.xacro.expansion import expand  # late: most URDFs are no xacro
+    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
-    expansion = expand(data, path, around.workspace(), {**launched, **around.arguments})
+    The folder that a build installs a package in is called differently in launch files and in xacro.
+    """
+    from grader.package.launch.places import SHARE  # late: most URDFs are no xacro
+    from grader.xacro.expansion import expand
+    from grader.xacro.texts import INSTALLED
+
+    shared = re.compile(rf"{SHARE}/([^/]+)")
+    given = {name: text and shared.sub(rf"{INSTALLED}/\1/share/\1", text) for name, text in launched.items()}
+    expansion = expand(data, path, around.workspace(), {**given, **around.arguments})
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]

@@ -20,12 +20,17 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True)
 class Surroundings:
-    """The files and packages of a submission; `arguments` are those that the user gives xacro."""
+    """The files and packages of a submission; `arguments` are those that the user gives xacro.
+
+    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single file.
+    """
 
     tree: Tree = field(default=_NO_FILES, repr=False)
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = field(default_factory=dict)
+    asked: list[str] = field(default_factory=list, repr=False)
+    is_single: bool = False
 
     def robot_references(self, path: str) -> list[Reference]:
         """Return where the launch files of the graded package read a URDF."""
@@ -37,12 +42,17 @@ class Surroundings:
 
         folders = {package.name: package.folder for package in reversed(self.packages)}
         is_part = not folders and bool(self.tree.files)
-        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part)
+        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part, self.asked.append)
 
     def _read(self, path: str) -> bytes:
         file = self.tree.files.get(path)
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if file is None and ignored is not None:
+            raise NotDecided(str(ignored))
         if file is None and not self.tree.files:
             raise NotDecided(f"the included file {path} is not read with a single file: give the folder with both")
+        if file is None and self.is_single and not self.packages:
+            raise NotDecided(f"there is no file {path} in the folder of this single file: give the folder with both")
         if file is None:
             raise InputError(f"there is no file {path} in the submission")
         try:
@@ -52,9 +62,12 @@ class Surroundings:
 
     def _installed(self, name: str, inside: str) -> str | None:
         """Return the file that is at a path in a package once it is built; without any package, the most similar path."""
+        from grader.package.cmake import read_cmake  # late: most URDFs are no xacro
+
         for package in self.packages:
             if package.name == name:
-                source = package.installed.get(f"share/{name}/{inside}")
+                installed = read_cmake(package.tree).installed if package.is_cmake else package.installed
+                source = installed.get(f"share/{name}/{inside}")
                 return package.path(source) if source is not None else None
         if self.packages:
             return None

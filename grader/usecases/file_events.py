@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import suppress
 from math import inf
 from pathlib import Path
@@ -21,11 +21,12 @@ _Stamp = tuple[int, ...] | None
 
 
 class Watched(NamedTuple):
-    """A submission, its rubric if that is a file, and the real paths of the reports that are written."""
+    """A submission, its rubric if that is a file, the real paths of the reports that are written, and files read besides."""
 
     path: Path
     rubric: Path | None = None
     own: frozenset[str] = frozenset()
+    besides: Collection[Path] = ()
 
 
 class _Target(NamedTuple):
@@ -56,14 +57,14 @@ def changes(watched: Watched) -> Iterator[bool]:
     Raises:
         InputError: The submission cannot be watched.
     """
-    seen: object = None
+    seen: tuple[_Target, dict[str, _Stamp], _Stamp] | None = None
     before: object = None
     existed = True
     recheck_at = inf
     for has_changed in _wake_ups(watched):
-        target = _target(watched.path)
+        target = _target(watched)
         # Stamps of the files as well; of the rubric's folder only this file matters.
-        now = target, _file_stamp(watched.path if target.files else None), _file_stamp(watched.rubric)
+        now = target, _stamps(target), _file_stamp(watched.rubric)
         if now not in (seen, before) and not has_changed:  # it may be half written: check once more
             before = now
             continue
@@ -71,18 +72,20 @@ def changes(watched: Watched) -> Iterator[bool]:
         is_certain = now != seen or (has_changed and not target.files)
         if (is_certain and (exists or existed)) or time.monotonic() > recheck_at:  # not if it is still missing
             recheck_at = inf if target.files or not is_certain else time.monotonic() + _RECHECK
-            yield is_certain
+            # A file that was read for the first time may have changed since: grade again, but do not report a change.
+            is_wider = seen is not None and bool(seen[1]) and seen[1].items() < now[1].items() and now[2] == seen[2]
+            yield is_certain and not is_wider
         seen, existed = now, exists
 
 
 def _wake_ups(watched: Watched) -> Iterator[bool]:
     """Yield several times a second whether something may have changed; True whenever watching starts anew."""
     while True:
-        target = _target(watched.path)
+        target = _target(watched)
         is_new = True
         try:
             for has_changed in _events(target, watched):
-                if _target(watched.path) != target:
+                if _target(watched) != target:
                     break
                 yield has_changed or is_new
                 is_new = False
@@ -124,11 +127,16 @@ def _filter(target: _Target, watched: Watched) -> Callable[[Change, str], bool]:
     )
 
 
-def _target(path: Path) -> _Target:
+def _stamps(target: _Target) -> dict[str, _Stamp]:
+    return {file: _file_stamp(Path(file)) for file in target.files}
+
+
+def _target(watched: Watched) -> _Target:
+    path = watched.path
     real = Path(os.path.realpath(path))
     if real.is_dir():
         return _Target((str(real),), frozenset(), (_folder_stamp(real),))
-    files = {real, Path(os.path.realpath(path.parent), path.name)}  # a symlink and its target
+    files = {real, Path(os.path.realpath(path.parent), path.name), *watched.besides}  # a symlink and its target
     folders = sorted({file.parent for file in files})
     return _Target(tuple(map(str, folders)), frozenset(map(str, files)), tuple(map(_folder_stamp, folders)))
 

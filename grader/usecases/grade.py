@@ -59,12 +59,13 @@ class GradeRequest:
 
 
 class GradeResult(NamedTuple):
-    """A report, where its submission is in a repository, and the exit code."""
+    """A report, where its submission is in a repository, the exit code, and the files that were read besides a single one."""
 
     report: "Report"
     base: "Base"
     exit_code: ExitCode
     fix: "Fix | None" = None
+    besides: tuple[Path, ...] = ()
 
     @property
     def reason(self) -> str:
@@ -85,7 +86,7 @@ def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -
     if request.fix is not None and result.fix is not None:
         from grader.usecases.hints import write_fix  # late: few ask for it
 
-        warn(write_fix(request.fix, request.path, result.report, result.fix))
+        warn(write_fix(request.fix, request.path, result.report, result.fix, result.besides))
     return result
 
 
@@ -117,6 +118,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
         folders=rubric.folders,
         limit=request.max_size,
         arguments=_arguments(request),
+        with_neighbours=True,
     )
     if submission.students:
         from grader.usecases.several_students import refusal  # late: few submissions are several
@@ -133,8 +135,9 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
         from grader.usecases.hints import with_hints  # late: many submissions lose nothing
 
         report, fix = with_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
-    base = _base_of(request.path, is_single=submission.is_single)
-    return GradeResult(report, base, exit_code(report, threshold), fix)
+    folder = _folder_of(request.path, submission.path) if submission.is_single else None
+    besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
+    return GradeResult(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def remove_reports(request: GradeRequest) -> dict[Path, int]:
@@ -192,8 +195,13 @@ def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     return rubric
 
 
-def _base_of(path: str, *, is_single: bool) -> "Base":
-    """Return where a submission is in its repository; `is_single` if it is one URDF, whose paths start in its folder."""
+def _folder_of(path: str, inside: str | None) -> Path:
+    """Return the folder that the paths of a single URDF start in, given the path in it."""
+    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
+
+
+def _base_of(path: str, single: Path | None) -> "Base":
+    """Return where a submission is in its repository; `single` is the folder that the paths of a single URDF start in."""
     from grader.report.locations import Base
 
     if path == "-":
@@ -205,8 +213,11 @@ def _base_of(path: str, *, is_single: bool) -> "Base":
     root = _repository(place)
     if root is None:
         return Base(is_outside=True)
-    if is_folder or is_single:
-        folder = (place if is_folder else place.parent).relative_to(root).as_posix()
+    if is_folder or single is not None:
+        start = place if single is None else single
+        if not start.is_relative_to(root):
+            return Base(is_outside=True)
+        folder = start.relative_to(root).as_posix()
         return Base("" if folder == "." else f"{folder}/")
     return Base(archive=place.relative_to(root).as_posix())
 

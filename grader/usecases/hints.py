@@ -1,6 +1,7 @@
 """Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes their edits."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -43,10 +44,11 @@ def with_hints(
     return found.report, fixed(found, submission) if is_fixed else None
 
 
-def write_fix(target: Path, graded: str, report: Report, fix: Fix) -> str:
+def write_fix(target: Path, graded: str, report: Report, fix: Fix, besides: Sequence[Path] = ()) -> str:
     """Write the files that edits change, and return what was done in a sentence. Raises InputError.
 
     A target that is a folder, or whose name ends in a slash, gets each file under its path; any other is the one file that changes.
+    `besides` are the files that were read besides a single one.
     """
     files = {path: data for path, data in fix.files.items() if data is not None}
     if not files:
@@ -55,9 +57,13 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix) -> str:
     if len(files) > 1 and not is_folder:
         names = ", ".join(map(printable, files))
         raise InputError(f"--fix: the edits change {len(files)} files ({names}): name a folder that exists")
+    own = report.submission.path
+    if besides and not is_folder and own not in files:
+        raise InputError(f"--fix: the edits change {printable(*files)}, not {own}: name a folder that exists")
     written = {(target / path if is_folder else target): data for path, data in files.items()}
     for file in written:
-        _refuse_input(file, graded)
+        for path in (graded, *map(str, besides)):
+            _refuse_input(file, path)
     for file, data in written.items():
         if is_folder:
             make_folder(file.parent)

@@ -22,7 +22,7 @@ def inspect(
 ) -> Inspection:
     """Return the inspection of the URDF at a path. Raises GraderError."""
     given = read_arguments(arguments)
-    submission = open_submission(path, wanted="robot.urdf", limit=max_size, arguments=given)
+    submission = open_submission(path, wanted="robot.urdf", limit=max_size, arguments=given, with_neighbours=True)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)
@@ -33,6 +33,8 @@ def inspect(
         warn(f"inspecting {urdf.path}; other candidates: {others}")
     if urdf.is_expanded and urdf.as_it_stands is None:
         warn(f"{urdf.path} is xacro: this is what xacro expands it to")
+    for note in submission.notes if submission.is_single else ():
+        warn(note)
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
         relative_to = main_root(robot)

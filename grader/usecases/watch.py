@@ -32,7 +32,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
         GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed, a report
             that cannot be saved.
     """
-    changes = _changes(request, terminal.warn)
+    besides: set[Path] = set()
+    changes = _changes(request, besides, terminal.warn)
     modes = remove_reports(request)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
@@ -51,6 +52,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
                 last_error = str(error)
                 continue
             code, last_error = result.exit_code, ""
+            besides.clear()
+            besides.update(result.besides)
             save_reports(request, result, modes)
             last = _show(result.report, last, terminal, verbose=request.verbose, has_changed=has_changed)
     except KeyboardInterrupt:
@@ -59,8 +62,11 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     return ExitCode.NOT_GRADED if code is None else code
 
 
-def _changes(request: GradeRequest, warn: Warn) -> Iterator[bool]:
-    """Return an iterator that yields before each grading, whether a file has changed. Raises GraderError."""
+def _changes(request: GradeRequest, besides: set[Path], warn: Warn) -> Iterator[bool]:
+    """Return an iterator that yields before each grading, whether a file has changed. Raises GraderError.
+
+    `besides` has the files that the last grading read besides a single one.
+    """
     if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
     if request.format is not Format.TERMINAL:
@@ -74,7 +80,8 @@ def _changes(request: GradeRequest, warn: Warn) -> Iterator[bool]:
         from grader.usecases.file_events import Watched, changes
     except ImportError:
         raise InputError("--watch needs watchfiles: pip install 'urdf-grader[watch]'") from None
-    return changes(Watched(Path(request.path), rubric, frozenset(os.path.realpath(file) for _, file in request.saves)))
+    own = frozenset(os.path.realpath(file) for _, file in request.saves)
+    return changes(Watched(Path(request.path), rubric, own, besides))
 
 
 def _rubric_file(request: GradeRequest, warn: Warn) -> Path | None:

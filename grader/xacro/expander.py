@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.static_python.closed import Budget, OutOfSteps
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, text_of
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
@@ -133,8 +133,11 @@ class Expander:
         if not isinstance(error, Reported):
             self.report(error, place, attribute)
 
-    def report(self, error: ExpressionFails, place: Place, attribute: str | None) -> None:
-        """List a problem at a place."""
+    def report(self, error: ExpressionFails | Undetermined, place: Place, attribute: str | None) -> None:
+        """List a problem at a place, or what cannot be determined."""
+        if isinstance(error, Undetermined):
+            self.note(error, place, attribute)
+            return
         message = str(error)
         if self._is_new(message, place, attribute):
             location = self._placed(place).at(attribute)
@@ -198,4 +201,4 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        return read_yaml_values(self.files.read(self.files.path(str(name))), self.texts.constant)
+        return read_yaml_values(self.files.read(self.files.path(text_of(name))), self.texts.constant)

@@ -25,7 +25,7 @@ class Workspace(NamedTuple):
 
     `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of a package
     of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the files may be a part of
-    any package, because there is none among them.
+    any package, because there is none among them. `ask` is called with the name of each file that is looked for.
     """
 
     read: Callable[[str], bytes]
@@ -33,6 +33,7 @@ class Workspace(NamedTuple):
     paths: Collection[str] = ()
     installed: Callable[[str, str], str | None] = lambda *_: None
     is_part: bool = False
+    ask: Callable[[str], object] = lambda _: None
 
 
 class FileFails(XacroFails):
@@ -65,6 +66,7 @@ class Files:
 
     def path(self, text: str) -> str:
         """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""
+        self._workspace.ask(text)
         shared = _SHARED.fullmatch(text)
         if shared is not None:
             path = self._shared(shared["package"], posixpath.normpath(shared["inside"]))

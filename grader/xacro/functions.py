@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 
-from grader.static_python.closed_functions import BUILTINS, MATH
+from grader.static_python.closed_functions import BUILTINS, MATH, make_dict
 from grader.static_python.closed_values import (
     DottedDict,
     ExpressionFails,
@@ -12,6 +12,7 @@ from grader.static_python.closed_values import (
     Undetermined,
     Value,
     run,
+    text_of,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
@@ -37,7 +38,7 @@ def dotted(value: Value) -> Value:
 
 
 def _dotify(value: Value) -> Value:
-    return dotted(run(dict, value))
+    return dotted(run(make_dict, value))
 
 
 def argument_value(text: str) -> Value:
@@ -65,7 +66,7 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
 
 
 def _fatal(*parts: Value) -> Value:
-    raise ExpressionFails(" ".join(map(str, parts)))
+    raise ExpressionFails(" ".join(map(text_of, parts)))
 
 
 def _no_path(*_: Value) -> Value:

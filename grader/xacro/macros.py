@@ -44,6 +44,7 @@ class Macro(NamedTuple):
 def read_parameters(text: str) -> tuple[Parameter, ...]:
     """Return the parameters in the attribute params of a macro."""
     parameters: list[Parameter] = []
+    defaults: dict[str, Parameter] = {}  # the last of several counts
     if text.count("'") + text.count('"') > _MAX_QUOTES:
         raise Undetermined("the parameters of a macro have too many quotes")
     while text:
@@ -56,10 +57,11 @@ def read_parameters(text: str) -> tuple[Parameter, ...]:
             text = words[1] if len(words) > 1 else ""
         else:
             name, forward, default, text = found.groups()
-            parameters.append(Parameter(name, default or None, is_forwarded=bool(forward)))
+            defaults[name] = Parameter(name, default or None, is_forwarded=bool(forward))
+            parameters.append(defaults[name])
         if len(parameters) > _MAX_PARAMETERS:
             raise Undetermined("a macro has too many parameters")
-    return tuple(parameters)
+    return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
 def find_macro(name: str, macros: Scope, symbols: Scope) -> tuple[Macro, Scope, Scope] | None:

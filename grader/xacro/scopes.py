@@ -7,9 +7,9 @@ from typing import NamedTuple
 from grader.source import Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
 
-# What a scope needs to evaluate a text in it, and to report that xacro refuses one.
+# What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
 Evaluate = Callable[[str, "Scope"], Value]
-Report = Callable[[ExpressionFails, "Place", str], None]
+Report = Callable[[ExpressionFails | Undetermined, "Place", str], None]
 
 
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}

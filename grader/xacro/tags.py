@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from keyword import iskeyword
 
 from grader.static_python.closed import OutOfSteps
-from grader.static_python.closed_values import Undetermined, Value
+from grader.static_python.closed_values import Undetermined, Value, text_of
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
@@ -100,14 +100,14 @@ def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
     name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
     _check_name(name, node)
     if value and not isinstance(value, str):
-        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
+        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {text_of(value)}")
     out.attributes[name] = for_xml(value or "")
     out.moved = {**out.moved, name: node.place._replace(scope=scopes.symbols)}
 
 
 def _check_name(name: Value, node: Node) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {str(name)[:60]!r}")
+        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {text_of(name)[:60]!r}")
 
 
 def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:

@@ -108,7 +108,8 @@ class Texts:
         except ExpressionFails as error:
             self._report(error, place, attribute)
             failure = Reported(str(error))
-        except Undetermined as error:
+        except Undetermined as error:  # xacro evaluates it even if nothing uses it
+            self._report(error, place, attribute)
             failure = error
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure

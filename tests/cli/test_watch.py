@@ -291,7 +291,7 @@ def test_without_the_extra(robot: Path) -> None:
 def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
     """Return whether a change of this path concerns the graded path."""
     watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
-    return _filter(_target(path), watched)(watchfiles.Change.modified, str(changed))
+    return _filter(_target(watched), watched)(watchfiles.Change.modified, str(changed))
 
 
 def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
@@ -327,7 +327,7 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
     (tmp_path / "b" / "real.urdf").touch()
     (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
     path = tmp_path / "a" / "link.urdf"
-    assert _target(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
+    assert _target(Watched(path)).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
     assert counts(path, path)
     assert counts(path, tmp_path / "b" / "real.urdf")
     assert not counts(path, tmp_path / "a" / "other.urdf")
@@ -380,3 +380,22 @@ def test_all_graded_files_are_watched(name: str) -> None:
     """Every file that is graded counts when it changes."""
     folder = ROOT / "submissions" / name
     assert all(is_looked_at(folder, path) for path in read_folder(folder).files)
+
+
+def test_an_included_file_is_watched(tmp_path: Path) -> None:
+    """A single xacro file is graded again when a file that it includes from its folder changes."""
+    folder = tmp_path / "work"
+    folder.mkdir()
+    text = SHORT.read_text()
+    start, end = text.index('<link name="lidar"'), text.index("</robot>")
+    opening = '<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    (folder / "parts.xacro").write_text(f"{opening}{text[start:end]}</robot>")
+    head = text[text.index("<robot") : start].partition(">")[2]
+    (folder / "my_robot.urdf.xacro").write_text(f'{opening}{head}<xacro:include filename="parts.xacro"/></robot>')
+    with Watch(folder / "my_robot.urdf.xacro") as watch:
+        watch.out.until(END)
+        parts = URDF.read_text()
+        new = parts[parts.index('<link name="lidar"') : parts.index("</robot>")]
+        (folder / "parts.xacro").write_text(f"{opening}{new}</robot>")
+        assert watch.out.until(BETTER) == BETTER
+        assert watch.interrupt() == 0

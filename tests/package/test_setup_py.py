@@ -17,7 +17,7 @@ from tests.package.my_robot import SAMPLES, make_package
 
 # The samples with unknown values, and the reason; no other sample may have any.
 UNKNOWN = {
-    "comprehension_first_of_a_listing": "the order in which folders are listed",
+    "comprehension_first_of_a_listing": "the order of the files in a folder, or of a set",
     "data_files_in_setup_cfg": "data_files is set in setup.cfg",
     "destination_with_dots": "the target share/my_robot/../my_robot/rviz is not supported",
     "environment_chooses_the_setup": "known only at run time",
@@ -28,7 +28,7 @@ UNKNOWN = {
     "function_that_yields": "a generator function is not supported",
     "hidden_file_named": "is an ignored file",
     "list_slice_replaced": "this assignment to an item is not supported",
-    "listing_until_found": "the order in which folders are listed",
+    "listing_until_found": "the order of the files in a folder, or of a set",
     "package_data_too": "package_data may install files, too",
     "same_target_twice": "several files are installed as share/my_robot/box.urdf: other/box.urdf and urdf/box.urdf",
     "slash_behind_a_file": "depends on the version of setuptools",

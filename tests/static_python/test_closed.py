@@ -42,7 +42,7 @@ def value(text: str, steps: int = 10_000) -> Value:
         "'{} {0}'.format(1) if False else '{0:>5}|{n}'.format(text, n=size)",
         "[item + 1 for item in (1, 2, 3) if item != 2]",
         "{name: n for name, n in [('a', 1), ('b', 2)]}",
-        "sorted({3, 1, 2}, key=lambda n: -n)",
+        "sorted({3, 1, 2}), max({0.5, 2}), sorted([3, 1, 2], key=lambda n: -n)",
         "table['a'][-1] + len(table)",
         "text[::-1][1:3]",
         "sum(x * y for x in range(3) for y in (1, 2))",

@@ -9,6 +9,7 @@ from grader.edits import Proposal
 from grader.package.edits.difference import restored, rewritten
 from grader.package.edits.spelling import respelt
 from grader.package.edits.task import Task, proposal
+from grader.package.launch.model import Launch
 from grader.package.rviz import Display, RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import Node
 from grader.source import Edit, Location, Source
@@ -46,8 +47,12 @@ def fixed_frame(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
     if read is not None and read[1].fault is None:
         source, rviz = read
         if rviz.fixed_frame is not None:
-            edits = [_scalar(source, rviz.frame_location, arguments["frame"])]
-            yield proposal(edits, "the Fixed Frame of RViz", f"set the Fixed Frame to {arguments['frame']}")
+            launch = _launch(task, arguments)
+            frames = launch.frames_of(arguments["frame"]) if launch is not None else (arguments["frame"],)
+            for frame in filter(None, frames):
+                edits = [_scalar(source, rviz.frame_location, frame)]
+                added = "" if frame == arguments["frame"] else ", after the frame_prefix"
+                yield proposal(edits, "the Fixed Frame of RViz", f"set the Fixed Frame to {arguments['frame']}{added}")
     yield from _readable(task, arguments)
 
 
@@ -169,9 +174,13 @@ def _readable(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
             yield proposal([whole], "an RViz file that RViz cannot read", "use the lab's RViz file", is_rewrite=True)
 
 
+def _launch(task: Task, arguments: Mapping[str, Any]) -> Launch | None:
+    opened = task.package.launch_file(arguments.get("launch", "")) if arguments.get("launch") else None
+    return task.package.launch(opened) if opened is not None else None
+
+
 def _read(task: Task, arguments: Mapping[str, Any]) -> tuple[Source, RvizFile] | None:
     """Return the text of the graded RViz file, and what it says."""
-    opened = task.package.launch_file(arguments.get("launch", "")) if arguments.get("launch") else None
-    path = task.package.rviz_file(arguments["name"], task.package.launch(opened) if opened is not None else None)
+    path = task.package.rviz_file(arguments["name"], _launch(task, arguments))
     source = task.source(path) if path is not None else None
     return (source, task.package.rviz(path)) if source is not None and path is not None else None

@@ -9,6 +9,7 @@ from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
+STATE_PUBLISHER = "robot_state_publisher"
 Purpose = Literal["urdf", "rviz", "include"]
 
 
@@ -41,12 +42,16 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A program that is started. `when` is True, False where a condition prevents it, None where this is known at run time."""
+    """A program that is started. `when` is True, False where a condition prevents it, None where this is known at run time.
+
+    `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is known at run time.
+    """
 
     package: str
     executable: str
     when: bool | None
     location: Location
+    frame_prefix: str | None = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +91,12 @@ class Launch:
     def named(self, *purposes: Purpose) -> tuple[Reference, ...]:
         """Return the files that are named for one of these purposes."""
         return tuple(reference for reference in self.references if reference.purpose in purposes)
+
+    def frames_of(self, link: str) -> tuple[str | None, ...]:
+        """Return the frames that robot_state_publisher publishes for a link, or as which a rubric names it; None for an unknown one."""
+        publishers = [node for node in self.nodes if node.executable == STATE_PUBLISHER and node.when is not False]
+        prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
+        return tuple(it if it is None else it + link.removeprefix(it) for it in prefixes)
 
 
 @dataclass(slots=True)

@@ -4,7 +4,7 @@ import re
 import shlex
 
 from grader.names import did_you_mean
-from grader.package.launch.model import Contents, Context, Findings, Reference, StartedNode
+from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, Reference, StartedNode
 from grader.package.launch.places import SHARE
 from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
@@ -16,7 +16,6 @@ _NODE_ARGUMENTS = frozenset(
      "output_format", "cached_output", "log_cmd", "on_exit", "respawn", "respawn_delay", "respawn_max_retries", "condition",
      "autostart", UNKNOWN_KEYS}
 )  # fmt: skip
-_STATE_PUBLISHER = "robot_state_publisher"
 _RVIZ = "rviz2"
 # The errors where robot_description is given a call whose last method is missing.
 _UNFINISHED = {
@@ -61,13 +60,14 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
 
 
 def _start(findings: Findings, package: str, executable: str, call: Call, context: Context, when: bool | None) -> None:
-    findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at)))
+    prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
+    findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at), prefix))
     if when is False:
         return
     for name in ("parameters", "arguments", "remappings"):
         if isinstance(call.kwargs.get(name), str | dict):
             context.add_error(f"{name} has to be a list: put [ ] around it", call.at)
-    if executable == _STATE_PUBLISHER:
+    if executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
     elif executable == _RVIZ:
         _find_configuration(findings, call, context)
@@ -78,6 +78,17 @@ def _as_node(call: Call, words: list[str]) -> Call:
     unknown = Unknown("a part of the command is known only at run time", call.at)
     arguments: list[Value] = [unknown if word == PART_UNKNOWN else word for word in words]
     return Call(call.name, [], {"arguments": arguments}, call.at)
+
+
+def _frame_prefix(call: Call, context: Context) -> str | None:
+    """Return the parameter frame_prefix of a node."""
+    tables = [table for table in _pieces(call.kwargs.get("parameters")) if isinstance(table, dict)]
+    given: list[Value] = [table["frame_prefix"] for table in tables if "frame_prefix" in table]
+    for name in ("arguments", "ros_arguments"):
+        words = _command_words(call.kwargs.get(name), context)
+        given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
+    found = resolve(given[-1], context) if given else ""
+    return found if isinstance(found, str) and PART_UNKNOWN not in found else None
 
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
@@ -160,7 +171,7 @@ def start_urdf_launch(findings: Findings, path: str, call: Call, context: Contex
     known = _URDF_LAUNCH.fullmatch(path)
     if known is None:
         return False
-    nodes = [_STATE_PUBLISHER]
+    nodes = [STATE_PUBLISHER]
     given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
     match [resolve(value, context) for value in given]:
         case [str() as package, str() as urdf]:

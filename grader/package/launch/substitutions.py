@@ -158,6 +158,11 @@ class _Substitution:
         folder = f"{SHARE}/{package}" if is_share else PREFIX
         return folder if isinstance(package, str) else package
 
+    def executable(self) -> Resolved:
+        names = [self.argument("executable"), self.resolve(self.call.argument(1, "package"))]
+        unknown = next((name for name in names if not isinstance(name, str)), None)
+        return f"{PREFIX}/lib/{names[1]}/{names[0]}" if unknown is None else unknown
+
     def configuration(self) -> Resolved:
         name = self.argument("variable_name")
         if not isinstance(name, str):
@@ -226,6 +231,7 @@ _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
     "ParameterValue": lambda substitution: substitution.argument("value"),
     "ParameterFile": lambda substitution: substitution.argument("param_file"),
     "FindExecutable": lambda substitution: substitution.argument("name"),
+    "ExecutableInPackage": _Substitution.executable,
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.joined_path,
     "ThisLaunchFileDir": lambda substitution: substitution.context.folder,

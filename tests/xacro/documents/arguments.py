@@ -74,6 +74,9 @@ _GIVEN["given-case"] = _GIVEN["given-case"]._replace(undetermined="perhaps")
 _UNDECLARED = bodies(
     "always",
     undeclared=shown("$(arg a)") + '<link name="b"/>',
+    undeclared_in_eager_property='<xacro:property name="d" value="$(arg a)" lazy_eval="false"/>',
+    undeclared_in_global_property="<xacro:property name='d' value=\"${xacro.arg('a')}\" scope='global'/>",
+    undeclared_in_unused_parameter="<xacro:macro name='m' params='p'/><xacro:m p='$(arg a)'/>",
     undeclared_in_expression=shown("${$(arg a) + 1}"),
     undeclared_in_condition='<xacro:if value="$(arg a)"><link name="b"/></xacro:if><link name="c"/>',
 )

@@ -220,8 +220,13 @@ def _marked(listed: tuple[str, ...], beyond: set[str], before: str = "") -> Docu
     )
 
 
+_ONLY_OF_PYTHON = (
+    "range(2**70)[1]", "len(range(2**70)[:9])", "len([k for k in math.keys()])", "len(list(math))", "math.get('pi')", "'pi' in math", "len(math)", "1 if math else 2",
+)  # fmt: skip
+
 DOCUMENTS: Documents = merged(
     _marked(_ARITHMETIC + _COMPARISON + _STRINGS + _LISTS + _FUNCTIONS + _MORE, _BEYOND),
     _marked(_USES, _BEYOND_USES, _VALUES),
     expressions(_FORMATS, _FORMATTED, "perhaps"),
+    expressions(_ONLY_OF_PYTHON, undetermined="perhaps"),
 )

@@ -1,0 +1,63 @@
+"""A xacro file on its own, with the files that it includes from the package around it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from grader.errors import InputError
+from grader.files.folder import is_looked_at, read_folder
+from grader.files.tree import File, Tree
+from grader.package.package import MANIFEST
+from grader.submission.editing import overlaid
+from grader.submission.packages import read_packages
+from grader.submission.submission import Submission
+from grader.submission.urdf import read_as_ros
+from grader.submission.workspace import Surroundings
+from grader.text import enumerated, printable, printable_path
+
+_MAX_NAMED = 6
+
+
+def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Mapping[str, str]) -> Submission:
+    """Return the submission that is one file of xacro, and what it reads from the package around it.
+
+    If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
+    """
+    alone = Surroundings(arguments=arguments)
+    submission = Submission(identity, read_as_ros(data, printable_path(place.name), alone), arguments=arguments)
+    if not alone.asked:
+        return submission
+    try:
+        folder = place.parent.resolve()
+        root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
+        path = printable((folder / place.name).relative_to(root).as_posix())
+        tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
+    except (OSError, InputError):
+        tree = None
+    return _expanded(tree, path, identity, arguments) if tree is not None else submission
+
+
+def _expanded(tree: Tree, path: str, identity: str, arguments: Mapping[str, str]) -> Submission:
+    """Return a file of a tree as a submission, with everything that is read for it."""
+    known: dict[str, bytes] = {}
+
+    def read(file: File, limit: int, *, first: bool = False) -> bytes:
+        data = file.read(limit, first=first)
+        return data if first else known.setdefault(file.path, data)
+
+    recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
+    packages = read_packages(recorded, "")
+    data = tree.files[path].read(tree.files[path].size)
+    urdf = read_as_ros(data, path, Surroundings(recorded, None, packages, arguments, is_single=True))
+    besides = tuple(sorted(known.keys() - {path}))
+    note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
+    return Submission(
+        identity,
+        urdf,
+        everything=overlaid(tree, known),
+        notes=(note,) if besides else (),
+        arguments=arguments,
+        neighbours=packages,
+        besides=besides,
+    )
