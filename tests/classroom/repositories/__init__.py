@@ -1,1 +1,1 @@
-"""A class of 60 repositories, written as students hand them in."""
+"""A class of 65 repositories, written as students submit them."""

@@ -124,6 +124,7 @@ EXTRAS: Mapping[str, Callable[[], Contents]] = {
     "another version": _another_version,
     "another package": lambda: {**package(""), "urdf/my_robot.urdf": robot("centimetres").encode()},
     "box": lambda: {"box.urdf": b'<robot name="box"><link name="base_link"/></robot>'},
+    "prelab": lambda: {"box.urdf": b'<robot name="box"><link name="box"/></robot>'},
     "webots": lambda: {
         "worlds/arena.wbt": b"#VRML_SIM R2025a utf8\nWorldInfo { }\n",
         "protos/EPuck.proto": b"#VRML_SIM R2025a utf8\n",

@@ -8,6 +8,7 @@ Extra = tuple[str, str]  # a key of EXTRAS, and the folder that it is put into
 class Work(NamedTuple):
     """A robot: the sample that it is, its spelling and its path; its package, and the file that the launch file runs xacro on.
 
+    `installed_as` is the name that setup.py and the launch file give the package, if it is another one than that of package.xml.
     `lost` are the criteria of Task 2 that fail, and `unknown` others that do not pass. Without a package nothing passes.
     """
 
@@ -17,6 +18,7 @@ class Work(NamedTuple):
     package: str | None = None
     launched: str = ""
     package_name: str = "my_robot"
+    installed_as: str = ""
     lost: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
 
@@ -146,5 +148,10 @@ ROWS = (
     Row("tamarind", "a workspace with another package beside it", one(SEVERAL, f"ws/src/my_robot/{URDF}", package="ws/src/my_robot"), (("final project", "ws/src"),)),
     Row("teak", "a zip of a workspace with its build", one(MISSING, f"ws/src/my_robot/{URDF}", package="ws/src/my_robot"), (("stale build", "ws"), ("macOS", "ws")), zipped="ws"),
     Row("walnut", "xacro numbers in the package's URDF, opened without xacro", one(SWAPPED, f"{SRC}/{URDF}", "numbers", SRC), failed=("urdf-loads",)),
+    Row("hornbeam", "typographic quotes in one joint", one("smart-quotes", "Lab6/my_robot.urdf"), (("another version", "Lab5"),)),
+    Row("tupelo", "a tag that is not closed", one("tag-not-closed", f"{SRC}/{URDF}", package=SRC)),
+    Row("whitebeam", "setup.py and the launch file have another name for the package", one(BURIED, f"{SRC}/{URDF}", package=SRC, installed_as="my_robots", lost=("package-found", "setup-installs-urdf", "setup-installs-launch", "setup-installs-rviz"))),
+    Row("yew", "pictures, and the robot of the prelab", extras=(("pictures", "Lab6"), ("prelab", "Lab6"))),
+    Row("zelkova", "pictures, and the robot in a later lab, without its package", one(BURIED, "Lab7/Zelkova/my_robot.urdf"), (("pictures", "Lab6/Zelkova"),)),
     Row("willow", "a README of an answer, and the robot as a plain file at the root", one(TRUNCATED, "my_robot.urdf"), (("answers", ""), ("loosely named pictures", ""))),
 )  # fmt: skip

@@ -24,7 +24,8 @@ TEAMS = [row for row in ROWS if len(row.works) > 1]
 WITHOUT = [row for row in ROWS if not row.works]
 WORKS = [(row, folder) for row in ROWS for folder in row.works]
 # What each repository without a robot shows: the evidence that is found, and the answers.
-EVIDENCE = {"myrtle": (5, 0), "nutmeg": (5, 0), "oak": (5, 2), "oleander": (5, 2), "olive": (5, 2), "palm": (5, 0), "pear": (0, 0)}  # fmt: skip
+PRELAB = "yew"  # has a robot, but another one
+EVIDENCE = {"yew": (5, 0), "myrtle": (5, 0), "nutmeg": (5, 0), "oak": (5, 2), "oleander": (5, 2), "olive": (5, 2), "palm": (5, 0), "pear": (0, 0)}  # fmt: skip
 
 
 class Class(NamedTuple):
@@ -121,8 +122,8 @@ def _check(row: Row, work: Work, report: Report, alone: Report) -> None:
 
 
 def test_the_table() -> None:
-    """It has 60 repositories with different names; their robots differ in their marks."""
-    assert len({row.name for row in ROWS}) == len(ROWS) == 60
+    """It has 65 repositories with different names; their robots differ in their marks."""
+    assert len({row.name for row in ROWS}) == len(ROWS) == 65
     assert len({work.sample for row in ROWS for work in row.works.values()}) >= 10
     assert {row.name for row in WITHOUT} == set(EVIDENCE)
 
@@ -143,8 +144,13 @@ def test_a_student_without_a_robot(row: Row, graded: Class) -> None:
     """Nothing is earned; evidence and answers are found and need manual grading."""
     for report in (_report(graded.folder / row.name), graded.reports["folders"][row.name]):
         statuses = _statuses(report, "task1")
-        assert (statuses.pop("urdf-loads"), set(statuses.values())) == ("failed", {"skipped"})
-        assert (report["score"], report["pending"]) == (0, 10)
+        loads = statuses.pop("urdf-loads")
+        if row.name == PRELAB:
+            assert (loads, set(statuses.values()), report["score"]) == ("passed", {"failed", "skipped"}, 3)
+            assert "another robot" in report["results"][1]["message"]
+        else:
+            assert (loads, set(statuses.values()), report["score"]) == ("failed", {"skipped"}, 0)
+        assert report["pending"] == 10
         answers = [result["message"] for result in report["results"] if result["part"] == "questions"]
         found = sum(bool(evidence["files"]) for evidence in report["evidence"])
         assert (found, sum("No answer was found" not in message for message in answers)) == EVIDENCE[row.name]
@@ -168,4 +174,6 @@ def test_the_class_is_complete(graded: Class) -> None:
     """Each student on the roster has a report, and nobody else has; the run counts those who submitted no URDF."""
     students = {key for key, *_ in _roster()}
     assert graded.reports["teams"].keys() == graded.reports["folders"].keys() == students
-    assert "6 submissions have pictures or documents, but no URDF" in graded.runs["teams"].stdout
+    printed = " ".join(graded.runs["teams"].stdout.split())
+    assert "7 submissions have pictures or documents, but no URDF of this lab" in printed
+    assert "13 submissions have pictures or documents, but no package of this lab" in printed
