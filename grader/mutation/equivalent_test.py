@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Collection, Iterator
 
-from grader.grading.grade import decide
+from grader.grading.deciding import decide
 from grader.mutation.diffs import hunk
 from grader.mutation.equivalents import FAMILIES, UNASKED, Equivalent, Equivalents, forbidden
 from grader.mutation.result import EquivalentResults, Loss

@@ -5,7 +5,7 @@ from functools import cached_property
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import InputError
-from grader.grading.grade import decide
+from grader.grading.deciding import decide
 from grader.grading.hints.trials import is_worse
 from grader.grading.report import Report, Result
 from grader.mutation.mutants import Mutant

@@ -33,8 +33,8 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
     """
     names = [link.name for link in reference.robot.links if robot.robot.has_link(link.name)]
     pairs = [pair for name in names if (pair := _pair(robot, reference, name, base)) is not None]
-    if len(pairs) < _MIN_POINTS:
-        return None
+    if len(pairs) < _MIN_POINTS or 2 * sum(dist(*pair) <= _NEAR for pair in pairs) >= len(pairs):
+        return None  # too few points, or most are where they should be: the quick answer for most robots
     count, T_base_other = max((_fitted(pairs, rotation) for rotation in _quarter_turns()), key=lambda fit: fit[0])
     description = _description(T_base_other)
     if not description or count < max(_MIN_POINTS, len(pairs) - 1):

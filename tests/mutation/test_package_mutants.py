@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.grading.grade import decide
+from grader.grading.deciding import decide
 from grader.mutation.mutants import Mutant
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.edits import composed
 from grader.errors import InputError
-from grader.grading.grade import decide
+from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.source import Edit

@@ -1,0 +1,178 @@
+"""Decide criteria: run the rubric's checks in order, and attribute each failure."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from grader.checks.outcome import Outcome, fault_of, location_of, pending
+from grader.checks.registry import Check
+from grader.checks.tree import urdf_loads
+from grader.errors import MissingElement, NotDecided, RubricError
+from grader.grading.criterion import Carried, Criterion
+from grader.grading.explanation import explained
+from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
+from grader.grading.report import Result
+from grader.grading.rubric import Rubric
+from grader.grading.subjects import Subjects
+from grader.robot.shapes import UnknownShape
+from grader.source import LazyLocation, Location
+from grader.submission.submission import Submission
+from grader.submission.urdf import Absent
+
+
+def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
+    """Yield the results of some criteria in the order of the rubric; what a criterion requires counts if it is wanted, too."""
+    grading = _Grading(rubric, submission)
+    for criterion in rubric.criteria:
+        if criterion.id in wanted:
+            grading.decide(criterion)
+            yield grading.results[criterion.id]
+
+
+def _graded_manually(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+    """Return what a submission lacks, and why, whose criteria then need manual grading by the rubric.
+
+    Without a URDF, `without_urdf` decides for the package as well.
+    """
+    keys = {"URDF": rubric.without_urdf, "package": rubric.without_package}
+    if "manual" not in keys.values():
+        return {}
+    lacking = missing_work(rubric, submission)
+    if "URDF" in lacking and rubric.without_urdf == "manual":
+        return lacking
+    return {kind: reason for kind, reason in lacking.items() if keys[kind] == "manual"}
+
+
+class _Grading:
+    """The criteria decided so far, and which of them was the first that misses a thing."""
+
+    def __init__(self, rubric: Rubric, submission: Submission) -> None:
+        self._rubric, self.submission = rubric, submission
+        self._manual = _graded_manually(rubric, submission)
+        if "URDF" in self._manual:
+            submission = replace(submission, urdf=Absent())
+        if "package" in self._manual:
+            submission = replace(submission, package=None)
+        self._subjects = Subjects(rubric, submission)
+        self.results: dict[str, Result] = {}
+        self.missed: dict[tuple[str, str], str] = {}
+
+    def decide(self, criterion: Criterion) -> None:
+        """Run the check of a criterion, or skip it because of another that failed."""
+        cause = self._cause(criterion) if criterion.requires or self._subjects.robot is None else None
+        result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
+        self.results[criterion.id] = (
+            self._carried(result, criterion.carried) if criterion.carried and result.is_lost else result
+        )
+
+    def _cause(self, criterion: Criterion) -> str | None:
+        """Return the criterion because of which this one is skipped, if there is one."""
+        for name in criterion.requires:
+            required = self.results.get(name)
+            if required is not None and required.is_lost:
+                return required.because or name
+        if self._subjects.robot is None and criterion.check.subject == "robot":
+            loading = (result for result in self.results.values() if result.criterion.check.function is urdf_loads)
+            return next((result.criterion.id for result in loading if result.outcome.status == "failed"), None)
+        return None
+
+    def _check(self, criterion: Criterion) -> Result:
+        try:
+            result = self._run(criterion, criterion.check, criterion.arguments)
+        except MissingElement as missing:
+            return self._miss(criterion, missing)
+        if result.outcome.status != "failed":
+            return result
+        return result._replace(outcome=explained(result.outcome, self._subjects.problems))
+
+    def _carried(self, result: Result, carried: Carried) -> Result:
+        """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
+        cause = self._cause_of(result, carried.causes)
+        if cause is None:
+            return result
+        try:
+            other = self._run(result.criterion, carried.check, carried.arguments)
+        except MissingElement:
+            return result
+        name, outcome = cause.criterion.id, result.outcome
+        if outcome.status == "skipped":
+            outcome = Outcome("failed", f"it cannot be measured, because {name} failed")
+        if other.outcome.status == "pending":
+            reason = f"whether this is due to {name} alone cannot be decided: {other.outcome.message}"
+            return other._replace(outcome=pending(f"{outcome.message}; {reason}", other.outcome.mistake))
+        if other.outcome.status == "passed":  # the place to look at is that of the mistake
+            outcome = outcome._replace(location=cause.outcome.location)
+            return Result(result.criterion, outcome, carried=cause.carried or name)
+        return other if other.outcome.status == "errored" else result
+
+    def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
+        """Return the first of these criteria that failed, if the result is a failure, or a skip because of one of them."""
+        names = [name for name in causes if result.because in (None, name)]
+        before = (self.results[name] for name in names if name in self.results)
+        return next((found for found in before if found.outcome.status == "failed"), None)
+
+    def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
+        """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""
+        try:
+            examined = self._subjects.of(check, criterion.at)
+            arguments = self._subjects.named(check, arguments) if criterion.has_selectors else arguments
+            outcome = check.function(*examined, **arguments)
+            fault = fault_of(outcome) if check.distribution else ""
+            if criterion.at and not fault:
+                pose = self._subjects.pose_text(criterion.at)
+                outcome = outcome._replace(message=f"{outcome.message} (with {pose})")
+            return Result(criterion, _errored(check, fault) if fault else outcome)
+        except MissingElement:
+            raise
+        except RubricError as error:
+            raise RubricError(tuple(f"the criterion {criterion.id}: {line}" for line in error.complaints)) from None
+        except (UnknownShape, NotDecided) as reason:
+            cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
+            return Result(criterion, pending(f"{reason}; needs manual grading", cause))
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
+            from traceback import format_exc  # needed only for a fault of the grader
+
+            return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())
+
+    def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
+        """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
+        if missing.kind in self._manual:
+            return Result(criterion, by_evidence(self.submission, self._manual[missing.kind]))
+        robot = robot_of(self.submission.urdf)
+        if missing.kind == "link" and robot is not None and is_another_robot(self._rubric, robot):
+            missing = another_robot(self._rubric, robot)
+        first = self.missed.get((missing.kind, missing.name), criterion.id)
+        if (
+            criterion.adjustment is None
+        ):  # the mistake of an adjusted criterion does not count, so it excuses no other one
+            self.missed[missing.kind, missing.name] = first
+        if first != criterion.id:
+            return Result(criterion, _skipped(first), first)
+        at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
+        outcome = Outcome(
+            "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
+        )
+        return Result(criterion, explained(outcome, self._subjects.problems, missing.kind, missing.name))
+
+
+def _skipped(cause: str) -> Outcome:
+    return Outcome("skipped", f"skipped because {cause} failed")
+
+
+def _text_of(error: BaseException) -> str:
+    """Return the type and text of an exception, or only its type where making the text fails."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # noqa: BLE001  another package's code
+        return type(error).__name__
+
+
+def _errored(check: Check, fault: str) -> Outcome:
+    """Return the outcome of a faulty check; the message names the installed package that it comes from."""
+    if check.distribution:
+        return Outcome("errored", f"the check {check.name} of the package {check.distribution} is faulty: {fault}")
+    return Outcome("errored", f"the grader itself failed ({fault.partition(':')[0]}); please report it")
