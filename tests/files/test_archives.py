@@ -15,6 +15,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import given, settings
@@ -40,6 +41,7 @@ from tests.files.archives import (
 from tests.work import limited_work
 
 URDF = "my_robot/urdf/my_robot.urdf"
+NOISE = Random(1)
 EVERY = list(MAKERS)
 
 
@@ -416,7 +418,7 @@ def test_paths_that_cannot_be_opened(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ending", EVERY)
 def test_truncated_archives(ending: str) -> None:
     """A truncated archive gives one line, or a file tree whose files can be read or say why not."""
-    data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": os.urandom(700)})
+    data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": NOISE.randbytes(700)})
     for length in range(1, len(data), 7):
         if archive_kind(data[:512][:length]) is None:
             continue
@@ -481,7 +483,7 @@ def test_zip_bombs_by_ratio(ending: str) -> None:
 @pytest.mark.parametrize("ending", EVERY)
 def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The size of an archive and of its content is limited."""
-    data = MAKERS[ending]({"a": os.urandom(3000), "b": os.urandom(3000)})
+    data = MAKERS[ending]({"a": NOISE.randbytes(3000), "b": NOISE.randbytes(3000)})
     monkeypatch.setattr(limits, "MAX_ARCHIVE_SIZE", 5000)
     assert "lab6.zip is larger than 5000 bytes, the limit for an archive" in refusal(data)
     monkeypatch.undo()
@@ -633,7 +635,7 @@ def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
 
 def test_a_large_tar_leaves_no_file(temporary: Path) -> None:
     """A tar that does not fit into memory is kept in a file without a name."""
-    data = make_tar({"a.bin": os.urandom(18_000_000), "b.urdf": ROBOT}, kind="gz")
+    data = make_tar({"a.bin": NOISE.randbytes(18_000_000), "b.urdf": ROBOT}, kind="gz")
     tree = tree_of(data)
     assert list(temporary.iterdir()) == []
     assert text(tree, "b.urdf") == ROBOT

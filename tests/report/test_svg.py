@@ -20,10 +20,10 @@ from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.text import format_points
 from tests.command_line import run, run_with_input
-from tests.work import limited_work
 from tests.report.readers import read_svg, svg_text
 from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import REPORTED, SAMPLES
+from tests.work import limited_work
 
 REFERENCE = "submissions/reference"
 

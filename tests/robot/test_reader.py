@@ -11,10 +11,10 @@ from grader.errors import MissingElement
 from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
-from tests.work import limited_work
 from tests.robot.edge_cases.case import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample
 from tests.robot.random_text import data
+from tests.work import limited_work
 
 _AT_THE_TOP = ("URDF003", "URDF005", "URDF008")  # kinds that are about the beginning of the file
 _EFFECTS = {"rejects": "rejected", "drops": "degraded", "loads": "clean"}

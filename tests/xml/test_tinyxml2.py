@@ -9,8 +9,8 @@ from grader.robot.reader import read_urdf
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2.scanner import Scan, Scanner
-from tests.work import limited_work
 from tests.robot.random_text import data
+from tests.work import limited_work
 
 _PARSER = etree.XMLParser(
     resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
