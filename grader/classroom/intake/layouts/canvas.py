@@ -126,13 +126,15 @@ def _read(path: str, name: str, found: re.Match[str]) -> _CanvasFile:
 def _settled(readings: Sequence[_CanvasFile], names: Mapping[str, str], first: int) -> _CanvasFile:
     """Return a file in its last possible reading: its number is no part of a name that a user chose.
 
-    Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. `first` is the smallest
-    number of an upload in these. A roster rules nothing out, because a student may be missing on it.
+    Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. They cannot rule out the
+    last reading, because its user may have changed the name between two downloads. `first` is the smallest number of an upload in
+    these. A roster rules nothing out, because a student may be missing on it.
     """
     possible = [
         file
         for file in readings
-        if names.get(file.user, file.name) == file.name and not 0 < file.attachment * _MAX_GROWTH < first
+        if (file is readings[-1] or names.get(file.user, file.name) == file.name)
+        and not 0 < file.attachment * _MAX_GROWTH < first
     ] or readings
     return possible[-1]._replace(
         readings=() if possible[-1].is_anonymous else tuple((file.name, file.user) for file in possible)
