@@ -55,6 +55,11 @@ class Intake:
         return len(self.found) if self.roster is None else len(self.placed)
 
     @property
+    def matched(self) -> int:
+        """The number of submissions that belong to students on the roster."""
+        return len({placed.number for placed in self.placed if placed.owner != _UNMATCHED})
+
+    @property
     def assignments(self) -> frozenset[str]:
         """The names of the assignment."""
         return self.found.assignments | (self.roster.assignments if self.roster is not None else frozenset())

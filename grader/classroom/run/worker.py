@@ -21,7 +21,7 @@ from grader.classroom.gradebook.result import (
     Verdict,
 )
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.opening import open_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
@@ -82,6 +82,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
             return failed(rubric, context.parts, task, "unreadable", several_students(submission), digest, seen)
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
+        digest = digest or unreadable_digest(context.root, task.paths)
         return failed(rubric, context.parts, task, "unreadable", str(error), digest, seen)
     except MemoryError:
         if not task.no_documents:
