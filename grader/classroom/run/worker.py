@@ -143,7 +143,7 @@ def failed(
     criteria = [criterion for criterion in rubric.criteria if criterion.part in chosen]
     results = tuple(Result(criterion, Outcome(status, message)) for criterion in criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
-    report = Report(GradedSubmission(name), rubric, chosen, results)
+    report = Report(GradedSubmission(name, unread=reason if verdict == "unreadable" else ""), rubric, chosen, results)
     return result_of(report, task, verdict, reason, digest, seen)
 
 
