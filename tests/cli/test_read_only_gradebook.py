@@ -1,5 +1,6 @@
 """A gradebook without write permission can be read, and every message names the permission."""
 
+import getpass  # noqa: F401
 import os
 import shutil
 import sqlite3
@@ -51,7 +52,7 @@ def unprivileged(book: Path, *, folder: int, file: int) -> Iterator[None]:
 def as_reader(book: Path, *arguments: object, folder: int = 0o555, file: int = 0o444) -> Done:
     """Run a command as a user who cannot write the gradebook."""
     with unprivileged(book, folder=folder, file=file):
-        return run((*arguments, "--gradebook", book), TMPDIR="/tmp")
+        return run((*arguments, "--gradebook", book))
 
 
 @pytest.mark.parametrize(("folder", "file"), [(0o555, 0o444), (0o777, 0o444), (0o555, 0o666)])
