@@ -42,7 +42,7 @@ TEAMS = ("--layout", "teams")
 
 @pytest.mark.parametrize("own", [(), ("red/Lab6/ann/a.md", "red/Lab6/bob/b.md"), ("red/Lab6/README.md",)])
 def test_a_team_whose_robots_are_in_the_folder_of_another_lab(tmp_path: Path, own: tuple[str, ...]) -> None:
-    """They are graded, as `grade` does, and the message names the folder; a final project is the last choice."""
+    """They are graded, as `grade` does, and the message names the folder; a final project does not count."""
     submit(tmp_path, *own, "red/Lab5/ann", "red/Lab5/bob", "red/FinalProject/ann", "blue/Lab6/cal", "blue/Lab5/cal")
     said = batch(tmp_path, *TEAMS)
     assert "red/Lab5: another lab is graded, because there is no robot in the folder of this lab" in said
@@ -62,6 +62,9 @@ def test_a_repository_without_a_folder_of_any_lab(tmp_path: Path) -> None:
     said = batch(tmp_path, *TEAMS)
     assert "green has no folder 'Lab6', no folder of another lab and no robot" in said
     assert scores(tmp_path) == {"red/ann": 70, "red/bob": 70, "joint": 70, "late": 0}
+    (tmp_path / "roster.csv").write_text("id,group\nann,green\n")
+    assert "green has no folder" not in batch(tmp_path, *TEAMS, "--roster", tmp_path / "roster.csv", "--add")
+    assert scores(tmp_path)["ann"] == 0
 
 
 def test_nbgrader_says_which_assignment_it_took(tmp_path: Path) -> None:

@@ -79,6 +79,7 @@ def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
     digest = sha256()
     try:
         for path in paths:
+            digest.update(repr(path.rpartition("/")[2]).encode())  # which the reason names
             with _class_zip(root, file_stamp(root)).raw(path) if is_zip(root) else _raw(root, path) as file:
                 for _ in range(_MAX_HASHED // _CHUNK):
                     digest.update(file.read(_CHUNK))

@@ -135,7 +135,7 @@ def _pack(folder: Path, target: Path) -> Path:
 def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     """A zip as an LMS provides it is graded without unpacking: the reports are the same, and a second run grades nothing.
 
-    Nor does a run over the folder, apart from submissions that could not be opened, which have no digest.
+    Nor does a run over the folder, apart from submissions whose bytes cannot be read.
     """
     folder = mixed_class(tmp_path / "class", 120, layout, for_zip=True)
     packed = _pack(folder, tmp_path / "class.zip")

@@ -10,7 +10,7 @@ from dataclasses import replace
 from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
-from grader.classroom.intake.names import stems_of
+from grader.classroom.intake.names import ending_of, stems_of
 from grader.classroom.students import ClassSubmission
 from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.students import is_part
@@ -56,9 +56,9 @@ def _labs_below(folder: ClassFolder, names: LabFolders, start: str) -> list[str]
     if not folder.is_explicit or any(_has_robot(folder.listing, lab) for lab in own):
         return own
     others = [start + name for name in below if names.belonging(f"{name}/") is Belonging.OTHER_LAB]
-    others = [lab for lab in others if _holds_students(folder, lab) and _has_robot(folder.listing, lab)]
-    projects = [lab for lab in others if names.is_project(f"{lab}/")]
-    chosen = next((lab for lab in others if lab not in projects), next(iter(projects), ""))
+    certain = replace(folder, is_explicit=False)
+    holding = (lab for lab in others if not names.is_project(f"{lab}/") and _holds_students(certain, lab))
+    chosen = next((lab for lab in holding if _has_robot(folder.listing, lab)), "")
     return [chosen] if chosen else own
 
 
@@ -94,10 +94,12 @@ def find_submissions(folder: ClassFolder) -> Submissions:
 
 
 def _has_no_lab(folder: ClassFolder, team: str) -> bool:
-    """Return whether a repository holds no folder of any lab and no robot."""
+    """Return whether a repository holds no folder of any lab, no robot and no archive, and is on no roster."""
+    if folder.roster is not None and folder.roster.knows_submission(team):
+        return False
     names, below = LabFolders(folder.lab_folders), folder.listing.children(folder.start + team, _MAX_NAMES)
     has_lab = any(names.belonging(f"{name}/") is not Belonging.NO_LAB for name in (team, *below.folders))
-    return not has_lab and _has_robot(folder.listing, folder.start + team) is False
+    return not has_lab and _has_robot(folder.listing, folder.start + team, archives=True) is False
 
 
 def _is_of_student(folder: ClassFolder, name: str) -> bool:
@@ -140,8 +142,8 @@ def _is_part(folder: ClassFolder, name: str) -> bool:
     return is_part(name, lab) and not (folder.roster is not None and folder.roster.knows_surname(name))
 
 
-def _has_robot(listing: ClassListing, top: str) -> bool | None:
-    """Return whether there is a URDF or a package below a folder; None if the folder is itself a package."""
+def _has_robot(listing: ClassListing, top: str, *, archives: bool = False) -> bool | None:
+    """Return whether there is a URDF or a package below a folder, or an archive; None if the folder is itself a package."""
     waiting = [top]
     left = _MAX_ENTRIES
     while waiting and left > 0:
@@ -150,7 +152,7 @@ def _has_robot(listing: ClassListing, top: str) -> bool | None:
         left -= len(children.folders) + len(children.files) + 1
         if "package.xml" in children.files:
             return True if folder != top else None
-        if any(_ROBOT.search(name.lower()) for name in children.files):
+        if any(_ROBOT.search(name.lower()) or (archives and ending_of(name)) for name in children.files):
             return True
         waiting += [f"{folder}/{name}" for name in sorted(children.folders)]
     return False
