@@ -295,7 +295,7 @@ def test_lateness_is_updated_without_grading(graded: Path, tmp_path: Path) -> No
     before = results(graded)
     for late in ("yes", "no"):
         (tmp_path / "roster.csv").write_text(f"id,late\n{path.stem},{late}\n")
-        assert again(graded, "--roster", str(tmp_path / "roster.csv")) == f"0 graded, {SIZE} unchanged"
+        assert again(graded, "--roster", str(tmp_path / "roster.csv"), "--add") == f"0 graded, {SIZE} unchanged"
         assert rows(tmp_path / "lab6.db", "SELECT is_late FROM grade WHERE key = ?", path.stem) == [(late == "yes",)]
     assert results(graded) == before
 
