@@ -7,8 +7,10 @@ import signal
 import pytest
 from hypothesis import settings
 
-settings.register_profile("patient", settings(), deadline=None)  # examples have no time limit of their own
-settings.load_profile("patient")
+# Examples have no time limit of their own. They are the same in every run: `--hypothesis-profile=random` searches for others.
+settings.register_profile("repeatable", deadline=None, derandomize=True, database=None)
+settings.register_profile("random", deadline=None, derandomize=False, database=None, print_blob=True)
+settings.load_profile("repeatable")
 
 # A command that a shell starts with `&` ignores Ctrl-C, and so would the commands that the tests start and interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

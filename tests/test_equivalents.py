@@ -211,7 +211,7 @@ def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
 def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
     """No single rewriting loses points, in three tries."""
 
-    @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None)
+    @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
     @given(data=rewritten(REFERENCE, (step, step, step)))
     def check(data: bytes) -> None:
         """Assert full marks for this text."""

@@ -135,8 +135,11 @@ def _composed(word: str) -> str:
 
 
 def _contradict(left: Clues, right: Clues) -> bool:
-    """Return whether two are certainly different people: an LMS knows them by different ids."""
-    return any(clue in left and clue in right and set(left[clue]).isdisjoint(right[clue]) for clue in NUMBERS)
+    """Return whether two are different people: both have LMS ids, and another one in the same LMS, or none in the same."""
+    if not all(any(clue in one for clue in NUMBERS) for one in (left, right)):
+        return False
+    shared = [set(left[clue]).intersection(right[clue]) for clue in NUMBERS if clue in left and clue in right]
+    return not shared or not all(shared)
 
 
 def plain_word(word: str) -> str:

@@ -3,6 +3,7 @@
 import tempfile
 import weakref
 from bisect import bisect_left
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -62,6 +63,10 @@ class ClassZip:
         for file in tree.files.values():
             return file.read(limit)
         raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
+
+    def raw(self, path: str) -> AbstractContextManager[IO[bytes]]:
+        """Open one file, whatever it is."""
+        return self._member(path).open()
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
         """Return the files of an archive in it, whose bytes update the digest; None for a file that is not an archive."""

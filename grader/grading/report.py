@@ -1,7 +1,7 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -138,6 +138,17 @@ class Report:
     notes: tuple[str, ...] = ()
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
+
+    def __post_init__(self) -> None:
+        """Give no points for an adjusted criterion of a submission that could not be read."""
+        if self.submission.unread:
+            results = (
+                result._replace(criterion=replace(result.criterion, adjustment=None))
+                if result.criterion.is_given
+                else result
+                for result in self.results
+            )
+            object.__setattr__(self, "results", tuple(results))
 
     @property
     def score(self) -> Decimal:

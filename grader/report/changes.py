@@ -35,8 +35,11 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
         wrapped(console, Text(printable(f"{reason} ({counted(len(found), 'student')})"), style="bold"), 0)
         for line in details:
             wrapped(console, Text(printable(line)), 2)
-        for steps, some in _groups(found, lambda change: change.steps):
+        regraded = [change for change in found if change.is_regraded]
+        for steps, some in _groups(regraded, lambda change: change.steps):
             _show_students(steps, some, console)
+        if same := len(found) - len(regraded):
+            wrapped(console, Text(f"{counted(same, 'student')} with the same grade, but other points of criteria"), 2)
 
 
 def _reason(change: Change) -> tuple[str, ...]:

@@ -1,6 +1,5 @@
 """Search the proven hints of a class in worker processes, with progress."""
 
-import os
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from typing import NamedTuple
@@ -48,10 +47,11 @@ def search_hints(
     warn: Warn,
 ) -> None:
     """Search the hints of the newest submissions that are not stored yet, once for each group, and store them."""
-    if not os.access(book.path, os.W_OK):
-        return
     searches = [HintSearch(book, rubric, group, options.max_size) for rubric in rubrics]
     total = sum(len(search.wanted) for search in searches)
+    if total and book.read_only:
+        warn(f"no hints for {counted(total, 'submission')}: {book.read_only}")
+        return
     if total:
         remove_old_hints(book)
         _run(searches, total, options, progress)

@@ -12,8 +12,10 @@ from grader.errors import InputError
 from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
-from grader.text import printable_path, shell_quoted
+from grader.text import counted, enumerated, printable_path, shell_quoted
 from grader.usecases import DEFAULT_RUBRIC, Warn
+
+_MAX_NAMED = 5
 
 
 def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
@@ -54,11 +56,25 @@ def warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn
         )
 
 
-def roster_of(file: Path | None, gradebook: Path) -> Roster | None:
-    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows."""
+def roster_of(file: Path | None, gradebook: Path, warn: Warn) -> Roster | None:
+    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows.
+
+    Say so if the roster has fewer students than that of the earlier run.
+    """
     roster = read_roster(file) if file is not None else None
     if not gradebook.exists():
         return roster
     with Gradebook(gradebook) as book:
-        roster = roster or roster_from_json(book.roster_entries())
+        earlier = roster_from_json(book.roster_entries())
+        missing = (
+            []
+            if roster is None or earlier is None
+            else [student.key for student in earlier.students if roster.entry(student.key) is None]
+        )
+        if missing and roster is not None and earlier is not None and len(roster.entries) < len(earlier.entries):
+            warn(
+                f"the roster has {counted(len(roster.entries), 'student')}, that of the gradebook has {len(earlier.entries)}: not on"
+                f" the new one: {enumerated(missing, _MAX_NAMED)}"
+            )
+        roster = roster or earlier
         return roster.with_lms_numbers(book.students()) if roster is not None else None

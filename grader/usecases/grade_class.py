@@ -14,6 +14,7 @@ from grader.classroom.gradebook.hints import remove_hints
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
 from grader.classroom.run.batch import Batch, Progress, RunSettings
+from grader.classroom.run.class_check import check_roster
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
@@ -76,10 +77,12 @@ def grade_class(
     deadline = read_deadline(request.due)
     warn_of_due(request.due, rubric, warn)
     handed_out = tuple(handed_out_hashes(request.ignore_files, rubric))
-    roster = roster_of(request.roster, request.gradebook)
+    roster = roster_of(request.roster, request.gradebook, warn)
     _refuse_targets(request)
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
     _warn_of_intake(intake, warn)
+    if request.roster is not None and not request.add:
+        check_roster(intake)
     with Gradebook(request.gradebook, create=True) as book:
         warn_of_parts(book, request.parts, rubric, warn)
         with _executor(request) as (executor, workers):

@@ -37,6 +37,7 @@ def review(
         session = ReviewSession(Grades(book, answers=True), scope)
         if not session.queue:
             return NOTHING
+        book.check_writable()
         folder = PictureFolder(session, book, pictures or Path(temporary)) if pictures or opens else None
         written = write_all_pictures(session, folder, terminal.show) if folder and pictures else {}
         viewer = Viewer(terminal.warn) if opens else None

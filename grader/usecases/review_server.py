@@ -51,6 +51,7 @@ def serving(
             if not session.queue:
                 yield None, page
                 return
+            book.check_writable()
 
             def followed(request: Request) -> Response:
                 """Answer a request, and then read the pictures of the item after the one that is shown."""

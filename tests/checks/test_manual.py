@@ -1,7 +1,6 @@
 """Manual grading: the answer and the pictures that are shown. Both checks are always pending."""
 
 import sys
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -242,14 +241,14 @@ def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of later documents; texts are read all the same."""
-    converter(SLOW, tmp_path / "slow.py", monkeypatch)
+    log = tmp_path / "log"
+    converter(f"open({str(log)!r}, 'a').write('x')\n".encode() + SLOW, tmp_path / "slow.py", monkeypatch)
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 0.5)
-    began = time.monotonic()
     submitted = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
     outcome = answer_in(submitted)
     assert outcome.measured == "Task 1 step 15: It vanishes."
     assert outcome.message.endswith(f"(not read: {'; '.join(f'{name}.pdf {TOO_LATE}' for name in 'abcd')})")
-    assert time.monotonic() - began < 15  # and not one of its 60 s
+    assert not log.exists() or log.read_text() == "x"  # the first one may end before it writes; no other one starts
 
 
 def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,10 +2,12 @@
 
 A class is laid out as one of the layouts, with or without a roster, graded, and marked. Then a student adds what a student can
 add: further folders and files in every odd spelling, symlinks to others' work, attempts, archives. After each addition the class
-is graded again into the same gradebook. `python -m tests.classroom.hostile_classes 20000` tries as many classes.
+is graded again into the same gradebook. `python -m tests.classroom.hostile_classes 20000` tries as many
+classes and prints its seed, which a second argument repeats.
 """
 
 import os
+import random
 import shutil
 import sys
 import tempfile
@@ -21,7 +23,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, seed, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
@@ -162,7 +164,7 @@ def _variants(name: str) -> list[str]:
     return [
         name, name.upper(), name.title(), full, full.lower(), f"{full.split()[1]}, {full.split()[0]}", full.split()[1],
         f"{name}~2", f"./{name}", f"k{number}", number, f"{name}_{number}", f"{full}_{number}", f"lab6-{name}", f"x-{name}",
-        f"{name}@example.org", f"{name}@elsewhere.example", f"{full}_{number}_{_FILE}_", f"{name}_{number}_99", _TEAM[name],
+        f"{full.split()[0]}_{number} {full.split()[1]}", f"5_x_{number} {full.split()[1]}", f"{name}@example.org", f"{name}@elsewhere.example", f"{full}_{number}_{_FILE}_", f"{name}_{number}_99", _TEAM[name],
         unicodedata.normalize("NFD", full.replace("A", "\u00c5")), full.replace("a", "\u0430"), f"{name}\u200b", f"{name}\n",
         f"{name}\udcff", f"{name}.urdf", f"{name}.zip", f"{_TEAM[name]}-{name}", f"{_TEAM[name]}\\{name}", f"{name} ", f".{name}",
     ]  # fmt: skip
@@ -334,22 +336,22 @@ def _fast() -> str | None:
     return "/dev/shm" if Path("/dev/shm").is_dir() else None
 
 
-def try_classes(number: int) -> None:
+def try_classes(number: int, start: int | None = None) -> None:
     """Try so many classes; raise AssertionError with the shortest sequence of actions for the first failure."""
     run_state_machine_as_test(
-        HostileClass,
+        HostileClass if start is None else seed(start)(HostileClass),
         settings=settings(
             max_examples=number,
             stateful_step_count=6,
             deadline=None,
             suppress_health_check=list(HealthCheck),
-            database=None,
         ),
     )
 
 
 if __name__ == "__main__":
-    requested = int(sys.argv[1])
-    start = time.monotonic()
-    try_classes(requested)
-    print(f"{requested} classes, {time.monotonic() - start:.0f} s: no result and no mark of anybody was anybody else's")
+    requested, chosen = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else random.randrange(2**32)
+    print(f"seed {chosen}", flush=True)
+    began = time.monotonic()
+    try_classes(requested, chosen)
+    print(f"{requested} classes, {time.monotonic() - began:.0f} s: no result and no mark of anybody was anybody else's")

@@ -144,7 +144,7 @@ def test_the_class_gets_the_new_totals_without_force(top: Path) -> None:
     assert scores(top) == {
         "anna": (6, 7, 1),
         "ben": (6, 7, 1),
-        "cleo": (2.5, 7, 4.5),  # could not be read: what is given to everybody is given
+        "cleo": (0, 7, 7),  # could not be read: only graded submissions get the points
         "dora": (None, None, None),  # nothing was submitted
         "emil": (5.5, 7, 1),  # and `tall` is not skipped any more: it fails
     }

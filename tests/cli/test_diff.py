@@ -247,3 +247,38 @@ def test_an_interrupted_run_is_not_compared_by_default(tmp_path: Path) -> None:
         assert (found := run.match(done.stdout)), done
         assert found.groups() == runs
         assert {key for key in ("ash", "birch") if key in done.stdout} == students
+
+
+def test_students_with_the_same_grade_are_counted(tmp_path: Path) -> None:
+    """Of 79 students one has another grade: the others, for whom only points moved between criteria, are one line."""
+    older, newer = lab(box="2.5", tall="0.5"), lab(box="1.5", tall="1.5")
+    keys = [f"s{number:02}" for number in range(78)]
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        record_run(book, older, [graded_as(older, key, "ppp??") for key in (*keys, "zoe")])
+        record_run(book, newer, [*(graded_as(newer, key, "ppp??") for key in keys), graded_as(newer, "zoe", "ppf??")])
+    assert diff(tmp_path).splitlines()[1:] == [
+        "the rubric changed (79 students)",
+        "  box: points 2.5 to 1.5",
+        "  tall: points 0.5 to 1.5",
+        "  zoe: 6 to 4.5 (-1.5)",
+        "    box: 2.5 to 1.5 (-1)",
+        "    tall: 0.5 to 0 (-0.5)",
+        "  78 students with the same grade, but other points of criteria",
+    ]
+    assert len(as_json(tmp_path / "book.db")["students"]) == 79
+
+
+def test_a_late_penalty_is_part_of_the_grade(top: Path) -> None:
+    """Adding `[late]` lists who loses points, although no criterion changed; an excuse and a final mark have no penalty."""
+    (top / "roster.csv").write_text("id,late\nanna,2\nben,2\ncleo,\nemil,no\n")
+    batch(top)
+    assert grader("mark", "ben", "total", "9", "--gradebook", top / "book.db").returncode == 0
+    batch(top)
+    (top / "late.toml").write_text(lab_text() + "\n[late]\npercent_per_day = 10\n")
+    batch(top, rubric=top / "late.toml")
+    text = " ".join(diff(top).split())
+    assert "the rubric changed; late penalty: 0 to 2.2 (1 student)" in text
+    assert "anna): 6 to 3.8 (-2.2)" in text
+    assert "ben" not in text
+    (change,) = as_json(top / "book.db")["students"]
+    assert (change["id"], change["before"], change["after"], change["criteria"]) == ("anna", 6, 3.8, [])

@@ -148,7 +148,7 @@ def test_no_spreadsheet_runs_students_names(tmp_path: Path) -> None:
     csv.writer(lines).writerows([("id", "name"), *((f"s{number}", name) for number, name in enumerate(AWKWARD))])
     (tmp_path / "roster.csv").write_bytes(lines.getvalue().encode())
     (tmp_path / "small.toml").write_text(lab_text())
-    assert batch(tmp_path).returncode == 0
+    assert batch(tmp_path, "--add").returncode == 0
     assert export(tmp_path, "csv", "--output", tmp_path / "grades.csv").returncode == 0
     rows = table((tmp_path / "grades.csv").read_bytes().decode())
     assert [rows[f"s{number}"]["name"] for number in range(len(AWKWARD))] == list(AWKWARD.values())

@@ -1,6 +1,7 @@
 """grader mark: final marks, excuses, comments without points, undo, second opinions, and what is refused."""
 
 import subprocess
+import zipfile
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -214,3 +215,26 @@ def test_points_of_a_dropped_criterion_are_refused(top: Path) -> None:
     assert refusal(mark(top, "anna", "essay", "3")) == why
     assert refusal(mark(top, "anna", "essay", "0", "--second", "--by", "Lee")) == why
     assert mark(top, "anna", "essay", "-").returncode == 0
+
+
+@pytest.mark.parametrize("is_zip", [False, True])
+def test_a_file_that_cannot_be_opened_stays_the_same(top: Path, is_zip: bool) -> None:
+    """After a change of the rubric, its final mark is not reported as older than the submission; other bytes are another one."""
+    source = top / "class.zip" if is_zip else top / "class"
+
+    def graded(content: bytes, rubric: str) -> str:
+        (top / "class/dora.zip").write_bytes(content)
+        if is_zip:
+            with zipfile.ZipFile(source, "w") as archive:
+                for path in (top / "class").iterdir():
+                    archive.write(path, path.name) if path.is_file() else None
+        (top / "lab.toml").write_text(rubric)
+        done = grader("batch", source, "--gradebook", top / "dora.db", "--rubric", top / "lab.toml", "--jobs", 1)
+        shown = [grader(*words, "--gradebook", top / "dora.db").stdout for words in (("stats",), ("export", "csv"))]
+        return " ".join((done.stdout + "".join(shown)).split())
+
+    alarm = "before the submission changed"
+    assert "could not be graded" in graded(b"no zip at all", lab_text())
+    assert grader("mark", "dora", "total", "3", "--gradebook", top / "dora.db").returncode == 0
+    assert alarm not in graded(b"no zip at all", lab_text() + "\n# a comment\n[late]\npercent_per_day = 5\n")
+    assert alarm in graded(b"another file that is no zip", lab_text())

@@ -10,7 +10,7 @@ from grader.checks.outcome import Outcome
 from grader.submission.submission import Submission
 from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.documents.files import PICTURE, docx, pdf
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 VANISHES, NODES = "It vanishes, as it has two roots.", "robot_state_publisher publishes the transforms."
 FIRST = (
@@ -412,7 +412,7 @@ def test_long_documents_are_cut_with_a_note() -> None:
 def test_documents_of_headings_are_bounded(line: str) -> None:
     """Documents that consist of headings take no longer than their lines."""
     files: Files = {f"{number}.md": "# Task 1\n" + f"{line}\n" * 1999 for number in range(5)}
-    with processor_time(2.0):
+    with limited_work(10_000_000):
         both(files)
 
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.documents.labels import matches, read_label
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 
 @pytest.mark.parametrize(
@@ -102,5 +102,5 @@ def test_numbers_are_found_in_every_spelling(task: int, step: int, spelling: str
 )
 def test_long_texts(text: str) -> None:
     """A long text takes no longer than a short one."""
-    with processor_time(0.5):
+    with limited_work(80_000):
         matches(read_label(text), read_label(text))

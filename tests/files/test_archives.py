@@ -15,6 +15,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import given, settings
@@ -37,9 +38,10 @@ from tests.files.archives import (
     set_flags,
     twice,
 )
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 URDF = "my_robot/urdf/my_robot.urdf"
+NOISE = Random(1)
 EVERY = list(MAKERS)
 
 
@@ -311,14 +313,14 @@ def test_hard_links() -> None:
 def test_many_symlinks() -> None:
     """Thousands of symlinks to folders of thousands of files are refused; long chains of symlinks end."""
     files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}
-    with processor_time(4):
+    with limited_work(50_000_000):
         assert "contains more than 50000 files" in refusal(
             make_tar(files, [LinkMember(f"b{n}", "a") for n in range(5000)])
         )
         tree = tree_of(make_tar({"a/x": b""}, [LinkMember(f"b{n}", "a/../" * 700 + "a") for n in range(3000)]))
     assert next(iter(tree.files)) == "a/x"
     chain = [LinkMember(f"l{n}", f"l{n + 1}/l{n + 1}") for n in range(60)]
-    with processor_time(1):
+    with limited_work(300_000):
         assert len(tree_of(make_tar({"a": b""}, chain)).ignored) == 60
 
 
@@ -416,7 +418,7 @@ def test_paths_that_cannot_be_opened(tmp_path: Path) -> None:
 @pytest.mark.parametrize("ending", EVERY)
 def test_truncated_archives(ending: str) -> None:
     """A truncated archive gives one line, or a file tree whose files can be read or say why not."""
-    data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": os.urandom(700)})
+    data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": NOISE.randbytes(700)})
     for length in range(1, len(data), 7):
         if archive_kind(data[:512][:length]) is None:
             continue
@@ -473,7 +475,7 @@ def test_zip_bombs_by_ratio(ending: str) -> None:
     """An archive that unpacks to hundreds of times its size is refused quickly."""
     data = MAKERS[ending]({"a.urdf": bytes(60_000_000)})
     assert len(data) < 100_000
-    with processor_time(2):
+    with limited_work(20_000):
         limit = "33554432 bytes, the limit for an archive"
         assert refusal(data) == f"lab6.zip would unpack to more than {limit}, and was not read"
 
@@ -481,7 +483,7 @@ def test_zip_bombs_by_ratio(ending: str) -> None:
 @pytest.mark.parametrize("ending", EVERY)
 def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The size of an archive and of its content is limited."""
-    data = MAKERS[ending]({"a": os.urandom(3000), "b": os.urandom(3000)})
+    data = MAKERS[ending]({"a": NOISE.randbytes(3000), "b": NOISE.randbytes(3000)})
     monkeypatch.setattr(limits, "MAX_ARCHIVE_SIZE", 5000)
     assert "lab6.zip is larger than 5000 bytes, the limit for an archive" in refusal(data)
     monkeypatch.undo()
@@ -527,7 +529,7 @@ def test_a_bomb_of_overlapping_members() -> None:
         + central
         + struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 2000, 2000, len(central), len(local) + len(body), 0)
     )
-    with processor_time(2):
+    with limited_work(400_000):
         assert "would unpack to more than 33554432 bytes" in refusal(data)
 
 
@@ -537,7 +539,7 @@ def test_wrong_sizes(claimed: int) -> None:
     real = bytes(1_000_000)
     data = make_zip({"a.urdf": real}).replace(struct.pack("<I", len(real)), struct.pack("<I", claimed))
     tree = tree_of(data)
-    with pytest.raises(InputError), processor_time(1):
+    with pytest.raises(InputError), limited_work(400_000):
         tree.files["a.urdf"].read(500)
         tree.files["a.urdf"].read(20_000_000)
 
@@ -571,7 +573,7 @@ def test_too_many_members(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_too_many_folders() -> None:
     """Folders count as well, including those that only exist in the names of files."""
     names: dict[str, bytes | None] = {f"{n}/" + "a/" * 600 + "x": b"" for n in range(100)}
-    with processor_time(2):
+    with limited_work(2_000_000):
         assert "contains more than 50000 files" in refusal(make_tar(names))
 
 
@@ -590,7 +592,7 @@ def header(name: bytes, size: bytes, kind: bytes = b"0") -> bytes:
 def test_sizes_in_tars(size: bytes) -> None:
     """Negative sizes and sizes beyond the end give one line, not an endless loop."""
     data = header(b"a.urdf", b"00000000001") + b"a".ljust(512, b"\0") + header(b"b.urdf", size) + bytes(2048)
-    with processor_time(2):
+    with limited_work(2_000):
         try:
             read_all(tree_of(data))
         except InputError as error:
@@ -603,7 +605,7 @@ def test_long_names_in_tars() -> None:
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (f"{'a' * 40}... has a name that is too long, and was not read",)
     names = header(b"././@LongLink", b"00000000001", b"L") + b"a".ljust(512, b"\0")
-    with processor_time(2):
+    with limited_work(200_000):
         assert "cannot be read as an archive" in refusal(names * 5000 + bytes(1024))
 
 
@@ -626,14 +628,14 @@ def test_sparse_files_in_tars() -> None:
 def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
     """A compressed file is unpacked only up to a limit, whether it contains a tar or not."""
     data = pack(bytes(40_000_000))
-    with processor_time(3):
+    with limited_work(20_000):
         assert "would unpack to more than 33554432 bytes" in refusal(data * 3)
         assert "cannot be read as an archive" in refusal(pack(b"no tar at all"))
 
 
 def test_a_large_tar_leaves_no_file(temporary: Path) -> None:
     """A tar that does not fit into memory is kept in a file without a name."""
-    data = make_tar({"a.bin": os.urandom(18_000_000), "b.urdf": ROBOT}, kind="gz")
+    data = make_tar({"a.bin": NOISE.randbytes(18_000_000), "b.urdf": ROBOT}, kind="gz")
     tree = tree_of(data)
     assert list(temporary.iterdir()) == []
     assert text(tree, "b.urdf") == ROBOT
@@ -726,7 +728,7 @@ def test_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     (tmp_path / "lab6.zip").write_bytes(
         make_zip({f"{n}.tar.gz": inner for n in range(9)}, compression=zipfile.ZIP_STORED)
     )
-    with processor_time(4):
+    with limited_work(50_000):
         tree = open_tree(tmp_path / "lab6.zip")
     assert tree is not None
     assert sum(path.endswith("a.bin") for path in tree.files) == 2
@@ -773,7 +775,7 @@ def test_symlink_cycles_in_folders(tmp_path: Path) -> None:
         (tmp_path / f"d{n}/a.urdf").write_bytes(b"")
         for m in range(30):
             (tmp_path / f"d{n}/l{m}").symlink_to(f"../d{m}")
-    with processor_time(2):
+    with limited_work(4_000_000):
         tree = read_folder(tmp_path)
     assert {f"d{n}/a.urdf" for n in range(30)} <= set(tree.files)
     assert len(tree.files) <= 60
@@ -856,7 +858,7 @@ def test_deep_folders(name: str, tmp_path: Path) -> None:
     finally:
         os.close(handle)
     try:
-        with processor_time(4):
+        with limited_work(40_000_000):
             tree = read_folder(tmp_path)
     finally:
         remove_deep(tmp_path, name)

@@ -1,10 +1,10 @@
-"""The search for hints ends: large and hostile robots cost a bounded number of steps, and no more time than those."""
+"""The search for hints ends: large and hostile robots cost a bounded number of steps, and no more work than those."""
 
 import pytest
 
 from grader.submission.opening import read_submission
 from tests.hints.trials import BASES, graded, search_for
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 REFERENCE = BASES["reference"].text
 MANY = 150
@@ -47,10 +47,10 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_large_robot_is_searched_in_bounded_time(name: str) -> None:
-    """Hundreds of anything that a search looks at take little more than a second."""
+def test_a_large_robot_is_searched_with_bounded_work(name: str) -> None:
+    """Hundreds of anything that a search looks at take a bounded number of lines of Python."""
     submission = read_submission(HOSTILE[name].encode(), identity="student", path="my_robot.urdf")
     results = graded(submission)
     assert any(result.is_lost for result in results.values())
-    with processor_time(1.5):
+    with limited_work(40_000_000):
         search_for(submission, results)

@@ -10,7 +10,7 @@ from grader.package import cmake as reader
 from grader.package.cmake import CMake
 from tests.checks.submissions import Submitted
 from tests.command_line import HANG_TIMEOUT
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 FILES = ("CMakeLists.txt", "meshes/hull.stl", "meshes/fine/hull.stl", "urdf/arm.urdf", "launch/arm.launch.py")
 MESHES = {"share/arm/meshes/hull.stl": "meshes/hull.stl", "share/arm/meshes/fine/hull.stl": "meshes/fine/hull.stl"}
@@ -96,7 +96,7 @@ def test_odd_texts(text: str) -> None:
 
 def test_a_long_text_takes_little_time() -> None:
     """Comments that do not end are read once; a file that is too large is not read."""
-    with processor_time(5.0):
+    with limited_work(5_000):
         assert read_cmake("#[[\n" * 30_000).installed == {}
         assert read_cmake("#[[" * 30_000 + '"(' * 9_000).installed == {}
     assert not read_cmake("#" * 200_000).is_certain

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
 from tests.package.launch_samples import FOLDER, INNER, SAMPLES, LaunchSummary, read, summarize, summarize_sample
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 NO_FILE = (
     "wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
@@ -593,7 +593,7 @@ def is_well_formed(launch: Launch) -> bool:
 @pytest.mark.parametrize(("name", "data"), [pytest.param(*name, id=name[0]) for name in hostile()])
 def test_hostile_files(name: str, data: bytes) -> None:
     """Whatever a launch file contains, nothing raises or takes long."""
-    with processor_time(2):
+    with limited_work(30_000_000):
         launch = read(data, name)
         assert is_well_formed(launch)
         summarize(launch)
@@ -619,7 +619,7 @@ def test_two_files_that_include_each_other() -> None:
 def test_many_includes() -> None:
     """Files that include the next one twice are evaluated up to a bound, which is reported."""
     others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
-    with processor_time(2):
+    with limited_work(50_000):
         launch = read(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
     assert "it includes more than 10 launch files" in {unknown.message for unknown in launch.unknown}
     assert len(launch.nodes) < 50
@@ -660,7 +660,7 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
     for at_location, length, piece in changes:
         at = at_location % (len(data) + 1)
         data = data[:at] + piece + data[at + length :]
-    with processor_time(2):
+    with limited_work(30_000):
         assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
 
 
@@ -671,5 +671,5 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
 )
 def test_random_files(data: bytes, ending: str) -> None:
     """Any bytes are evaluated without an exception."""
-    with processor_time(2):
+    with limited_work(2_000):
         assert is_well_formed(read(data, f"x.launch{ending}"))

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import Node, read_yaml
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
 SAVED = """\
@@ -206,7 +206,7 @@ def test_the_last_of_equal_keys_counts() -> None:
 )
 def test_endless_groups(text: str) -> None:
     """Groups in themselves, and thousands of displays, are read up to a bound."""
-    with processor_time(2):
+    with limited_work(9_000_000):
         found = read(text)
         assert len(found.displays) <= 500
         assert isinstance(found.problems, tuple)

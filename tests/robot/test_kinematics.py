@@ -4,7 +4,6 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from math import cos, hypot, inf, isfinite, pi, sin
-from time import process_time
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 Z: Vector = (0.0, 0.0, 1.0)
 
@@ -498,26 +497,11 @@ def chain_of(count: int) -> bytes:
     return f'<robot name="chain">{links}{joints}</robot>'.encode()
 
 
-def seconds_for(count: int) -> float:
-    """Return the processor time for reading and solving a chain, the best of three."""
-    data = chain_of(count)
-    times = []
-    for _ in range(3):
-        start = process_time()
-        read = read_urdf(data)
-        assert read.robot is not None
-        configuration = Configuration(read.robot)
-        for link in read.robot.links:
-            configuration.pose(link.name)
-        times.append(process_time() - start)
-    return min(times)
-
-
 def test_a_chain_of_20000_links() -> None:
-    """It is read and solved in less than 5 s, and without recursion, whose depth Python limits."""
+    """It is read and solved in linear time, and without recursion, whose depth Python limits."""
     assert sys.getrecursionlimit() < 20_000
     data = chain_of(20_000)
-    with processor_time(5.0):
+    with limited_work(20_000_000):
         read = read_urdf(data)
         assert read.verdict == "clean"
         assert read.robot is not None
@@ -527,11 +511,6 @@ def test_a_chain_of_20000_links() -> None:
         assert last.rotation == pytest.approx(rotation_about((1.0, 0.0, 0.0), 0.5), abs=1e-9)
         assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(-19.999, abs=1e-9)
         assert len(configuration.between("l19999", "l1")) == 19_998
-
-
-def test_time_grows_with_the_number_of_links() -> None:
-    """A link in a chain of 10,000 takes less than four times as long as one in a chain of 1,000."""
-    assert seconds_for(10_000) / 10 < 4 * seconds_for(1_000)
 
 
 def ask_all(links: int, joints: list[Joint]) -> None:
@@ -546,7 +525,7 @@ def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
     """Computing the poses of 6,000 links on a loop does not walk the loop 6,000 times."""
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}") for index in range(count)]
-    with processor_time(1.0):
+    with limited_work(2_000_000):
         ask_all(count, joints)
 
 
@@ -555,7 +534,7 @@ def test_links_below_a_defect_are_refused_in_linear_time() -> None:
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
     joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))
-    with processor_time(1.0):
+    with limited_work(2_000_000):
         ask_all(count, joints)
 
 

@@ -12,7 +12,7 @@ from grader.files.tree import File, make_tree
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import Code, parse
 from tests.package.my_robot import FILES, SAMPLES
-from tests.processor_time import processor_time
+from tests.work import limited_work
 
 
 def read_nothing(limit: int, *, first: bool = False) -> bytes:
@@ -25,8 +25,8 @@ _TEXTS = [path.read_text(encoding="utf-8") for path in SAMPLES.values()]
 
 
 def evaluated(text: str | bytes) -> Setup:
-    """Return the evaluation of a setup.py, which must take little time."""
-    with processor_time(2):
+    """Return the evaluation of a setup.py, which must take little work."""
+    with limited_work(60_000_000):
         return read_setup(parse(text.encode() if isinstance(text, str) else text, "setup.py"), _TREE)
 
 

@@ -7,6 +7,7 @@ from functools import cache
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
+from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points, graded_on
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
@@ -15,7 +16,8 @@ from grader.grading.validation import TOTAL
 from grader.text import format_points, shell_quoted
 
 _STATES = """
-SELECT student.id, student.key, student.name, result.statuses, result.verdict, result.digest, result.rubric, result.version
+SELECT student.id, student.key, student.name, result.statuses, result.verdict, result.digest, result.rubric, result.version,
+    submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
 FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
     (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?)
 LEFT JOIN result ON result.id = submission.result ORDER BY student.key
@@ -54,9 +56,9 @@ class PointsChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """The changes for one student, and their causes. A total without late penalty is None if there was none.
+    """The changes for one student, and their causes. A grade that counts is None if there was none.
 
-    `rubric` are the changes of the rubric that concern the criteria in `steps`.
+    `is_regraded` is False if only points of criteria changed, and the grade did not. `rubric` are the changes of the rubric that concern the criteria in `steps`.
     """
 
     key: str
@@ -66,6 +68,7 @@ class Change:
     why: tuple[str, ...]
     name: str = ""
     rubric: tuple[RubricChange, ...] = ()
+    is_regraded: bool = True
 
 
 class _StudentState(NamedTuple):
@@ -80,6 +83,20 @@ class _StudentState(NamedTuple):
     points: Mapping[str, Decimal | None]
     parts: tuple[str, ...]
     marks: Mapping[str, Decimal | None]
+    times: SubmissionTimes = SubmissionTimes()
+    deadline: str = ""
+
+    @property
+    def late(self) -> Decimal:
+        """The late penalty, 0 or less; a final mark and an excuse have none."""
+        if self.rubric is None or TOTAL in self.marks:
+            return Decimal(0)
+        return lateness(self.rubric, self.times, self.score, read_time(self.deadline) if self.deadline else None).points
+
+    @property
+    def score(self) -> Decimal:
+        """The points of all criteria."""
+        return sum((points for points in self.points.values() if points is not None), Decimal(0))
 
     @property
     def final(self) -> Decimal | None:
@@ -91,8 +108,8 @@ class _StudentState(NamedTuple):
 
     @property
     def total(self) -> Decimal | None:
-        score = sum((points for points in self.points.values() if points is not None), Decimal(0))
-        return self.final if self.final is not None or not self.verdict else score
+        """The grade that counts: the final mark, else the points with the late penalty."""
+        return self.final if self.final is not None or not self.verdict else self.score + self.late
 
     @property
     def uncounted(self) -> set[str]:
@@ -148,9 +165,11 @@ def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
     marks: dict[int, dict[str, Decimal | None]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
         marks.setdefault(student, {})[criterion] = None if units is None else Decimal(units) / UNITS_PER_POINT
-    rubric_of = cache(snapshot.book.rubric)
+    rubric_of, deadline = cache(snapshot.book.rubric), snapshot.newest_run.deadline
     states: dict[str, _StudentState] = {}
-    for student, key, name, statuses, verdict, digest, sha256, version in snapshot.book.rows(_STATES, snapshot.run):
+    for student, key, name, statuses, verdict, digest, sha256, version, *times in snapshot.book.rows(
+        _STATES, snapshot.run
+    ):
         own = marks.get(student, {})
         if verdict is None:
             states[key] = _NOBODY._replace(name=name, marks=own)
@@ -158,7 +177,9 @@ def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
         rubric = rubric_of(sha256)
         points = criterion_points(rubric, statuses, {name: given for name, given in own.items() if given is not None})
         parts = graded_on(rubric, statuses)
-        states[key] = _StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own)
+        is_late, submitted, due, extension, days = times
+        found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days)
+        states[key] = _StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own, found, deadline)
     return states
 
 
@@ -176,7 +197,8 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         if old.points.get(name) != new.points.get(name)
     )
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
-    if not (steps or final or removed) and old.verdict == new.verdict:
+    late = (f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}",) if old.late != new.late else ()
+    if not (steps or final or removed or late) and old.verdict == new.verdict:
         return None
     is_same_rubric = old.sha256 == new.sha256
     reasons = (
@@ -187,10 +209,12 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         (_has_other_marks(old, new), "manual marks changed"),
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
-    why = (*(reason for holds, reason in reasons if holds), *final)
+    why = (*(reason for holds, reason in reasons if holds), *late, *final)
     why += tuple(f"the manual mark of {name} no longer counts: the rubric no longer has it" for name in removed)
     names = (*(step.criterion for step in steps), *removed)
-    return Change(*whole, steps, why, name, () if is_same_rubric else comparison(old.sha256, new.sha256, names))
+    is_regraded = old.total != new.total or bool(final or removed) or old.verdict != new.verdict
+    found = () if is_same_rubric else comparison(old.sha256, new.sha256, names or ("",) * bool(late))
+    return Change(*whole, steps, why, name, found, is_regraded)
 
 
 def _has_other_marks(old: _StudentState, new: _StudentState) -> bool:

@@ -1,10 +1,12 @@
 """The gradebook: one SQLite file with the results of the checks and the manual marks, which no run changes."""
 
+import os
 import sqlite3
 import time
 import zlib
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +23,7 @@ from grader.grading.answers import with_answers
 from grader.grading.rubric import Rubric, read_rubric
 from grader.text import printable_path, shell_quoted
 
+_PRIMARY = 0xFF  # the bits of an error code without its details
 _BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transaction
 
 
@@ -56,12 +59,34 @@ class Gradebook(AbstractContextManager["Gradebook"]):
                 f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with `mkdir -p {shell_quoted(folder)}`)"
             )
         with self.input_errors():
-            self.connection = sqlite3.connect(path, timeout=_BUSY_TIMEOUT, isolation_level=None)
+            self.connection = self._connect(create)
             try:
-                _prepare(self.connection, self.shown)
+                _prepare(self.connection, self.shown, self.read_only)
             except BaseException:
                 self.connection.close()
                 raise
+
+    def _connect(self, create: bool) -> sqlite3.Connection:
+        if create or not self.read_only:
+            return sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT, isolation_level=None)
+        # In a folder without write permission SQLite reads a file with a write-ahead log only if nothing can write to it.
+        is_static = not Path(f"{self.path}-wal").exists()
+        uri = f"{self.path.absolute().as_uri()}?mode=ro{'&immutable=1' * is_static}"
+        return sqlite3.connect(uri, timeout=_BUSY_TIMEOUT, isolation_level=None, uri=True)
+
+    @cached_property
+    def read_only(self) -> str:
+        """Why nothing can be written; empty if it can."""
+        effective = os.access in os.supports_effective_ids
+        places = (place for place in (self.path, self.path.parent) if place.exists())
+        refused = [place for place in places if not os.access(place, os.W_OK, effective_ids=effective)]
+        names = " and ".join(printable_path(place) for place in refused)
+        return f"there is no write permission for {names} (`chmod u+w` gives it to the owner)" if refused else ""
+
+    def check_writable(self) -> None:
+        """Raise InputError if marks cannot be saved."""
+        if self.read_only:
+            raise InputError(f"marks cannot be saved in the gradebook {self.shown}: {self.read_only}")
 
     def __exit__(self, *_: object) -> None:
         self.close()
@@ -77,6 +102,9 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         try:
             yield
         except sqlite3.DatabaseError as error:
+            is_refused = error.sqlite_errorcode & _PRIMARY in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
+            if is_refused and self.read_only:
+                raise InputError(f"the gradebook {self.shown}: {self.read_only}") from None
             is_other_file = error.sqlite_errorcode in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
             advice = "; name another file" if is_other_file else ""
             raise InputError(f"the gradebook {self.shown}: {error}{advice}") from None
@@ -150,7 +178,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         return zlib.decompress(record).decode(), str(template)
 
 
-def _prepare(connection: sqlite3.Connection, shown: str) -> None:
+def _prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
     """Configure a connection and create or upgrade the tables; raises InputError for a file of another kind or version."""
     connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
     queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
@@ -160,6 +188,10 @@ def _prepare(connection: sqlite3.Connection, shown: str) -> None:
         raise InputError(f"{shown} is a database, but not a gradebook: name another file")
     if version > len(STEPS):
         raise InputError(f"{shown} was made by a newer grader: install that version, or name another file")
+    if read_only:
+        if version < len(STEPS):
+            raise InputError(f"{shown} was made by an earlier grader and must be converted: {read_only}")
+        return
     _enable_wal(connection)
     connection.execute("PRAGMA synchronous = NORMAL")
     connection.execute("PRAGMA foreign_keys = ON")

@@ -38,7 +38,9 @@ class CanvasGroups:
 
         `position` is the student that all other clues identify.
         """
-        claims = [claim for reading in student.readings if (claim := self._read(*reading, position))]
+        # A user's name may end in the id of a member: of an ambiguous name, only the last number is certainly no part of a name.
+        readings = student.readings if student.canvas else student.readings[-1:]
+        claims = [claim for reading in readings if (claim := self._read(*reading, position))]
         numbers = {number for _, number in student.readings}
         if claims and len(numbers) < len(student.readings):  # files of two names, which no download of Canvas has
             return claims[0]._replace(doubt="has files with different names", owner=self._by_number.get(min(numbers)))

@@ -55,6 +55,11 @@ class Intake:
         return len(self.found) if self.roster is None else len(self.placed)
 
     @property
+    def matched(self) -> int:
+        """The number of submissions that belong to students on the roster."""
+        return len({placed.number for placed in self.placed if placed.owner != _UNMATCHED})
+
+    @property
     def assignments(self) -> frozenset[str]:
         """The names of the assignment."""
         return self.found.assignments | (self.roster.assignments if self.roster is not None else frozenset())
@@ -96,8 +101,11 @@ def assign(
     such a one none does, and the student is contested. An unmatched submission that is named like a group counts for each member
     without another submission, unless its folder `holds_students`: then the group is a section.
     """
-    notes = (_ANONYMOUS,) if submissions.is_anonymous else ()
+    notes = (*submissions.notes, *((_ANONYMOUS,) if submissions.is_anonymous else ()))
     if roster is None:
+        folders = filter(is_course_folder, map(submissions.path, range(len(submissions))))
+        if names := [printable_path(folder) for folder in folders]:
+            notes += (f"{enumerated(names, _MAX_NAMED)} may be a template of the course: graded like a student's",)
         return Intake(layout, ignored, submissions, contested=submissions.contested, notes=notes)
     entries = roster.entries
     matches = _match(submissions, roster)

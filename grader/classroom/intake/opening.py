@@ -4,13 +4,14 @@ import os
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
 from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.errors import InputError
 from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
 from grader.files.ignore_rules import ignored_part, is_generated
+from grader.files.members import ARCHIVE_ERRORS
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start
 from grader.files.tree import Tree, make_tree
@@ -71,6 +72,24 @@ def open_submission(
     files = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _class_zip(root, file_stamp(root)).files(files, name) if is_zip(root) else _side_by_side(root, files, name)
     return OpenedSubmission(name, name, _digest_of_tree(name, tree, limit), None, tree, limit)
+
+
+def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
+    """Return the hash of files that cannot be opened as a submission; empty if their bytes cannot be read either."""
+    digest = sha256()
+    try:
+        for path in paths:
+            digest.update(repr(path.rpartition("/")[2]).encode())  # which the reason names
+            with _class_zip(root, file_stamp(root)).raw(path) if is_zip(root) else _raw(root, path) as file:
+                for _ in range(_MAX_HASHED // _CHUNK):
+                    digest.update(file.read(_CHUNK))
+    except (InputError, *ARCHIVE_ERRORS):
+        return ""
+    return digest.hexdigest()
+
+
+def _raw(root: str, path: str) -> IO[bytes]:
+    return os.fdopen(open_regular(Path(root, path), top=root), "rb")
 
 
 def _open_on_disk(root: str, path: str, limit: int) -> OpenedSubmission:

@@ -8,6 +8,8 @@ from typing import NamedTuple
 from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, Clues, People, claims_of, clues_of, plain_group
 from grader.classroom.students import ClassSubmission, Student
 
+_MAX_WAYS = 4
+
 
 @dataclass(frozen=True, slots=True)
 class RosterEntry:
@@ -121,6 +123,9 @@ class Roster:
         A submission in a team's folder can only be of a student in that group: anybody in the team may have named it.
         """
         claims = claims_of(student)
+        if student.readings and not student.canvas:
+            ways = " or ".join(f"of {name} with the id {number}" for name, number in student.readings[:_MAX_WAYS])
+            return RosterMatch(None, doubt=f"may be {ways}", several=self._people.find(claims, (Clue.CANVAS,)).people)
         group = self.groups.get(plain_group(student.team), ()) if student.team else None
         found = self._people.find(claims, OF_TEAM_FOLDERS if student.team else OF_FOLDERS, group)
         if found.only is not None:

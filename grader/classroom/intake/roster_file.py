@@ -18,15 +18,15 @@ from grader.text import counted, first_lines, printable_path
 
 _ALIASES = {
     "id": "id userid key",
-    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber matrikelnummer",
+    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber idnummer númerodeid matriculationnumber matrikelnummer",
     "login": "login loginid username user sisloginid netid account",
     "github": "github githubusername githublogin githubuser githubid githubaccount",
     "name": (
         "name fullname student studentname sortablename vollständigername nomcomplet nombrecompleto nomecompleto volledigenaam"
     ),
-    "first": "first firstname firstnames givenname givennames forename vorname",
-    "last": "last lastname surname familyname nachname",
-    "email": "email emailaddress mail sisemail emailadresse",
+    "first": "first firstname firstnames givenname givennames forename vorname nombre",
+    "last": "last lastname surname familyname nachname apellidos",
+    "email": "email emailaddress mail sisemail emailadresse direccióndecorreo correoelectrónico",
     "canvas": "canvas canvasid canvasuserid",
     "moodle": "moodle moodleid participantid participant",
     "identifier": "identifier identifiant identificador identificativo identificatie",

@@ -7,9 +7,12 @@ from json import dumps, loads
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.intake.intake import Intake
 from grader.classroom.run.stored_students import Identities
+from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.text import counted
 
 _MAX_NAMED = 3
+_MIN_MATCHED = 10  # one in so many submissions
 
 
 def check_same_class(book: Gradebook, intake: Intake, identities: Identities, rubric_id: str) -> None:
@@ -22,13 +25,29 @@ def check_same_class(book: Gradebook, intake: Intake, identities: Identities, ru
         theirs, ours = ({name for name in names if name.startswith(lms)} for names in (stored, intake.assignments))
         if theirs and ours and theirs.isdisjoint(ours):
             raise _refusal(book, f"it was graded for {_first(sorted(theirs))}, not {_first(sorted(ours))}")
-    for lms in ("canvas", "moodle"):
-        groups = (book.students(), intake.named_students())
-        theirs, ours = ({getattr(student, lms) for student in students} - {""} for students in groups)
-        if theirs and ours and theirs.isdisjoint(ours):
-            raise _refusal(book, f"the {lms.title()} ids of its students are not those of this class")
+    known, named = _numbers(book.students()), _numbers(intake.named_students())
+    if known and named and known.isdisjoint(named):
+        named |= _numbers(submission.student for submission in intake.submissions())  # with those of the roster
+        if known.isdisjoint(named):
+            names = " and ".join(sorted({lms.title() for lms, _ in known}))
+            raise _refusal(book, f"the {names} ids of its students are not those of this class")
     if next(book.students(), None) is not None and not _has_common_student(book, intake, identities):
         raise _refusal(book, "no student of this class is in it")
+
+
+def check_roster(intake: Intake) -> None:
+    """Raise InputError if the roster matches fewer than one in ten submissions."""
+    total = intake.matched + len(intake.unmatched)
+    if intake.roster is not None and intake.matched * _MIN_MATCHED < total:
+        raise InputError(
+            f"the roster matches {intake.matched} of {counted(total, 'submission')}: is this the roster of this class?"
+            " Name another one, or use --add"
+        )
+
+
+def _numbers(students: Iterable[Student]) -> set[tuple[str, str]]:
+    """Return the LMS ids of students: an id of one LMS never equals one of another."""
+    return {(lms, number) for student in students for lms in ("canvas", "moodle") if (number := getattr(student, lms))}
 
 
 def assignments_text(assignments: Iterable[str]) -> str:

@@ -21,7 +21,7 @@ from grader.classroom.gradebook.result import (
     Verdict,
 )
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.opening import open_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
@@ -83,6 +83,9 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
             return failed(rubric, context.parts, task, "unreadable", several_students(submission), digest, seen)
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
+        digest = digest or unreadable_digest(context.root, task.paths)
+        if digest and digest == task.graded:
+            return GradingResult(task.key, "unchanged", digest, seen)
         return failed(rubric, context.parts, task, "unreadable", str(error), digest, seen)
     except MemoryError:
         if not task.no_documents:
@@ -147,7 +150,7 @@ def failed(
     criteria = [criterion for criterion in rubric.criteria if criterion.part in chosen]
     results = tuple(Result(criterion, Outcome(status, message)) for criterion in criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
-    report = Report(GradedSubmission(name), rubric, chosen, results)
+    report = Report(GradedSubmission(name, unread=reason if verdict == "unreadable" else ""), rubric, chosen, results)
     return result_of(report, task, verdict, reason, digest, seen)
 
 

@@ -165,22 +165,52 @@ def test_an_anonymous_download_matches_no_student(tmp_path: Path) -> None:
     assert len(read_class(tmp_path, roster).contested) == 2
 
 
-def test_a_roster_settles_names_that_end_in_a_number(tmp_path: Path) -> None:
-    """If only one of the numbers is a student's, it is the user id; if both are, the file may be either's."""
-    files = ("redash_7_101_5_lab6.zip", "blueash_7_LATE_102_6_lab6-1.zip", "blueash_7_LATE_102_4_lab6.zip")
-    students = [Student("a", "Ash, Red", canvas="101"), Student("b", "Ash, Blue", canvas="102")]
-    intake = read_class(lay_out(tmp_path, *files), Roster(map(RosterEntry, students)))
-    assert assigned(intake) == {"a": files[:1], "b": files[1:2]}
-    red, blue = intake.submissions()
-    assert (red.is_late, red.names, blue.is_late, blue.names, blue.attempt) == (
-        False,
-        ("lab6.zip",),
-        True,
-        ("lab6-1.zip",),
-        2,
+def test_a_name_that_ends_in_a_number(tmp_path: Path) -> None:
+    """It may be a name and another number, unless the number of that upload is far below the others."""
+    late = "blueash_7_LATE_102_200006_lab6-1.zip", "blueash_7_LATE_102_200004_lab6.zip"
+    files = ("redash_7_101_200007_lab6.zip", *late, "ashann_103_200008_5_robot.urdf")
+    students = [
+        Student("a", "Ash, Red", canvas="101"), Student("b", "Ash, Blue", canvas="102"),
+        Student("c", "Ash, Ann", canvas="103"), Student("d", canvas="7"),
+    ]  # fmt: skip
+    for count in (3, 4):
+        intake = read_class(lay_out(tmp_path / "class", *files), Roster(map(RosterEntry, students[:count])))
+        assert assigned(intake) == {"a": files[:1], "b": late[:1], "c": files[3:]}
+    red, blue, ann = intake.submissions()
+    assert (red.is_late, red.names, ann.names) == (False, ("lab6.zip",), ("5_robot.urdf",))
+    assert (blue.is_late, blue.names, blue.attempt) == (True, ("lab6-1.zip",), 2)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_roster_settles_no_ambiguous_name(tmp_path: Path, count: int) -> None:
+    """Even if it has only one of the numbers: the other student may be missing on it. Nobody counts as absent."""
+    roster = Roster(map(RosterEntry, [Student("a", "Ash, Red", canvas="101"), Student("b", canvas="7")][:count]))
+    intake = read_class(lay_out(tmp_path, "redash_7_101_5_lab6.zip"), roster, layout="canvas")
+    assert assigned(intake) == {"redash_7_101": ("redash_7_101_5_lab6.zip",)}
+    assert intake.notes == (
+        "redash_7_101 may be of redash with the id 7 or of redash_7 with the id 101: left unassigned",
     )
-    seven = Roster(map(RosterEntry, (*students, Student("c", canvas="7"))))
-    assert not set(assigned(read_class(tmp_path, seven, layout="canvas"))) & {"a", "c"}
+    assert (len(intake.contested), intake.absent) == (count, ())
+
+
+@pytest.mark.parametrize(
+    ("names", "keys"),
+    [
+        (("bond_007_102_500_a.zip",), ["bond_007_102"]),  # no id begins with 0
+        (("ashann_101_500_A.b_7_8_c.zip",), ["ashann_101"]),  # Canvas writes no point into a name
+        (("ashann_101_500_a.zip", "mallory_101_102_501_a.zip"), ["ashann_101", "mallory_101_102"]),  # 101 is ashann
+    ],
+)
+def test_impossible_readings(tmp_path: Path, names: tuple[str, ...], keys: list[str]) -> None:
+    """A number that can be no user id in this place leaves one reading."""
+    students = list(read_class(lay_out(tmp_path, *names), layout="canvas").submissions())
+    assert [(one.student.key, len(one.student.readings)) for one in students] == [(key, 1) for key in keys]
+
+
+def test_a_text_entry_can_be_ambiguous(tmp_path: Path) -> None:
+    """The number before it is a user id, or that of an uploaded file with this name."""
+    (found,) = read_class(lay_out(tmp_path, "ashann_101_102_text.html"), layout="canvas").submissions()
+    assert (found.student.canvas, len(found.student.readings)) == ("", 2)
 
 
 def test_a_student_who_is_called_like_an_anonymous_one(tmp_path: Path) -> None:

@@ -135,7 +135,7 @@ def _pack(folder: Path, target: Path) -> Path:
 def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     """A zip as an LMS provides it is graded without unpacking: the reports are the same, and a second run grades nothing.
 
-    Nor does a run over the folder, apart from submissions that could not be opened, which have no digest.
+    Nor does a run over the folder, apart from submissions whose bytes cannot be read.
     """
     folder = mixed_class(tmp_path / "class", 120, layout, for_zip=True)
     packed = _pack(folder, tmp_path / "class.zip")
@@ -295,7 +295,7 @@ def test_lateness_is_updated_without_grading(graded: Path, tmp_path: Path) -> No
     before = results(graded)
     for late in ("yes", "no"):
         (tmp_path / "roster.csv").write_text(f"id,late\n{path.stem},{late}\n")
-        assert again(graded, "--roster", str(tmp_path / "roster.csv")) == f"0 graded, {SIZE} unchanged"
+        assert again(graded, "--roster", str(tmp_path / "roster.csv"), "--add") == f"0 graded, {SIZE} unchanged"
         assert rows(tmp_path / "lab6.db", "SELECT is_late FROM grade WHERE key = ?", path.stem) == [(late == "yes",)]
     assert results(graded) == before
 

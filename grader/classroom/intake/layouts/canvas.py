@@ -10,7 +10,7 @@ If groups are graded as a whole, there is one submission for each group, with th
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
@@ -19,28 +19,28 @@ from grader.classroom.intake.names import ending_of
 from grader.classroom.matching import word_characters
 from grader.classroom.students import ClassSubmission, Student
 
-_NAME = re.compile(
-    r"(?:(?P<late_anon>LATE_)?anon_(?P<anon>[1-9A-HJ-NP-Za-km-z]{5})|(?P<name>.*?)(?P<late>_LATE)?_(?P<user>[0-9]{1,20}))"
-    r"_(?:(?P<attachment>[0-9]{1,20})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))",
-    re.DOTALL,
-)
-_MAYBE_USER = re.compile(r"_([0-9]{1,20})(?=_[0-9]{1,20}_.)")
+_ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
+_REST = rf"_(?:(?P<attachment>{_ID})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))"
+_ANONYMOUS = re.compile(r"(?P<late>LATE_)?anon_(?P<user>[1-9A-HJ-NP-Za-km-z]{5})" + _REST, re.DOTALL)
+_USER = re.compile(rf"(?P<late>_LATE)?_(?P<user>{_ID})(?={_REST}\Z)", re.DOTALL)
+# Canvas numbers the uploads of all courses in order: a number far below the others' is part of a name that a student chose.
+_MAX_GROWTH = 1000
 _REPEATED = re.compile(
     r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
 )
 
 
 class _CanvasFile(NamedTuple):
-    """One file of a download: whose it is, and the student's own name of it."""
+    """One file of a download: whose it is, and the student's own name of it; `readings` are the names and user ids it may mean."""
 
     path: str
     name: str
     user: str
-    readings: tuple[tuple[str, str], ...]
     is_anonymous: bool
     is_late: bool
     attachment: int
     file: str
+    readings: tuple[tuple[str, str], ...] = ()
 
     @property
     def is_ambiguous(self) -> bool:
@@ -54,7 +54,7 @@ def is_layout(children: Children) -> bool:
     Canvas writes names in lower case, so a name with capitals does not count.
     """
     names = children.folders + children.files
-    fitting = {name for name in names if (file := _parsed(name)) and not any(map(str.isupper, file.name))}
+    fitting = {name for name in names if any(not any(map(str.isupper, file.name)) for file in _readings(name))}
     possible = children.folders + [name for name in children.files if ending_of(name)]
     return bool(fitting) and len(fitting) >= 3 * sum(name not in fitting for name in possible)
 
@@ -67,93 +67,85 @@ def is_class(children: Children, name: str) -> bool:
 def count_certain(children: Children) -> int:
     """Return how many users have archives, URDFs or folders: other files may be the pictures of one student."""
     names = children.folders + [name for name in children.files if ending_of(name)]
-    return len({(file.is_anonymous, file.user) for name in names if (file := _parsed(name))})
+    return len({(file.is_anonymous, file.user) for name in names for file in _readings(name)[-1:]})
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of a download, one for each user. Folders count as files that someone has unpacked."""
     start, ignored = folder.start, folder.ignored
     by_user: dict[tuple[bool, str], list[_CanvasFile]] = defaultdict(list)
-    known = {entry.student.canvas for entry in folder.roster.entries} if folder.roster is not None else set[str]()
-    for name in (*folder.children.folders, *folder.children.files):
-        file = _parsed(name)
-        if file is None:
-            ignored.add(start + name, "is not named like a submission in Canvas")
-        else:
-            file = _settled(file, known)
+    found = {name: _readings(name) for name in (*folder.children.folders, *folder.children.files)}
+    clear = [readings[0] for readings in found.values() if len(readings) == 1]
+    names = {file.user: file.name for file in clear}
+    first = min((file.attachment for file in clear if file.attachment), default=0)
+    for name, readings in found.items():
+        if readings:
+            file = _settled(readings, names, first)
             by_user[file.is_anonymous, file.user].append(file)
+        else:
+            ignored.add(start + name, "is not named like a submission in Canvas")
     ignored.add_all(start, folder.children.refused)
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
     contested = dict.fromkeys(
         _student(file, file.readings) for user, files in by_user.items() if not certain[user] for file in files
     )
-    found = (_submission(files, start) for files in certain.values() if files)
+    submissions = (_submission(files, start) for files in certain.values() if files)
     is_anonymous = all(anonymous for anonymous, _ in by_user)  # a student may be called anon_ab3xy
-    return Submissions(found, contested=tuple(contested), is_anonymous=is_anonymous)
+    return Submissions(submissions, contested=tuple(contested), is_anonymous=is_anonymous)
 
 
 def _certain(files: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:
-    """Return the files of a user without those that may be another user's.
+    """Return the files of a user without those that may be another user's, if the user has others.
 
-    Users choose their names, and one may end in a number: `mallory_77` with the id 99 has a file `mallory_77_99_...`. Canvas writes
-    one user's name in one way, so a name that can be read in two ways counts only if a file with an unambiguous name has it too.
+    Users choose their names, and one may end in a number: `mallory_77` with the id 99 has a file `mallory_77_99_...`.
     """
-    if len({file.name for file in files}) == 1:
-        return files
-    names = {file.name for file in files if not file.is_ambiguous}
-    for file in files:
-        if file.name not in names:
+    clear = [file for file in files if not file.is_ambiguous]
+    for file in files if clear else ():
+        if file.is_ambiguous:
             reason = f"may belong to another user than {file.user}: its name can be read in two ways"
             ignored.add(start + file.path, reason)
-    return [file for file in files if file.name in names]
+    return clear or files
 
 
-def _parsed(name: str) -> _CanvasFile | None:
-    if name.count("_") < 2:
-        return None
-    found = _NAME.fullmatch(name)
-    plain = (found["name"] or "").replace("-", "") if found is not None else ""
-    if found is None or word_characters(plain) != plain:
-        return None
-    anonymous = found["anon"]
-    return _CanvasFile(
-        name,
-        "anon" if anonymous else found["name"],
-        anonymous or found["user"],
-        () if anonymous else _readings(name) or ((found["name"], found["user"]),),
-        anonymous is not None,
-        bool(found["late_anon"] or found["late"]),
-        int(found["attachment"] or 0),
-        found["file"] or f"{found['page']}_entry.html",
+def _readings(path: str) -> list[_CanvasFile]:
+    """Return how a file name can be read: as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
+    if found := _ANONYMOUS.fullmatch(path):
+        return [_read(path, "anon", found)._replace(is_anonymous=True)]
+    return [
+        _read(path, name, found)
+        for found in _USER.finditer(path)
+        if word_characters(plain := (name := path[: found.start()]).replace("-", "")) == plain
+    ]
+
+
+def _read(path: str, name: str, found: re.Match[str]) -> _CanvasFile:
+    own = found["file"] or f"{found['page']}_entry.html"
+    return _CanvasFile(path, name, found["user"], False, bool(found["late"]), int(found["attachment"] or 0), own)
+
+
+def _settled(readings: Sequence[_CanvasFile], names: Mapping[str, str], first: int) -> _CanvasFile:
+    """Return a file in its last possible reading: its number is no part of a name that a user chose.
+
+    Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. They cannot rule out the
+    last reading, because its user may have changed the name between two downloads. `first` is the smallest number of an upload in
+    these. A roster rules nothing out, because a student may be missing on it.
+    """
+    possible = [
+        file
+        for file in readings
+        if (file is readings[-1] or names.get(file.user, file.name) == file.name)
+        and not 0 < file.attachment * _MAX_GROWTH < first
+    ] or readings
+    return possible[-1]._replace(
+        readings=() if possible[-1].is_anonymous else tuple((file.name, file.user) for file in possible)
     )
-
-
-def _settled(file: _CanvasFile, known: set[str]) -> _CanvasFile:
-    """Return a file as it must be read if only one of the numbers in its name is the user id of a student on the roster."""
-    fitting = [reading for reading in file.readings if reading[1] in known]
-    if not file.is_ambiguous or len(fitting) != 1:
-        return file
-    ((name, user),) = fitting
-    is_late = file.path.startswith(f"{name}_LATE_{user}_")
-    rest = file.path.removeprefix(f"{name}{'_LATE' if is_late else ''}_{user}_")
-    attachment, _, own = rest.partition("_")
-    return file._replace(
-        name=name, user=user, readings=((name, user),), is_late=is_late, attachment=int(attachment), file=own
-    )
-
-
-def _readings(name: str) -> tuple[tuple[str, str], ...]:
-    """Return each name and user id that a file name can be read as: team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    return tuple((name[: found.start()].removesuffix("_LATE"), found[1]) for found in _MAYBE_USER.finditer(name))
 
 
 def _submission(files: Sequence[_CanvasFile], start: str) -> ClassSubmission:
     by_file = _attempts_by_file(files)
     last = [attempts[-1] for attempts in by_file]
-    first = min(last, key=lambda file: (file.is_ambiguous, file.name))
-    readings = dict.fromkeys(
-        reading for file in files if file.is_ambiguous == first.is_ambiguous for reading in file.readings
-    )
+    first = min(last, key=lambda file: file.name)
+    readings = dict.fromkeys(reading for file in files for reading in file.readings)
     return ClassSubmission(
         _student(first, tuple(readings)),
         tuple(start + file.path for file in last),

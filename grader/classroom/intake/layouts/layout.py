@@ -19,7 +19,7 @@ class Submissions:
     """Submissions, sorted by their students' keys. A key that is not printable or not unique is replaced by a path key.
 
     `assignments` is what an LMS calls the assignment; of `contested` students a file was ignored that may be another student's.
-    If the LMS hides all names (`is_anonymous`), a submission may belong to any student.
+    If the LMS hides all names (`is_anonymous`), a submission may belong to any student. `notes` say what was chosen.
     """
 
     def __init__(
@@ -27,6 +27,7 @@ class Submissions:
         submissions: Iterable[ClassSubmission],
         assignments: frozenset[str] = frozenset(),
         contested: tuple[Student, ...] = (),
+        notes: tuple[str, ...] = (),
         *,
         is_anonymous: bool = False,
     ) -> None:
@@ -40,6 +41,7 @@ class Submissions:
         self._submissions = sorted(found, key=lambda submission: submission.student.key)
         self.assignments = assignments
         self.contested = contested
+        self.notes = notes
         self.is_anonymous = is_anonymous
 
     def __len__(self) -> int:

@@ -4,6 +4,7 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 """
 
 from collections import defaultdict
+from collections.abc import Iterable
 from itertools import starmap
 
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
@@ -11,7 +12,7 @@ from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
-from grader.text import printable_path
+from grader.text import enumerated, printable_path
 
 _SUBMITTED = "submitted"
 _TIMESTAMP = "timestamp.txt"
@@ -73,6 +74,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     return Submissions(
         starmap(submission, paths.items()),
         assignments=frozenset({f"nbgrader {printable_path(name)}"}),
+        notes=_choice(name, found) if len(found) > 1 and not folder.assignment else (),
     )
 
 
@@ -83,6 +85,11 @@ def _assignments(listing: ClassListing, start: str) -> dict[str, list[str]]:
         for name in listing.children(start + student).folders:
             found[name].append(student)
     return found
+
+
+def _choice(name: str, found: Iterable[str]) -> tuple[str]:
+    others = enumerated([printable_path(other) for other in sorted(found) if other != name], _MAX_NAMED)
+    return (f"the assignment {printable_path(name)} is graded; to grade {others}, add --assignment",)
 
 
 def _chosen(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str:

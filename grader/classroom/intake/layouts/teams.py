@@ -10,13 +10,15 @@ from dataclasses import replace
 from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
-from grader.classroom.intake.names import stems_of
+from grader.classroom.intake.names import ending_of, stems_of
 from grader.classroom.students import ClassSubmission
-from grader.submission.labs import LabFolders, lab_words
+from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.students import is_part
+from grader.text import enumerated, printable_path
 
 _MAX_TEAMS = 10_000  # with more folders, the layout has to be named
 _MAX_NAMES = 1_000  # in one folder
+_MAX_NAMED = 10
 _MAX_ENTRIES = 300  # that are searched for a URDF
 _PARTS = frozenset(
     {
@@ -37,20 +39,27 @@ _PACKAGE = frozenset({"package.xml", "setup.py", "CMakeLists.txt"})
 
 def find_labs(folder: ClassFolder) -> dict[str, str]:
     """Return the lab folders that hold students' folders, each with its team; empty for the repository of a single team."""
-    labs: dict[str, str] = {}
-    names = LabFolders(folder.lab_folders)
-    for name in sorted(folder.children.folders) if folder.is_explicit else ():
-        if names.is_lab(name) and _holds_students(folder, folder.start + name):
-            labs[folder.start + name] = ""
+    start, names = folder.start, LabFolders(folder.lab_folders)
+    labs = dict.fromkeys(_labs_below(folder, names, start) if folder.is_explicit else (), "")
     if labs or (len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit):
         return labs
     own = [name for name in folder.children.folders if not folder.is_explicit and _is_of_student(folder, name)]
     for team in sorted(set(folder.children.folders).difference(own)):
-        for name in sorted(folder.listing.children(folder.start + team, _MAX_NAMES).folders):
-            lab = f"{folder.start}{team}/{name}"
-            if names.is_lab(name) and _holds_students(folder, lab):
-                labs[lab] = team
+        labs |= dict.fromkeys(_labs_below(folder, names, f"{start}{team}/"), team)
     return labs
+
+
+def _labs_below(folder: ClassFolder, names: LabFolders, start: str) -> list[str]:
+    """Return the lab's folders of a team that hold students' folders; those of another lab if the lab's have no robot, as `grade` does."""
+    below = sorted(folder.listing.children(start.rstrip("/"), _MAX_NAMES).folders)
+    own = [start + name for name in below if names.is_lab(name) and _holds_students(folder, start + name)]
+    if not folder.is_explicit or any(_has_robot(folder.listing, lab) for lab in own):
+        return own
+    others = [start + name for name in below if names.belonging(f"{name}/") is Belonging.OTHER_LAB]
+    certain = replace(folder, is_explicit=False)
+    holding = (lab for lab in others if not names.is_project(f"{lab}/") and _holds_students(certain, lab))
+    chosen = next((lab for lab in holding if _has_robot(folder.listing, lab)), "")
+    return [chosen] if chosen else own
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
@@ -62,6 +71,11 @@ def find_submissions(folder: ClassFolder) -> Submissions:
         outside = "is outside the folder of the lab"
         folder.ignored.add_all(folder.start, ((name, outside) for name in (*rest.folders, *rest.files)))
         rest = Children([], [], rest.refused)
+    elif folder.lab_folders:
+        without = [name for name in rest.folders if _has_no_lab(folder, name)]
+        reason = f"has no folder {folder.lab_folders[0]!r}, no folder of another lab and no robot"
+        folder.ignored.add_all(folder.start, ((name, reason) for name in without))
+        rest = rest._replace(folders=[name for name in rest.folders if name not in without])
     alone = FolderSubmissions(replace(folder, children=rest))
     found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
@@ -71,7 +85,21 @@ def find_submissions(folder: ClassFolder) -> Submissions:
         inner = inner._replace(folders=[name for name in inner.folders if name not in parts])
         members = FolderSubmissions(ClassFolder(folder.listing, inner, f"{lab}/", folder.ignored))
         found += (_of_team(members.submission(index), team) for index in range(len(members)))
-    return Submissions(found, contested=alone.contested)
+    names = LabFolders(folder.lab_folders)
+    others = [printable_path(lab) for lab in labs if names.belonging(f"{lab}/") is Belonging.OTHER_LAB]
+    notes = (
+        f"{enumerated(others, _MAX_NAMED)}: another lab is graded, because there is no robot in the folder of this lab",
+    )
+    return Submissions(found, contested=alone.contested, notes=notes if others else ())
+
+
+def _has_no_lab(folder: ClassFolder, team: str) -> bool:
+    """Return whether a repository holds no folder of any lab, no robot and no archive, and is on no roster."""
+    if folder.roster is not None and folder.roster.knows_submission(team):
+        return False
+    names, below = LabFolders(folder.lab_folders), folder.listing.children(folder.start + team, _MAX_NAMES)
+    has_lab = any(names.belonging(f"{name}/") is not Belonging.NO_LAB for name in (team, *below.folders))
+    return not has_lab and _has_robot(folder.listing, folder.start + team, archives=True) is False
 
 
 def _is_of_student(folder: ClassFolder, name: str) -> bool:
@@ -114,8 +142,8 @@ def _is_part(folder: ClassFolder, name: str) -> bool:
     return is_part(name, lab) and not (folder.roster is not None and folder.roster.knows_surname(name))
 
 
-def _has_robot(listing: ClassListing, top: str) -> bool | None:
-    """Return whether there is a URDF or a package below a folder; None if the folder is itself a package."""
+def _has_robot(listing: ClassListing, top: str, *, archives: bool = False) -> bool | None:
+    """Return whether there is a URDF or a package below a folder, or an archive; None if the folder is itself a package."""
     waiting = [top]
     left = _MAX_ENTRIES
     while waiting and left > 0:
@@ -124,7 +152,7 @@ def _has_robot(listing: ClassListing, top: str) -> bool | None:
         left -= len(children.folders) + len(children.files) + 1
         if "package.xml" in children.files:
             return True if folder != top else None
-        if any(_ROBOT.search(name.lower()) for name in children.files):
+        if any(_ROBOT.search(name.lower()) or (archives and ending_of(name)) for name in children.files):
             return True
         waiting += [f"{folder}/{name}" for name in sorted(children.folders)]
     return False
