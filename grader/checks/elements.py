@@ -56,16 +56,17 @@ def element_present(
     """
     wanted = WantedElement(tag, attributes or {}, path, values or {}, tolerance)
     reading = submission.needed_urdf()
-    if reading.root is None:
+    root = reading.elements
+    if root is None:
         if reading.undetermined:
             raise NotDecided(reading.undetermined, reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
-    outcome = _searched(reading, reading.root, wanted)
-    is_dropped = outcome.status == "passed" and tag == "link" and not _having(_kept(robot, reading.root), wanted)
+    outcome = _searched(reading, root, wanted)
+    is_dropped = outcome.status == "passed" and tag == "link" and not _having(_kept(robot, root), wanted)
     if outcome.status == "failed" or is_dropped:
-        _check_known(reading, reading.root, wanted)
+        _check_known(reading, root, wanted)
     if is_dropped:
-        link = _having(reading.root, wanted)[0]
+        link = _having(root, wanted)[0]
         steps = (step for key in (path, *wanted.values) for step in steps_of(key))
         part = next(step for step in steps if step in _PARTS)
         message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
@@ -181,8 +182,8 @@ def _shown(value: Scalar) -> str:
 
 
 def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:
-    assert reading.root is not None
-    tag = next(index for index, other in enumerate(reading.root.iter()) if other is element)
+    assert reading.elements is not None
+    tag = next(index for index, other in enumerate(reading.elements.iter()) if other is element)
     return LazyLocation(reading.source, tag, name)
 
 

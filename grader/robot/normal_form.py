@@ -32,7 +32,7 @@ def robot_hash(reading: Reading) -> str:
     if reading.robot is None or not reading.robot.links:
         return ""
     problems = sorted((problem.code, problem.message) for problem in reading.problems)
-    content = problems, normal_form(reading.robot), _extensions(reading.root)
+    content = problems, normal_form(reading.robot), _extensions(reading.elements)
     return sha256(repr(content).encode("utf-8", "backslashreplace")).hexdigest()
 
 

@@ -28,7 +28,8 @@ _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 class Reading:
     """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
 
-    `root` is the element that it was read from, None where the text is not XML; `unresolved` has what xacro leaves open in it.
+    `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if that is
+    not None. `unresolved` has what xacro leaves open in it.
     """
 
     verdict: Verdict
@@ -37,6 +38,12 @@ class Reading:
     source: Source
     root: Element | None = field(default=None, compare=False, repr=False)
     unresolved: Mapping[Element, Unresolved] = field(default_factory=dict, compare=False, repr=False)
+    recovered: Element | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def elements(self) -> Element | None:
+        """The element that the robot was read from, also where the text is not XML."""
+        return self.root if self.root is not None else self.recovered
 
     @property
     def is_decided(self) -> bool:
@@ -89,7 +96,7 @@ def read_robot(document: XmlDocument) -> Reading:
     listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
     if robot is not None and verdict == "rejected":
         robot = replace(robot, rejected=True, incomplete=_incomplete(document, robot))
-    return Reading(verdict, robot, tuple(listed), source, root, document.unresolved)
+    return Reading(verdict, robot, tuple(listed), source, root, document.unresolved, document.recovered)
 
 
 def _read_robot(root: Element, problems: Problems) -> Robot:

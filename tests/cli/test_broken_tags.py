@@ -105,6 +105,18 @@ def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
     assert {problem["code"] for problem in found["problems"]} == {"XACRO001", "URDF015"}
 
 
+def test_elements_for_simulators_are_graded(tmp_path: Path) -> None:
+    """What is written for Gazebo in a file with a broken tag earns its points."""
+    sensors = (ROOT / "submissions/equivalent-sensors-plain/sensor_robot.urdf").read_text(encoding="utf-8")
+    statuses = []
+    for text in (sensors, sensors.replace("</visual>", "", 1)):
+        path = tmp_path / "sensor_robot.urdf"
+        path.write_text(text, encoding="utf-8")
+        done = run(("grade", path, "--rubric", "sensors", "--format", "json", "--hints", "none"))
+        statuses.append({row["id"]: row["status"] for row in json.loads(done.stdout)["results"]})
+    assert {name for name, status in statuses[1].items() if status != statuses[0][name]} == {"urdf-loads"}
+
+
 @settings(max_examples=150, deadline=None)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
