@@ -5,6 +5,7 @@ such a lab folder is one submission. If the layout was named, the class folder m
 """
 
 import re
+from collections.abc import Collection
 from dataclasses import replace
 
 from grader.classroom.intake.layouts.folders import FolderSubmissions
@@ -59,7 +60,14 @@ def _labs_below(folder: ClassFolder, names: LabFolders, start: str) -> list[str]
     certain = replace(folder, is_explicit=False)
     holding = (lab for lab in others if not names.is_project(f"{lab}/") and _holds_students(certain, lab))
     chosen = next((lab for lab in holding if _has_robot(folder.listing, lab)), "")
+    if chosen and all(len(_names_in(folder, lab)) == 1 for lab in (*own, chosen)):
+        return []  # of one student: the whole repository is graded, so that the evidence in the lab's folder counts
     return [chosen] if chosen else own
+
+
+def _names_in(folder: ClassFolder, lab: str) -> Collection[str]:
+    inner = folder.listing.children(lab, _MAX_NAMES)
+    return stems_of(inner.folders, inner.files)
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
