@@ -37,6 +37,7 @@ class Clue(IntEnum):
 
 Clues = Mapping[Clue, Collection[str]]
 NUMBERS = (Clue.CANVAS, Clue.MOODLE)
+_NAMES = (Clue.CANVAS_NAME, Clue.NAME, Clue.SURNAME)
 CERTAIN = Clue.WORD  # a match by this kind or a more reliable one is certain
 OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # for the name of a submission
 OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
@@ -79,7 +80,7 @@ class People:
             if among is not None:
                 found.intersection_update(among)
             if found:
-                against = {index for index in found if _contradict(claims, self.clues[index])}
+                against = {index for index in found if _contradict(claims, self.clues[index], by_name=clue in _NAMES)}
                 return Match(tuple(sorted(found - against)), clue, tuple(sorted(against)))
         return Match(())
 
@@ -134,12 +135,11 @@ def _composed(word: str) -> str:
     return word if word.isascii() else unicodedata.normalize("NFC", word)
 
 
-def _contradict(left: Clues, right: Clues) -> bool:
-    """Return whether two are different people: both have LMS ids, and another one in the same LMS, or none in the same."""
-    if not all(any(clue in one for clue in NUMBERS) for one in (left, right)):
-        return False
+def _contradict(left: Clues, right: Clues, *, by_name: bool) -> bool:
+    """Return whether two are different people: an LMS knows them by different ids, or, with the same name, two LMS do."""
     shared = [set(left[clue]).intersection(right[clue]) for clue in NUMBERS if clue in left and clue in right]
-    return not shared or not all(shared)
+    has_ids = all(any(clue in one for clue in NUMBERS) for one in (left, right))
+    return not all(shared) or (by_name and has_ids and not shared)
 
 
 def plain_word(word: str) -> str:

@@ -190,7 +190,9 @@ def test_another_class_is_refused(tmp_path: Path, roster: str) -> None:
     done = batch(tmp_path, roster=roster)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.splitlines()[-1].endswith(
-        "g.db is the gradebook of another class: no student of this class is in it (it contains ann, bea, cal, ...);"
+        "the roster matches 0 of 1 submission: is this the roster of this class? Name another one, or use --add"
+        if roster
+        else "g.db is the gradebook of another class: no student of this class is in it (it contains ann, bea, cal, ...);"
         " name another file, or use --add"
     )
     assert (tmp_path / "g.db").read_bytes() == before
@@ -283,7 +285,7 @@ def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
     mark(tmp_path, "team2/alice")
     (tmp_path / "class/team2").rename(tmp_path / "away")
     submit(tmp_path / "class/team1/Lab6/alice")
-    done = batch(tmp_path, "--layout", "teams", roster=roster)
+    done = batch(tmp_path, "--layout", "teams", "--add", roster=roster)
     assert "now, with all" not in done.stderr
     found = students(tmp_path)
     assert found["team2/alice"]["marks_by_hand"] == 1

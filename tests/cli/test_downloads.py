@@ -78,7 +78,10 @@ SUBMITTERS = [one for one in CLASS if not one.is_missing and one.submitter == on
 
 
 def canvas_files() -> dict[str, str]:
-    """Return Canvas' download: of a group its name, as of content_zipper.rb, and the id of one member."""
+    """Return Canvas' download: of a group its name, as of content_zipper.rb, and the id of one member.
+
+    Uploads have far larger numbers than users, as in Canvas: a name that ends in a number can be read in one way only.
+    """
     files = {}
     for one in SUBMITTERS:
         shown = one.group if one.group and one.number != 31 else one.name
@@ -86,7 +89,9 @@ def canvas_files() -> dict[str, str]:
         late = "_LATE" if one.is_flagged else ""
         for attempt, text in enumerate(one.attempts):
             again = f"-{attempt}" if attempt else ""
-            files[f"submissions/{plain}{late}_{one.id}_{90_000 + 2 * one.number + attempt}_robot{again}.urdf"] = text
+            files[f"submissions/{plain}{late}_{one.id}_{90_000_000 + 2 * one.number + attempt}_robot{again}.urdf"] = (
+                text
+            )
     return files
 
 

@@ -38,7 +38,7 @@ class Intake:
 
     With a roster, `unmatched` are the keys of submissions of students who are not on it (they are graded too), `absent` are students
     without a submission, `contested` students with several possible submissions: none is assigned, and the gradebook keeps the
-    earlier one. `notes` says which submissions are ambiguous. `assignments` are the names of the assignment in nbgrader or Canvas.
+    earlier one. `notes` says which submissions are ambiguous, and `ambiguous` how many. `assignments` are the names of the assignment in nbgrader or Canvas.
     """
 
     layout: str
@@ -50,14 +50,15 @@ class Intake:
     absent: tuple[Student, ...] = ()
     contested: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
+    ambiguous: int = 0
 
     def __len__(self) -> int:
         return len(self.found) if self.roster is None else len(self.placed)
 
     @property
     def matched(self) -> int:
-        """The number of submissions that belong to students on the roster."""
-        return len({placed.number for placed in self.placed if placed.owner != _UNMATCHED})
+        """The number of submissions that belong to students on the roster, or may belong to several of them."""
+        return len({placed.number for placed in self.placed if placed.owner != _UNMATCHED}) + self.ambiguous
 
     @property
     def assignments(self) -> frozenset[str]:
@@ -149,6 +150,7 @@ def assign(
         tuple(entries[index].student for index in absent),
         tuple(entries[index].student for index in sorted(matches.contested)),
         (*roster.notes, *notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
+        len(matches.ambiguous),
     )
 
 
@@ -172,10 +174,11 @@ class _Matches(NamedTuple):
     uncertain: set[int]
     notes: list[str]
     claimants: dict[tuple[int, ...], list[int]]
+    ambiguous: set[int]
 
 
 def _match(submissions: Submissions, roster: Roster) -> _Matches:
-    matches = _Matches({}, [], set(), set(), [], {})
+    matches = _Matches({}, [], set(), set(), [], {}, set())
     groups = CanvasGroups(roster)
     doubts: list[tuple[str, GroupClaim]] = []
     otherwise: list[str] = []
@@ -196,6 +199,7 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
         elif match.doubt:
             matches.notes.append(f"{student.key} {match.doubt}: left unassigned")
             matches.contested.update(match.several)
+            matches.ambiguous.update({index} if match.several else ())
         else:
             matches.unmatched.append(index)
     add_doubts(doubts, matches.claimants, roster, matches.contested, matches.notes)
@@ -211,6 +215,7 @@ def _match(submissions: Submissions, roster: Roster) -> _Matches:
         if others and (clues[0] > CERTAIN or clues[1] == clues[0]):
             names = ", ".join((first, *others))
             matches.contested.add(owner)
+            matches.ambiguous.update(indices)
             matches.notes.append(
                 f"{names} may each belong to {key}: left unassigned; {key} keeps an earlier submission"
             )

@@ -37,7 +37,7 @@ def check_same_class(book: Gradebook, intake: Intake, identities: Identities, ru
 
 def check_roster(intake: Intake) -> None:
     """Raise InputError if the roster matches fewer than one in ten submissions."""
-    total = intake.matched + len(intake.unmatched)
+    total = intake.matched + len(intake.unmatched) - intake.ambiguous
     if intake.roster is not None and intake.matched * _MIN_MATCHED < total:
         raise InputError(
             f"the roster matches {intake.matched} of {counted(total, 'submission')}: is this the roster of this class?"
