@@ -1,4 +1,4 @@
-"""Limits for tests of costs: the lines of Python that a block executes, the same number on every machine, busy or not."""
+"""Limits for tests of costs: the calls that a block makes, the same number on every machine, busy or not."""
 
 import signal
 import sys
@@ -8,44 +8,44 @@ from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
 
-# Work inside of a built-in function, such as a search with a pattern, is one line. It can only hang.
-_HANG_SECONDS = 60.0
+# Work inside of a built-in function, such as a search with a pattern, is one call. It can only hang.
+_HANG_SECONDS = 120.0
 
 
 class TooMuchWork(AssertionError):
-    """The block has executed more lines than allowed, or it hangs."""
+    """The block has made more calls than allowed, or it hangs."""
 
 
 class Work:
-    """The number of lines that a block has executed so far."""
+    """The number of calls that a block has made so far, of functions in Python and built-in ones."""
 
-    lines = 0
+    calls = 0
 
 
 @contextmanager
 def limited_work(limit: int = sys.maxsize) -> Iterator[Work]:
-    """Fail as soon as the functions that a block calls have executed more lines than allowed.
+    """Fail as soon as a block has made more calls than allowed.
 
-    The limits in the tests are about three times what was counted: they separate linear work from quadratic work. A block that
-    catches the exception fails at its end.
+    The limits in the tests are several times what was counted: they separate linear work from quadratic work. A block that catches
+    the exception fails at its end.
     """
     work = Work()
 
-    def count(_frame: FrameType, event: str, _argument: Any) -> Any:
-        work.lines += event == "line"
-        if work.lines > limit:
-            raise TooMuchWork(f"more than {limit} lines were executed")
-        return count
+    def count(_frame: FrameType, event: str, _argument: Any) -> None:
+        if event in ("call", "c_call"):
+            work.calls += 1
+            if work.calls > limit:
+                raise TooMuchWork(f"more than {limit} calls were made")
 
-    before = sys.gettrace()
+    before = sys.getprofile()
     with _hang_limit():
-        sys.settrace(count)
+        sys.setprofile(count)
         try:
             yield work
         finally:
-            sys.settrace(before)
-    if work.lines > limit:
-        raise TooMuchWork(f"more than {limit} lines were executed")
+            sys.setprofile(before)
+    if work.calls > limit:
+        raise TooMuchWork(f"more than {limit} calls were made")
 
 
 @contextmanager
