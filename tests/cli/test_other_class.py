@@ -110,4 +110,7 @@ def test_a_smaller_roster_is_mentioned(tmp_path: Path) -> None:
     assert b"the roster has" not in batch(tmp_path, "moodle", "names").stderr
     (tmp_path / "one.csv").write_text("name\nJane Doe\n")
     said = " ".join(batch(tmp_path, "moodle", "one").stderr.decode().split())
-    assert "the roster has 1 student, that of the gradebook has 3: not on the new one: Al Ash and Bo Birch" in said
+    assert (
+        "the roster has 1 student, but the gradebook's roster has 3. Missing on the new one: Al Ash and Bo Birch"
+        in said
+    )
