@@ -84,7 +84,7 @@ def batch(
 
       Teams: a column group in the roster.
 
-      Nothing works, now what? See docs/grade-a-class.md.
+      Troubleshooting See docs/grade-a-class.md.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
