@@ -91,7 +91,7 @@ def test_numbers_of_two_lms_never_match_in_an_export(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("matching", "code"), [(0, 2), (1, 2), (2, 0)])
 def test_a_roster_that_matches_few_submissions_is_refused(tmp_path: Path, matching: int, code: int) -> None:
-    """It must match one in ten; --add accepts it all the same."""
+    """A roster must match one in ten submissions; --add accepts any roster."""
     for number in range(20):
         (tmp_path / f"class/s{number}").mkdir(parents=True)
         shutil.copy(GOOD, tmp_path / f"class/s{number}")
