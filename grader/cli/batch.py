@@ -21,7 +21,7 @@ from grader.report.formats import Format, OutputFormat
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
-_ADD = "Add to the gradebook even if it has another class, assignment or rubric."
+_ADD = "Add to the gradebook even if its class, assignment, roster or rubric is another one."
 _RUBRIC = "The rubric: an id or a .toml file; default: that of the last run into the gradebook, else lab6."
 _IGNORE = "A robot that the course handed out: not identical work; repeatable."
 _TIMEOUT = "Time limit for each submission."
@@ -84,7 +84,7 @@ def batch(
 
       Teams: a column group in the roster.
 
-      Nothing works, now what? See docs/grade-a-class.md.
+      Troubleshooting: see docs/grade-a-class.md.
     """
     from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class

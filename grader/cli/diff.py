@@ -21,7 +21,7 @@ def diff(
 
     Compares the last two finished runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
     manual marks; marks that were given after the older run count as changes. If the rubric changed, the output says what
-    changed for the criteria concerned. Late penalties are not included. Runs count from 1.
+    changed for the criteria concerned. Grades include the late penalty. Runs count from 1.
 
     Examples:
 

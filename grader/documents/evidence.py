@@ -89,7 +89,7 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: Docu
         return Found((*describe(meant), *certain))
     listed = {proof.file.path for proof in perhaps}
     searched = _whole_documents(documents) if documents is not None else ()
-    whole = [file for file in searched if file.path not in listed and not _PRELAB.search(file.name)]
+    whole = [file for file in searched if file.path not in listed and not _PRELAB.search(file.path)]
     return Found((), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole)))
 
 
@@ -98,8 +98,8 @@ def find_all_evidence(
 ) -> list[Found]:
     """Return the evidence for each of several lists of names.
 
-    A file is perhaps meant for one of them, unless its headings say more or could not be read. One that names another step is perhaps meant for the
-    nearest step of its task without a file.
+    A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not be read. A
+    file that names another step is perhaps meant for the nearest step of its task without a file.
     """
     found = [find_evidence(proofs, one, documents) for one in names]
     claimed = {exhibit.path for one in found for exhibit in one.files}

@@ -26,19 +26,22 @@ def exhibits_of(
         return (), ()
     from grader.documents.evidence import describe, find_all_evidence  # a URDF on its own has none
 
-    names = [_names(evidence, rubric) for evidence in wanted]
+    graded = {evidence.id: _graded_names(evidence, rubric) for evidence in wanted}
+    # A file that may be meant for several pieces is listed where a criterion lists it, too.
+    ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
+    names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
     found = find_all_evidence(submission.proofs, names, submission.readable_documents)
-    exhibits = tuple(Exhibits(evidence, *one) for evidence, one in zip(wanted, found, strict=True))
+    by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=True)}
+    exhibits = tuple(Exhibits(evidence, *by_id[evidence.id]) for evidence in wanted)
     listed = {exhibit.path for one in found for exhibit in (*one.files, *one.perhaps)}
     others = [proof for proof in submission.proofs if proof.file.path not in listed]
     return exhibits, describe(others[:_MAX_PICTURES])
 
 
-def _names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
-    """Return the names of a piece of evidence, and of a criterion about it: what counts for the criterion is not missing."""
+def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+    """Return the names of the criteria about a piece of evidence: a file that counts for a criterion is not missing."""
     shown = (row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown)
-    same = (names for names in shown if set(names) & set(evidence.names))
-    return tuple(dict.fromkeys(chain(evidence.names, *same)))
+    return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))
 
 
 def not_searched(submission: Submission, exhibits: Sequence[Exhibits]) -> tuple[str, ...]:

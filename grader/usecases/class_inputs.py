@@ -73,8 +73,8 @@ def roster_of(file: Path | None, gradebook: Path, warn: Warn) -> Roster | None:
         )
         if missing and roster is not None and earlier is not None and len(roster.entries) < len(earlier.entries):
             warn(
-                f"the roster has {counted(len(roster.entries), 'student')}, that of the gradebook has {len(earlier.entries)}: not on"
-                f" the new one: {enumerated(missing, _MAX_NAMED)}"
+                f"the roster has {counted(len(roster.entries), 'student')}, but the gradebook's roster has {len(earlier.entries)}."
+                f" Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
             )
         roster = roster or earlier
         return roster.with_lms_numbers(book.students()) if roster is not None else None

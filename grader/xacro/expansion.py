@@ -26,7 +26,10 @@ __all__ = ("Expansion", "Open", "Workspace", "expand")
 
 
 class Expansion(NamedTuple):
-    """An expanded file. `root` is None where it cannot be expanded at all; `recovered` is then what can be read of one with broken tags."""
+    """An expanded file.
+
+    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags.
+    """
 
     root: Element | None
     source: Source

@@ -250,7 +250,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, delay: i
 
 
 def test_keys_after_a_refused_mark_are_discarded(open_page: Open, review: Review, book: Path) -> None:
-    """They were meant for the next item, which is not shown: the page says so, and nothing is saved for either."""
+    """Keys typed for the next item are discarded if it is not shown: the page says so, and nothing is saved for either item."""
     page = open_page(review.url).page
     page.keyboard.type("9\n2\n")
     page.wait_for_function("() => document.getElementById('error').textContent.endsWith('is discarded.')")

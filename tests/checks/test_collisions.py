@@ -258,7 +258,7 @@ def test_very_many_shapes() -> None:
     ],
 )
 def test_a_collision_is_a_given_shape(arguments: Arguments, shape: str, status: str) -> None:
-    """Of its size, and in its place as far as one is given; symmetries do not matter, and other shapes only if asked for."""
+    """A link has a collision shape of the given size, in the given place if there is one; symmetric equivalents count."""
     assert graded(collides_as, arm(visual(BRICK), shape), **CLOSE, **arguments).status == status
 
 

@@ -99,7 +99,7 @@ def test_one_element_has_all_values() -> None:
 
 
 def test_the_sibling_with_the_identifying_attribute_is_described() -> None:
-    """Another one that has more of the other values is not meant; without one, the attributes of all are listed."""
+    """The message describes the element with the identifying attribute; if none has it, the message lists the attributes of all."""
     arguments: dict[str, Any] = {"tag": "ros2_control", "path": "joint"}
     wanted = {"command_interface/@name": "position", "state_interface/@name": "position"}
     message = found(CONTROL, **arguments, values={"@name": "joint_2", **wanted}).message
@@ -133,7 +133,7 @@ DROPPED = {"tag": "link", "attributes": {"name": "a"}}
     ],
 )  # fmt: skip
 def test_what_ros_2_drops_of_a_link_is_not_there(inside: str, arguments: dict[str, Any], status: str) -> None:
-    """A bad inertial loses the collisions of its link, and a bad collision those after it; the message says so."""
+    """An invalid inertial drops the collisions of its link, an invalid collision those after it; the message says so."""
     ball = '<collision><geometry><sphere radius="1"/></geometry></collision>'
     robot = scene(link("base"), f'<link name="a">{inside.format(ball=ball)}</link>')
     outcome = graded(element_present, robot, **DROPPED, **arguments)

@@ -288,7 +288,7 @@ LEFT = 'joint="left_joint"'
     ],
 )  # fmt: skip
 def test_a_joint_of_the_wrong_type(kind: str, limit: str, wanted: tuple[float, float, float], message: str) -> None:
-    """The limits are the expected ones in the other unit, and not degrees in place of radians: the type is what is wrong."""
+    """If the limits are the expected ones in the other unit, and not degrees in place of radians, the message names the type."""
     lower, upper, tolerance = wanted
     found = limited(limit, kind)
     at = f'type="{kind}"' if "should be" in message and "range of " in message else None

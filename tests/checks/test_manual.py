@@ -143,7 +143,7 @@ def test_windows_texts_are_read(encoding: str) -> None:
 
 
 def test_a_long_answer_is_whole() -> None:
-    """However many lines it has; only a text that no student writes by hand is cut, and the cut is marked."""
+    """An answer of many lines is shown whole; only a text that no student writes is cut, and the cut is marked."""
     lines, _ = passage({"answers.md": "# Task 1 step 15\n" + "x\n" * 1000 + "because of the roots\n"})
     assert isinstance(lines, str)
     assert lines.endswith("x\nbecause of the roots")

@@ -42,7 +42,7 @@ TEAMS = ("--layout", "teams")
 
 @pytest.mark.parametrize("own", [(), ("red/Lab6/ann/a.md", "red/Lab6/bob/b.md"), ("red/Lab6/README.md",)])
 def test_a_team_whose_robots_are_in_the_folder_of_another_lab(tmp_path: Path, own: tuple[str, ...]) -> None:
-    """They are graded, as `grade` does, and the message names the folder; a final project does not count."""
+    """The robots in another lab's folder are graded, as by `grade`, and the message names the folder; a final project does not count."""
     submit(tmp_path, *own, "red/Lab5/ann", "red/Lab5/bob", "red/FinalProject/ann", "blue/Lab6/cal", "blue/Lab5/cal")
     said = batch(tmp_path, *TEAMS)
     assert "red/Lab5: another lab is graded, because there is no robot in the folder of this lab" in said
@@ -57,7 +57,7 @@ def test_the_folder_of_this_lab_counts_if_it_has_a_robot(tmp_path: Path) -> None
 
 
 def test_a_repository_without_a_folder_of_any_lab(tmp_path: Path) -> None:
-    """It is reported, and is no student with 0; one with a robot or a lab's folder is a submission."""
+    """A repository without a lab's folder is reported and is no student with 0; one with a robot or a lab's folder is a submission."""
     submit(tmp_path, "red/Lab6/ann", "red/Lab6/bob", "green/docs/notes.md", "joint/robot", "late/Lab6/answers.md")
     said = batch(tmp_path, *TEAMS)
     assert "green has no folder 'Lab6', no folder of another lab and no robot" in said
@@ -68,7 +68,7 @@ def test_a_repository_without_a_folder_of_any_lab(tmp_path: Path) -> None:
 
 
 def test_nbgrader_says_which_assignment_it_took(tmp_path: Path) -> None:
-    """If there are several, and none was named."""
+    """`batch` names the assignment that it grades if there are several and none was given."""
     submit(tmp_path, "submitted/ann/lab6", "submitted/bob/lab6")
     assert "is graded; to grade" not in batch(tmp_path)
     submit(tmp_path, "submitted/ann/ps1", "submitted/ann/ps2")

@@ -250,7 +250,7 @@ def test_an_interrupted_run_is_not_compared_by_default(tmp_path: Path) -> None:
 
 
 def test_students_with_the_same_grade_are_counted(tmp_path: Path) -> None:
-    """Of 79 students one has another grade: the others, for whom only points moved between criteria, are one line."""
+    """If one of 79 students has another grade, one line counts the others, whose points only moved between criteria."""
     older, newer = lab(box="2.5", tall="0.5"), lab(box="1.5", tall="1.5")
     keys = [f"s{number:02}" for number in range(78)]
     with Gradebook(tmp_path / "book.db", create=True) as book:

@@ -163,6 +163,17 @@ def test_evidence_does_not_contradict_itself(tmp_path: Path) -> None:
     assert "Step 6: the robot, started by the launch file: perhaps Task2_Step3.png" in text
 
 
+def test_the_list_of_evidence_agrees_with_the_criterion(tmp_path: Path) -> None:
+    """A document that the criterion lists as perhaps its picture is listed for the same piece; files of a prelab are not."""
+    scan = pdf([PICTURE], [PICTURE])
+    report = as_json(submitted(tmp_path / "Ash", {"report.pdf": scan, "Prelab/pictures.pdf": scan}))
+    assert [row["id"] for row in report["evidence"]][-1] == "task3-step3"
+    listed = {row["id"]: [file["path"] for file in row["perhaps"]] for row in report["evidence"] if row["perhaps"]}
+    assert listed == {"task3-step3": ["report.pdf"]}
+    (webcam,) = (row for row in report["results"] if row["id"] == "evidence-webcam")
+    assert webcam["measured"] == ["report.pdf"]
+
+
 def test_without_the_extra_one_line_says_what_was_not_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """If the packages for Word and PDF are not installed, a note names the document; its evidence is not called missing."""
     monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends

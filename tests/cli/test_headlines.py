@@ -67,7 +67,7 @@ def test_a_final_mark_is_the_headline(top: Path) -> None:
 
 
 def test_manual_marks_are_in_the_headline(top: Path) -> None:
-    """And the line below it separates them from the automatic points."""
+    """Manual marks count in the headline, and the line below it separates them from the automatic points."""
     assert grader("mark", "anna", "essay", "3", "--gradebook", top / "book.db").returncode == 0
     expected = {"points": 9, "late": 0, "final": False}
     found = reports(top, "anna")
@@ -76,7 +76,7 @@ def test_manual_marks_are_in_the_headline(top: Path) -> None:
 
 
 def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
-    """The score of the criteria is not."""
+    """The headline includes the late penalty, unlike the score of the criteria."""
     (top / "late.toml").write_text(lab_text("due = 2020-01-01T00:00:00+00:00\npercent_per_day = 10", essay="4"))
     roster = (top / "roster.csv").read_text().splitlines()
     lines = [
@@ -95,7 +95,7 @@ def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
 
 
 def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
-    """Whatever the criteria give."""
+    """The headline of an excused student has no points, whatever the criteria give."""
     assert grader("mark", "anna", "total", "--excused", "--gradebook", top / "book.db").returncode == 0
     expected = {"points": None, "late": 0, "final": False}
     assert_headlines(reports(top, "anna"), "Excused", "Excused; the criteria give 6 automatic points.", 6, expected)

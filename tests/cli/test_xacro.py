@@ -239,7 +239,7 @@ def test_a_single_file_without_includes_is_as_before(text: str, tmp_path: Path) 
 
 
 def test_standard_input_includes_nothing(tmp_path: Path) -> None:
-    """It is in no folder."""
+    """A URDF on standard input has no neighbours."""
     path = including(tmp_path / "my_robot", INCLUDE)
     done = run_with_input(("grade", "-", "--format", "json"), path.read_bytes(), folder=path.parent)
     assert statuses(json.loads(done.stdout))["base-green"] != "passed"
@@ -258,7 +258,7 @@ def test_a_single_file_reads_nothing_outside_of_its_package(tmp_path: Path) -> N
 
 
 def test_a_file_that_the_package_does_not_have(tmp_path: Path) -> None:
-    """In a package it is missing for xacro too."""
+    """A file that the package lacks is missing, as for xacro."""
     path = including(tmp_path / "my_robot", INCLUDE.replace("materials", "material"))
     code, report = graded(path)
     message = "there is no file urdf/material.xacro in the submission; xacro stops here, and ROS 2 gets no robot"

@@ -106,7 +106,7 @@ def test_headings_that_students_use(kind: str, first: str, second: str) -> None:
 
 @pytest.mark.parametrize("by_word", [False, True])
 def test_a_pdf_has_the_lines_that_it_shows(by_word: bool) -> None:
-    """Also one in which each word has a place of its own, of any length; short lines and numbers stay lines."""
+    """Words that are placed separately are joined to lines of any length; short lines and numbers stay lines."""
     lines = [
         "Task 1: Step 15",
         "It vanishes, as it has two roots.",

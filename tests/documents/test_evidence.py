@@ -166,7 +166,7 @@ def test_a_file_is_offered_once() -> None:
 
 
 def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:
-    """Its text says more."""
+    """A document is listed for each step that its headings name."""
     data = pdf(["Task 1: Step 8", PICTURE], ["Task 1: Step 18", PICTURE])
     assert offered({"report.pdf": data})[:2] == [(["report.pdf"], []), (["report.pdf"], [])]
     contents = docx("Task 1: Step 8", "See below.", "Task 1: Step 18", "See below.")

@@ -58,7 +58,8 @@ class PointsChange(NamedTuple):
 class Change:
     """The changes for one student, and their causes. A grade that counts is None if there was none.
 
-    `is_regraded` is False if only points of criteria changed, and the grade did not. `rubric` are the changes of the rubric that concern the criteria in `steps`.
+    `is_regraded` is False if only points of criteria changed, and the grade did not. `rubric` are the changes of the rubric that
+    concern the criteria in `steps`.
     """
 
     key: str

@@ -38,7 +38,8 @@ class Intake:
 
     With a roster, `unmatched` are the keys of submissions of students who are not on it (they are graded too), `absent` are students
     without a submission, `contested` students with several possible submissions: none is assigned, and the gradebook keeps the
-    earlier one. `notes` says which submissions are ambiguous, and `ambiguous` how many. `assignments` are the names of the assignment in nbgrader or Canvas.
+    earlier one. `notes` says which submissions are ambiguous, and `ambiguous` how many. `assignments` are the names of the
+    assignment in nbgrader or Canvas.
     """
 
     layout: str

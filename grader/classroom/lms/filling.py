@@ -211,7 +211,7 @@ def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], prefl
             why = could_be if len(match.people) > 1 else f"{names[0]} could be this row or another one"
             preflight.ambiguous.append(RowNote(student.row, student.who, why))
         else:
-            why = "no student of the gradebook has this id, address or name"
+            why = "no student of the gradebook matches this id, address or name"
             preflight.unknown.append(RowNote(student.row, student.who, why))
     preflight.missing += (
         RowNote(

@@ -166,7 +166,7 @@ def test_an_anonymous_download_matches_no_student(tmp_path: Path) -> None:
 
 
 def test_a_name_that_ends_in_a_number(tmp_path: Path) -> None:
-    """It may be a name and another number, unless the number of that upload is far below the others."""
+    """A name in Canvas may contain another user's number, unless the number of that upload is far below the others."""
     late = "blueash_7_LATE_102_200006_lab6-1.zip", "blueash_7_LATE_102_200004_lab6.zip"
     files = ("redash_7_101_200007_lab6.zip", *late, "ashann_103_200008_5_robot.urdf")
     students = [
@@ -183,7 +183,7 @@ def test_a_name_that_ends_in_a_number(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_a_roster_settles_no_ambiguous_name(tmp_path: Path, count: int) -> None:
-    """Even if it has only one of the numbers: the other student may be missing on it. Nobody counts as absent."""
+    """A roster with only one of the numbers decides nothing: it may lack the other student. No student counts as absent."""
     roster = Roster(map(RosterEntry, [Student("a", "Ash, Red", canvas="101"), Student("b", canvas="7")][:count]))
     intake = read_class(lay_out(tmp_path, "redash_7_101_5_lab6.zip"), roster, layout="canvas")
     assert assigned(intake) == {"redash_7_101": ("redash_7_101_5_lab6.zip",)}

@@ -87,7 +87,7 @@ def test_the_most_reliable_identifier_decides() -> None:
     )
     assert lines(filled)[2:] == ['"Roe, Rick",12,,,A,10.00']
     assert filled.preflight.unknown == [
-        RowNote(3, "Doe, Jane", "no student of the gradebook has this id, address or name"),
+        RowNote(3, "Doe, Jane", "no student of the gradebook matches this id, address or name"),
     ]
     assert filled.preflight.missing == [RowNote(0, "Rick Roe", "has a grade, but no row in the file")]
     assert not filled.preflight.matches

@@ -49,7 +49,7 @@ def test_rows_without_a_grade_are_omitted(form: OfflineFormat, header: str) -> N
     assert filled.data.decode() in (f"{header}\n", f"{header}\n")
     found = filled.preflight
     assert {note.why for note in [*found.ungraded, *found.unknown, *found.missing]} >= {
-        "no student of the gradebook has this id, address or name",
+        "no student of the gradebook matches this id, address or name",
         "has a grade, but no row in the file",
     }
 
