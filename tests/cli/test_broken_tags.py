@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.xml.tinyxml2.recovery import Recovery
-from tests.command_line import ROOT, run
+from tests.command_line import ROOT, run, run_process
 
 TEXT = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 LIDAR = '  <link name="lidar">\n    <visual>\n'
@@ -103,6 +103,30 @@ def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
     found = json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout)
     assert (found["score"], lost(found)) == (67, {"urdf-loads"})
     assert {problem["code"] for problem in found["problems"]} == {"XACRO001", "URDF015"}
+
+
+HOSTILE = {
+    "one long name": "<link " + "a" * 1_000_000,
+    "many spaces": "<" + " " * 1_000_000,
+    "a long value without its last quote": '<link a="' + " " * 1_000_000 + "x",
+    "many open tags": "<a>\n<b>\n" * 120_000 + "</robot>",
+    "tags in each other": "<a><b>" * 70_000 + "</b></a>" * 70_000 + "<",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -> None:
+    """A megabyte of one broken tag, or of open ones, does not hang; what stands before it is graded."""
+    path = tmp_path / "my_robot.urdf"
+    path.write_text(TEXT.replace("</robot>", HOSTILE[name]), encoding="utf-8")
+    done = run_process(("grade", str(path), "--format", "json"))
+    assert (done.returncode, json.loads(done.stdout)["score"]) == (1, 67)
+
+
+def test_a_path_without_quotes_is_read_whole() -> None:
+    """A value without quotes ends at a space or at the end of the tag, not at its first slash."""
+    found = Recovery('<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>').run()
+    assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
 @settings(max_examples=150, deadline=None)
