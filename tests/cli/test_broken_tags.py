@@ -84,6 +84,12 @@ def test_an_attribute_that_cannot_be_read_is_missing(tmp_path: Path) -> None:
     assert "URDF015 warning my_robot.urdf:18: assumed for grading: <origin> is read without attributes" in shown
 
 
+def test_a_broken_declaration_ends_at_its_first_bracket(tmp_path: Path) -> None:
+    """A declaration without its last ? costs only the loading."""
+    found = report(replaced(("?>", ">")), tmp_path)
+    assert (found["score"], [problem["code"] for problem in found["problems"]]) == (67, ["URDF004"])
+
+
 def test_consequences_are_not_reported(tmp_path: Path) -> None:
     """A broken joint leaves its link without one, but two roots are no second problem; `urdf-loads` names the broken tag."""
     text = replaced(
