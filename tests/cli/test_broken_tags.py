@@ -111,6 +111,29 @@ def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
     assert {problem["code"] for problem in found["problems"]} == {"XACRO001", "URDF015"}
 
 
+@pytest.mark.parametrize("tag", ['property name="r" value="0.05"', 'arg name="r" default="0.05"'])
+def test_a_xacro_tag_that_is_not_closed_ends_before_the_next_element(tag: str, tmp_path: Path) -> None:
+    """A property or an argument does not swallow the robot after it."""
+    value = "${r}" if tag.startswith("property") else "$(arg r)"
+    text = replaced(('<robot name="my_robot">', f'<robot name="my_robot" xmlns:xacro="x">\n<xacro:{tag}>'), ('sphere radius="0.05"', f'sphere radius="{value}"'))  # fmt: skip
+    path = tmp_path / "my_robot.urdf.xacro"
+    path.write_text(text, encoding="utf-8")
+    found = json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout)
+    assert (found["score"], lost(found)) == (67, {"urdf-loads"})
+
+
+def test_what_xacro_leaves_open_in_a_broken_file_is_undecided(tmp_path: Path) -> None:
+    """A link that the file of another package may define is not missing, also where a tag is broken."""
+    path = tmp_path / "my_robot.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="x"><xacro:include filename="$(find other)/lidar.xacro"/>\n'
+        '<link name="base_link"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></link></robot>'
+    )
+    done = run(("grade", path, "--format", "json", "--hints", "none"))
+    status = {row["id"]: row["status"] for row in json.loads(done.stdout)["results"]}
+    assert (status["urdf-loads"], status["base-box"], status["lidar-shape"]) == ("failed", "passed", "pending")
+
+
 HOSTILE = {
     "one long name": "<link " + "a" * 1_000_000,
     "many spaces": "<" + " " * 1_000_000,

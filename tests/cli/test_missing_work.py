@@ -241,7 +241,7 @@ def test_a_robot_with_an_unknown_part_is_not_called_another_robot(tmp_path: Path
     """What a file of another package adds may be the robot of the lab: also with `without_urdf` its criteria are undecided."""
     data = b"""<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><link name="mast"/>
     <xacro:include filename="$(find other)/wheels.xacro"/></robot>"""
-    path = written(tmp_path / "ash", {"my_robot.urdf": data, "Task1_Step8.png": png()})
+    path = written(tmp_path / "ash", {"my_robot.urdf.xacro": data, "Task1_Step8.png": png()})
     report = graded(path, "--rubric", rubric(tmp_path / "manual", "without_urdf"))
     assert "another robot" not in json.dumps(report)
     assert {row["status"] for row in report["results"] if row["id"].startswith("base")} == {"pending"}

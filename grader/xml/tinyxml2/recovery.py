@@ -18,8 +18,10 @@ _ATTRIBUTE = re.compile(
     r"""(?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:"([^"]*)"?|'([^']*)'?|[“”]([^“”]*)[“”]|([^\s"'“”=]+))"""
 )
 _NEXT_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
-_TOP = ("gazebo", "transmission", "ros2_control")  # elements for other tools, which stand in the robot
-_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags)}
+# Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in them.
+_XACRO = ("xacro:property", "xacro:arg", "xacro:include")
+_TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
+_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
 _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
 
