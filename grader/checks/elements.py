@@ -108,7 +108,7 @@ def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome
         return _no_path(reading, fitting[0], wanted)
     best = wanted.nearest(found)
     wrong = wanted.wrong(best)
-    if len(found) > 1 and wanted.identity in wrong:
+    if (len(found) > 1 or wanted.identity == "@name") and wanted.identity in wrong:
         return _no_identity(reading, fitting[0], found, wanted)
     if not wrong:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
@@ -149,7 +149,7 @@ def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outco
 
 
 def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wanted: WantedElement) -> Outcome:
-    """Return the failure of several elements of which none has the identifying attribute."""
+    """Return the failure of elements of which none has the identifying attribute."""
     names = [text.text for element in found for text in texts_at(element, wanted.identity)]
     value = str(wanted.values[wanted.identity])
     detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""

@@ -26,8 +26,10 @@ def robot_of(urdf: Urdf) -> Robot | None:
 
 
 def is_another_robot(rubric: Rubric, robot: Robot | None) -> bool:
-    """Return whether a robot has none of the links that the rubric names, and none with a similar name."""
-    if robot is None or not robot.links or not rubric.links or any(link.name in rubric.links for link in robot.links):
+    """Return whether a robot that is known completely has none of the links that the rubric names, and none with a similar name."""
+    if robot is None or robot.incomplete or not robot.links or not rubric.links:
+        return False
+    if any(link.name in rubric.links for link in robot.links):
         return False
     words = frozenset().union(*map(_words, rubric.links))
     return not any(

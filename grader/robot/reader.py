@@ -131,7 +131,8 @@ def _read_robot(root: Element, problems: Problems) -> Robot:
 
 def _incomplete(document: XmlDocument, robot: Robot) -> str:
     """Return why there may be more links and joints than are known: unknown content, or the name of one is unknown."""
-    of_root = document.unresolved.get(document.root) if document.root is not None else None
+    root = document.root if document.root is not None else document.recovered
+    of_root = document.unresolved.get(root) if root is not None else None
     parts = [*(link.unresolved for link in robot.links), *(joint.unresolved for joint in robot.joints)]
     named = (found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found)
     return next(filter(None, (of_root.content if of_root is not None else "", *named)), "")

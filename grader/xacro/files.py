@@ -60,7 +60,7 @@ class Files:
     def named(self, text: str) -> list[str]:
         """Return the paths of the files that an include names: several for a pattern."""
         path = self.path(text)
-        if not _GLOB.search(text):
+        if not _GLOB.search(text) or not self._workspace.paths:
             return [path]
         return sorted(other for other in self._workspace.paths if _matches(other, path))[:_MAX_FILES]
 

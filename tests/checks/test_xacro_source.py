@@ -188,9 +188,11 @@ def test_what_cannot_be_determined_is_pending(inside: str, status: str) -> None:
 
 
 def test_broken_xacro() -> None:
-    """XML that xacro refuses fails, with its own message."""
-    broken = REFERENCE.without(URDF).with_files({MAIN: ROBOT.format("<link name='${x}'>")})
-    outcome = graded(xacro_uses, broken, properties=1)
+    """What can be read around a broken tag counts; a file in which no link can be read fails with xacro's own message."""
+    broken = REFERENCE.without(URDF).with_files({MAIN: ROBOT.format(PROPERTY + "<link name='${a}'>")})
+    assert graded(xacro_uses, broken, properties=["a"]).status == "passed"
+    assert graded(xacro_uses, broken, properties=2).status == "failed"
+    outcome = graded(xacro_uses, REFERENCE.without(URDF).with_files({MAIN: "<robot>${x}<robot"}), properties=1)
     assert outcome.status == "failed"
     assert "xacro needs well-formed XML" in outcome.message
 

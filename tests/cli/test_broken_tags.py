@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.xml.tinyxml2.recovery import Recovery
-from tests.command_line import ROOT, run
+from tests.command_line import ROOT, run, run_process
 
 TEXT = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 LIDAR = '  <link name="lidar">\n    <visual>\n'
@@ -84,6 +84,12 @@ def test_an_attribute_that_cannot_be_read_is_missing(tmp_path: Path) -> None:
     assert "URDF015 warning my_robot.urdf:18: assumed for grading: <origin> is read without attributes" in shown
 
 
+def test_a_broken_declaration_ends_at_its_first_bracket(tmp_path: Path) -> None:
+    """A declaration without its last ? costs only the loading."""
+    found = report(replaced(("?>", ">")), tmp_path)
+    assert (found["score"], [problem["code"] for problem in found["problems"]]) == (67, ["URDF004"])
+
+
 def test_consequences_are_not_reported(tmp_path: Path) -> None:
     """A broken joint leaves its link without one, but two roots are no second problem; `urdf-loads` names the broken tag."""
     text = replaced(
@@ -115,6 +121,53 @@ def test_elements_for_simulators_are_graded(tmp_path: Path) -> None:
         done = run(("grade", path, "--rubric", "sensors", "--format", "json", "--hints", "none"))
         statuses.append({row["id"]: row["status"] for row in json.loads(done.stdout)["results"]})
     assert {name for name, status in statuses[1].items() if status != statuses[0][name]} == {"urdf-loads"}
+
+
+@pytest.mark.parametrize("tag", ['property name="r" value="0.05"', 'arg name="r" default="0.05"'])
+def test_a_xacro_tag_that_is_not_closed_ends_before_the_next_element(tag: str, tmp_path: Path) -> None:
+    """A property or an argument does not swallow the robot after it."""
+    value = "${r}" if tag.startswith("property") else "$(arg r)"
+    text = replaced(('<robot name="my_robot">', f'<robot name="my_robot" xmlns:xacro="x">\n<xacro:{tag}>'), ('sphere radius="0.05"', f'sphere radius="{value}"'))  # fmt: skip
+    path = tmp_path / "my_robot.urdf.xacro"
+    path.write_text(text, encoding="utf-8")
+    found = json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout)
+    assert (found["score"], lost(found)) == (67, {"urdf-loads"})
+
+
+def test_what_xacro_leaves_open_in_a_broken_file_is_undecided(tmp_path: Path) -> None:
+    """A link that the file of another package may define is not missing, also where a tag is broken."""
+    path = tmp_path / "my_robot.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="x"><xacro:include filename="$(find other)/lidar.xacro"/>\n'
+        '<link name="base_link"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></link></robot>'
+    )
+    done = run(("grade", path, "--format", "json", "--hints", "none"))
+    status = {row["id"]: row["status"] for row in json.loads(done.stdout)["results"]}
+    assert (status["urdf-loads"], status["base-box"], status["lidar-shape"]) == ("failed", "passed", "pending")
+
+
+HOSTILE = {
+    "one long name": "<link " + "a" * 1_000_000,
+    "many spaces": "<" + " " * 1_000_000,
+    "a long value without its last quote": '<link a="' + " " * 1_000_000 + "x",
+    "many open tags": "<a>\n<b>\n" * 120_000 + "</robot>",
+    "tags in each other": "<a><b>" * 70_000 + "</b></a>" * 70_000 + "<",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -> None:
+    """A megabyte of one broken tag, or of open ones, does not hang; what stands before it is graded."""
+    path = tmp_path / "my_robot.urdf"
+    path.write_text(TEXT.replace("</robot>", HOSTILE[name]), encoding="utf-8")
+    done = run_process(("grade", str(path), "--format", "json"))
+    assert (done.returncode, json.loads(done.stdout)["score"]) == (1, 67)
+
+
+def test_a_path_without_quotes_is_read_whole() -> None:
+    """A value without quotes ends at a space or at the end of the tag, not at its first slash."""
+    found = Recovery('<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>').run()
+    assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
 @settings(max_examples=150, deadline=None)

@@ -67,6 +67,13 @@ def test_the_prefix_is_put_before_the_name_as_it_is(prefix: str, frame: str, tmp
     assert results(tmp_path, prefix=prefix, frame=frame)["rviz-fixed-frame"]["status"] == "passed"
 
 
+@pytest.mark.parametrize(("prefix", "before"), [("'/'", ""), ("'/robot1/'", "robot1")])
+def test_a_slash_at_the_start_is_no_part_of_a_frame(prefix: str, before: str, tmp_path: Path) -> None:
+    """tf2 drops it: with an empty namespace before a slash the frames are called like the links."""
+    found = results(tmp_path, prefix=prefix, frame=f"{before}/base_footprint".removeprefix("/"), tf_prefix=before)
+    assert [found[name]["status"] for name in ("rviz-fixed-frame", "rviz-shows-robot")] == ["passed", "passed"]
+
+
 def test_another_frame_with_the_prefix(tmp_path: Path) -> None:
     """A wrong link is wrong with the prefix too; one that the robot has is not called missing."""
     found = results(tmp_path, prefix="'robot1/'", frame="robot1/base_link", tf_prefix="robot1")["rviz-fixed-frame"]

@@ -237,6 +237,16 @@ def test_a_robot_with_a_similar_link_is_graded_link_by_link(link: str, tmp_path:
     assert "another robot" not in json.dumps(graded(written(tmp_path, {"box.urdf": data}) / "box.urdf"))
 
 
+def test_a_robot_with_an_unknown_part_is_not_called_another_robot(tmp_path: Path) -> None:
+    """What a file of another package adds may be the robot of the lab: also with `without_urdf` its criteria are undecided."""
+    data = b"""<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><link name="mast"/>
+    <xacro:include filename="$(find other)/wheels.xacro"/></robot>"""
+    path = written(tmp_path / "ash", {"my_robot.urdf.xacro": data, "Task1_Step8.png": png()})
+    report = graded(path, "--rubric", rubric(tmp_path / "manual", "without_urdf"))
+    assert "another robot" not in json.dumps(report)
+    assert {row["status"] for row in report["results"] if row["id"].startswith("base")} == {"pending"}
+
+
 def test_another_robot_counts_as_no_urdf(tmp_path: Path) -> None:
     """With `without_urdf = "manual"` and evidence its criteria need manual grading, and `batch` counts it."""
     path = written(tmp_path / "class" / "ash", {"box.urdf": BOX, "Task1_Step8.png": png()})

@@ -66,6 +66,12 @@ with = { link = "tool", lower = 0, upper = 0.3, tolerance = 0.002 }
             "No <joint> in <ros2_control> has the '@name' 'joint2'; the file has 'joint1' and 'joint3'.",
         ),
         (
+            '<joint name="joint2"><command_interface name="position"/></joint>\n',
+            "",
+            "interface",
+            "No <joint> in <ros2_control> has the '@name' 'joint2'; the file has 'joint1'.",
+        ),
+        (
             'izz="1"',
             'izz="x"',
             "ball",

@@ -266,10 +266,11 @@ def test_a_file_that_the_package_does_not_have(tmp_path: Path) -> None:
     assert message in {problem["message"] for problem in report["problems"]}
 
 
-def test_a_single_file_in_a_class_has_no_neighbours(tmp_path: Path) -> None:
-    """The file of another student completes none."""
+@pytest.mark.parametrize("include", [INCLUDE, INCLUDE.replace("materials", "mat*")])
+def test_a_single_file_in_a_class_has_no_neighbours(include: str, tmp_path: Path) -> None:
+    """The file of another student completes none; which files a pattern names is not known."""
     folder = tmp_path / "class"
-    path = including(tmp_path / "my_robot", INCLUDE)
+    path = including(tmp_path / "my_robot", include)
     folder.mkdir()
     shutil.copy(path, folder / "ash.urdf.xacro")
     shutil.copy(path.parent / "materials.xacro", folder)

@@ -93,10 +93,13 @@ class Launch:
         return tuple(reference for reference in self.references if reference.purpose in purposes)
 
     def frames_of(self, link: str) -> tuple[str | None, ...]:
-        """Return the frames that robot_state_publisher publishes for a link, or as which a rubric names it; None for an unknown one."""
+        """Return the frames that robot_state_publisher publishes for a link, or as which a rubric names it; None for an unknown one.
+
+        tf2 ignores a slash at the start.
+        """
         publishers = [node for node in self.nodes if node.executable == STATE_PUBLISHER and node.when is not False]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
-        return tuple(it if it is None else it + link.removeprefix(it) for it in prefixes)
+        return tuple(it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes)
 
 
 @dataclass(slots=True)

@@ -11,16 +11,18 @@ from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import CHILDREN
 
 # What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
-_OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!.*?(?:>|\Z)", re.DOTALL)
+_OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<[?!].*?(?:>|\Z)", re.DOTALL)
 # A broken tag to its > or to the next tag, and the attributes in it: also without quotes, in typographic ones, or without the last.
-_BROKEN = re.compile(r"<\s*(?P<close>/?)\s*(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
+_BROKEN = re.compile(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
 _ATTRIBUTE = re.compile(
-    r"""([A-Za-z_][\w:.-]*)\s*=\s*(?:"([^"]*?)(?:"|/?\s*\Z)|'([^']*?)(?:'|/?\s*\Z)|[“”]([^“”]*)[“”]|([^\s"'“”=/]+))"""
+    r"""(?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:"([^"]*)"?|'([^']*)'?|[“”]([^“”]*)[“”]|([^\s"'“”=]+))"""
 )
-_NEXT_NAME = re.compile(r"<\s*([A-Za-z_][\w:.-]*)")
-_TOP = ("gazebo", "transmission", "ros2_control")  # elements for other tools, which stand in the robot
-_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags)}
-_MAX_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
+_NEXT_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
+# Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in them.
+_XACRO = ("xacro:property", "xacro:arg", "xacro:include")
+_TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
+_TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
+_MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
 
 
@@ -45,7 +47,9 @@ class Recovery:
     def run(self) -> Recovered:
         """Read the first robot."""
         position, text = 0, self._text.partition("\0")[0]
-        while (start := text.find("<", position)) >= 0 and len(self._assumed) < _MAX_ASSUMED:
+        while len(self._assumed) < _MAX_ASSUMED and len(self._open) <= _MAX_DEPTH:
+            if (start := text.find("<", position)) < 0:
+                break
             self._write(text[position:start])
             if other := _OTHER.match(text, start):
                 self._write(other["text"] or "")
@@ -77,10 +81,11 @@ class Recovery:
                 self._assume("a < without the name of a tag is ignored", start)
                 return None, max(error.resume, start + 1)
             attributes: dict[str, str] = {}
-            for name, *values in _ATTRIBUTE.findall(found["rest"]):
+            rest = found["rest"].rstrip()
+            for name, *values in _ATTRIBUTE.findall(rest.removesuffix("/")):
                 attributes.setdefault(name, decode("".join(values)))
             form: Literal["open", "close", "empty"] = (
-                "close" if found["close"] else "empty" if found["rest"].rstrip().endswith("/") else "open"
+                "close" if found["close"] else "empty" if rest.endswith("/") else "open"
             )
             tag, end = Tag(found["name"], form, attributes, start), found.end()
             if tag.form != "close":
@@ -101,9 +106,8 @@ class Recovery:
         around = [opened.name for opened in self._open]
         if around and around[-1] not in parents and parents.intersection(around) and _TAGS.issuperset(around):
             self._leave(max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset)
-        if len(self._open) < _MAX_DEPTH:
-            self._xml.append(tag.xml)
-            self._offsets.append(tag.offset)
+        self._xml.append(tag.xml)
+        self._offsets.append(tag.offset)
         if tag.form == "open":
             self._open.append(tag)
 
@@ -124,12 +128,10 @@ class Recovery:
             self._end()
 
     def _end(self) -> None:
-        tag = self._open.pop()
-        if len(self._open) < _MAX_DEPTH:
-            self._xml.append(f"</{tag.xml_name}>")
+        self._xml.append(f"</{self._open.pop().xml_name}>")
 
     def _write(self, text: str) -> None:
-        if self._open and len(self._open) <= _MAX_DEPTH:
+        if self._open:
             self._xml.append(escape(decode(text)).replace(">", "&gt;"))
 
     def _assume(self, message: str, offset: int) -> None:
