@@ -127,15 +127,22 @@ def _needs_xacro(data: bytes) -> bool:
 def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
-    The folder that a build installs a package in is called differently in launch files and in xacro.
+    The folder that a build installs a package in is called differently in launch files and in xacro. A file that the launch file
+    names there and that no build certainly installs stays as it is: what is in it cannot be determined.
     """
     from grader.package.launch.places import SHARE  # late: most URDFs are no xacro
     from grader.xacro.expansion import expand
     from grader.xacro.texts import INSTALLED
 
-    shared = re.compile(rf"{SHARE}/([^/]+)")
-    given = {name: text and shared.sub(rf"{INSTALLED}/\1/share/\1", text) for name, text in launched.items()}
-    expansion = expand(data, path, around.workspace(), {**given, **around.arguments})
+    workspace, given = around.workspace(), dict(launched)
+    for name, text in launched.items():
+        shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
+        if shared is None:
+            continue
+        package, inside = shared.groups()
+        if not inside or workspace.package(package) is None or workspace.installed(package, inside) is not None:
+            given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
+    expansion = expand(data, path, workspace, {**given, **around.arguments})
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]

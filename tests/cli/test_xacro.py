@@ -137,6 +137,15 @@ def test_a_parameter_file_in_the_share_folder(build: str, target: str, tmp_path:
     assert [problem for problem in report["problems"] if problem["code"].startswith("XACRO")] == []
 
 
+def test_a_parameter_file_that_is_not_installed_is_undecided(tmp_path: Path) -> None:
+    """Without an entry of data_files the build may not install it, so what ROS 2 makes of the robot needs manual grading."""
+    command = "'xacro ', path, ' params:=', share + '/config/params.yaml'"
+    arg = '<xacro:arg name="params" default=""/><xacro:property name="p" value="${xacro.load_yaml(xacro.arg(\'params\'))}"/>'
+    package_with(tmp_path, command, "${p['green']}", arg)
+    code, report = graded(tmp_path)
+    assert (code, statuses(report)["base-green"]) == (1, "pending")
+
+
 def test_a_parameter_file_of_another_package_is_undecided(tmp_path: Path) -> None:
     """The share folder of a package that was not submitted is outside of the submission."""
     command = "'xacro ', path, ' params:=', get_package_share_directory('other') + '/config/params.yaml'"
