@@ -204,13 +204,13 @@ EQUIVALENTS = (
 
 # Variants without edits change the whole text.
 BROKEN = (
-    Variant("tag-parent", 2, "", _EVERYTHING, (Edit(_LIDAR, "<parent link=", "<parent="),)),
-    Variant("tag-origin", 2, "", _EVERYTHING, (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
-    Variant("comma-between-attributes", 2, "", _EVERYTHING, (Edit("lidar", '"0.1" length', '"0.1", length'),)),
+    Variant("tag-parent", 2, "", "urdf-loads lidar-fixed lidar-frame lidar-on-top", (Edit(_LIDAR, "<parent link=", "<parent="),)),
+    Variant("tag-origin", 2, "", f"urdf-loads {_GROUND}", (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
+    Variant("comma-between-attributes", 2, "", "urdf-loads", (Edit("lidar", '"0.1" length', '"0.1", length'),)),
     Variant("comment-before-declaration", 2, "", "urdf-loads", ()),
-    Variant("declaration-without-quotes", 1, "", _EVERYTHING, ()),
+    Variant("declaration-without-quotes", 1, "", "urdf-loads", ()),
     Variant("truncated", 2, "", _EVERYTHING, ()),
-    Variant("text-after-robot", 2, "", _EVERYTHING, ()),
+    Variant("text-after-robot", 2, "", "urdf-loads", ()),
     Variant("closed-twice", 1, "", "", ()),  # the parser of ROS 2 reads past it
     Variant("joint-without-child", 1, "", "urdf-loads joint-names caster-placed stands-on-ground",
         (Edit(_CASTER, '<child link="caster_wheel"/>'),)),
@@ -365,7 +365,7 @@ def _spoilt(dice: Dice, text: str, variants: Sequence[Variant]) -> str:
         case "declaration-without-quotes":
             text = f"<?xml version = 1.0>\n{below}"
         case "truncated":
-            start, end = text.index("<robot") + 40, text.rindex("</robot>")
+            start, end = text.index("<robot") + 20, text.index("<link")
             text = text[: start + dice.below(end - start)]
         case "text-after-robot":
             text += dice.pick(("done\n", "```\n", "Lab 6, task 1\n"))

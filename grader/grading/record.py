@@ -106,7 +106,7 @@ def _submission(data: Any, originals: Originals | None = None) -> GradedSubmissi
         verdict,
         is_single,
         unread,
-        tuple(rest[0]) if rest else (),
+        tuple(rest[0]) if rest and isinstance(rest[0], list) else (),  # earlier versions had no list
         originals,
     )
 

@@ -107,7 +107,7 @@ def test_feedback_and_pages_have_the_same_headline(top: Path, kind: Format) -> N
     assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book.db").returncode == 0
     worksheet = top / "sheet.csv"
     worksheet.write_text(
-        "Identifier,Full name,Email address,Status,Grade,Maximum Grade\nParticipant 7,Anna Ek,anna@x.org,,,11\n"
+        "Identifier,Full name,Email address,Status,Grade,Maximum Grade\nParticipant 7,Anna Ek,anna@example.org,,,11\n"
     )
     done = grader(
         "export", "moodle", "--gradebook", top / "book.db", "--into", worksheet, "--output", top / "up.csv",

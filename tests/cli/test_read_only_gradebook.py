@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -28,6 +29,8 @@ def graded() -> Iterator[Path]:
         (top / "class/ann").mkdir(parents=True)
         shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", top / "class/ann")
         (top / "book").mkdir()
+        (top / "tmp").mkdir()
+        (top / "tmp").chmod(0o777)
         assert run(("batch", top / "class", "--gradebook", top / "book/lab.db")).returncode == 0
         yield top / "book/lab.db"
 
@@ -51,7 +54,7 @@ def unprivileged(book: Path, *, folder: int, file: int) -> Iterator[None]:
 
 def as_reader(book: Path, *arguments: object, folder: int = 0o555, file: int = 0o444) -> Done:
     """Run a command as a user who cannot write the gradebook."""
-    with unprivileged(book, folder=folder, file=file):
+    with unprivileged(book, folder=folder, file=file), patch.object(tempfile, "tempdir", f"{book.parent.parent}/tmp"):
         return run((*arguments, "--gradebook", book))
 
 

@@ -78,7 +78,7 @@ def test_a_document_that_hides_the_limit_is_too_much_work() -> None:
     def endless() -> None:
         with suppress(Exception):
             while True:
-                pass
+                len("")
 
     with pytest.raises(TooMuchWork), limited_work(1_000):
         endless()
