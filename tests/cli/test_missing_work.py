@@ -230,6 +230,16 @@ def test_another_robot_has_no_hint(tmp_path: Path) -> None:
     assert not any(row["hints"] for row in report["results"])
 
 
+def test_a_robot_with_other_names_has_hints(tmp_path: Path) -> None:
+    """A robot with as many links as the lab's may be the lab's: the hints rename its links."""
+    text = URDF.decode()
+    for link, name in (("base_footprint", "fuss"), ("base_link", "rumpf"), ("lidar", "scanner"), ("left_wheel", "rad_1"), ("right_wheel", "rad_2"), ("caster_wheel", "kugel")):  # fmt: skip
+        text = text.replace(f'"{link}"', f'"{name}"')
+    report = graded(written(tmp_path, {"a.urdf": text.encode()}) / "a.urdf")
+    assert "another robot" in json.dumps(report)
+    assert any(row["hints"] for row in report["results"])
+
+
 @pytest.mark.parametrize("link", ["base_link", "Base", "leftwheel", "wheel_1"])
 def test_a_robot_with_a_similar_link_is_graded_link_by_link(link: str, tmp_path: Path) -> None:
     """One link of the rubric, or one with a similar name, makes it the robot of the lab."""

@@ -43,7 +43,10 @@ class Search:
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self._choice = Choice(trials, Proposing(reference, package), self._criteria)
         self._reference = reference
-        self._is_another_robot = is_another_robot(trials.rubric, robot_of(trials.start.submission.urdf))
+        robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
+        # One with as many links may be the lab's, with other names.
+        is_small = robot is not None and 2 * len(robot.links) < len(rubric.links)
+        self._is_another_robot = is_small and is_another_robot(rubric, robot)
         self.found: list[Found] = []
         self.final = trials.start
         self._known: dict[Edits, list[Option]] = {}
