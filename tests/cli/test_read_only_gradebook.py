@@ -3,13 +3,12 @@
 import ctypes
 import os
 import shutil
-import sys
 import sqlite3
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from unittest.mock import patch
 
 import pytest
 
