@@ -137,7 +137,12 @@ def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource
 
     packages = submission.packages or submission.neighbours
     around = Surroundings(
-        submission.everything, submission.package, packages, submission.arguments, is_single=submission.is_single
+        submission.everything,
+        submission.package,
+        packages,
+        submission.arguments,
+        budget=submission.budget,
+        is_single=submission.is_single,
     )
     expansion = expand(data, path, around.workspace(), submission.arguments)
     if isinstance(expansion.source, ExpandedSource):

@@ -9,38 +9,14 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
-from grader.static_python.closed_functions import call, make_dict
-from grader.static_python.closed_methods import attribute, format_value
+from grader.static_python.closed_functions import call
+from grader.static_python.closed_methods import attribute
 from grader.static_python.closed_operators import compare, operate, subscript
-from grader.static_python.closed_values import (
-    ExpressionFails,
-    Function,
-    Undetermined,
-    Value,
-    check_size,
-    items_of,
-    run,
-)
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, items_of, run
 
 _MAX_LENGTH = 4_000  # characters of an expression
-_MAX_KEPT = 1_000  # parsed expressions
-
-
-class OutOfSteps(Undetermined):
-    """No steps are left: nothing more of the document can be evaluated."""
-
-
-class Budget:
-    """The steps that are left for all expressions of a document."""
-
-    def __init__(self, steps: int) -> None:
-        self.left = steps
-
-    def spend(self, count: int = 1) -> None:
-        """Count steps; raise OutOfSteps if none are left."""
-        self.left -= count
-        if self.left < 0:
-            raise OutOfSteps("evaluating this takes too many steps")
+_MAX_KEPT = 200  # characters of an expression that is kept once it is parsed
+_OF_NODE = 2  # what evaluating a part of an expression is charged
 
 
 def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
@@ -48,9 +24,11 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
 
     Raises ExpressionFails where Python raises an error, Undetermined where the value cannot be determined.
     """
+    text = text.strip()
     if len(text) > _MAX_LENGTH:
         raise Undetermined("the expression is too long")
-    node = _parsed(text.strip())
+    budget.charge(len(text))
+    node = _parsed(text) if len(text) > _MAX_KEPT else _kept(text)
     if isinstance(node, str):
         raise ExpressionFails(node)
     try:
@@ -59,7 +37,6 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is nested too deeply") from None
 
 
-@lru_cache(_MAX_KEPT)
 def _parsed(text: str) -> ast.expr | str:
     """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
     try:
@@ -74,23 +51,26 @@ def _parsed(text: str) -> ast.expr | str:
         return f"{type(error).__name__}: {error}"
 
 
+_kept = lru_cache(1_000)(_parsed)
+
+
 class _Evaluator:
     def __init__(self, find: Callable[[str], Value], budget: Budget) -> None:
         self._find = find
         self._budget = budget
 
     def value(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
-        """Return the value of an expression; `local` has the names that comprehensions and lambdas bind."""
-        self._budget.spend()
+        """Return the value of an expression; `local` has the names that comprehensions bind."""
+        self._budget.charge(_OF_NODE)
         match node:
             case ast.Constant(value=value):
-                return value
+                return self._budget.checked(value)
             case ast.Name(id=name):
                 if name.startswith("__"):
                     raise ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
                 return local[name] if name in local else self._find(name)
             case ast.BinOp(left=left, op=op, right=right):
-                return self._sized(operate(op, self.value(left, local), self.value(right, local)))
+                return operate(op, self.value(left, local), self.value(right, local), self._budget)
             case ast.Compare(left=left, ops=ops, comparators=comparators):
                 return self._compare(self.value(left, local), ops, comparators, local)
             case ast.BoolOp(op=op, values=operands):
@@ -98,57 +78,35 @@ class _Evaluator:
             case ast.IfExp(test=test, body=body, orelse=other):
                 return self.value(body if run(bool, self.value(test, local)) else other, local)
             case ast.Attribute(value=owner, attr=name):
-                return attribute(self.value(owner, local), name)
+                return attribute(self.value(owner, local), name, self._budget)
             case ast.Subscript(value=owner, slice=key):
-                return self._sized(subscript(self.value(owner, local), self.value(key, local)))
+                return subscript(self.value(owner, local), self._key(key, local), self._budget)
             case ast.Call():
                 return self._call(node, local)
             case _:
-                return self._rare(node, local)
+                return self._budget.checked(self._rare(node, local))
 
     def _rare(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
         match node:
-            case ast.UnaryOp(op=op, operand=operand):
+            case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
                 return run(_UNARY[type(op)], self.value(operand, local))
             case ast.List(elts=elements):
-                return self._sized(self._elements(elements, local))
+                return [self.value(element, local) for element in elements]
             case ast.Tuple(elts=elements):
-                return self._sized(tuple(self._elements(elements, local)))
-            case ast.Set(elts=elements):
-                return self._sized(run(set, self._elements(elements, local)))
-            case ast.Dict(keys=keys, values=values):
-                return self._sized(self._dict(keys, values, local))
-            case ast.Slice(lower=lower, upper=upper, step=step):
-                return slice(*(None if bound is None else self.value(bound, local) for bound in (lower, upper, step)))
+                return tuple(self.value(element, local) for element in elements)
             case ast.ListComp(elt=element, generators=loops):
-                return self._sized([self.value(element, inner) for inner in self._rounds(loops, local)])
-            case ast.SetComp(elt=element, generators=loops):
-                return self._sized(run(set, [self.value(element, inner) for inner in self._rounds(loops, local)]))
-            case ast.GeneratorExp(elt=element, generators=loops):
-                return iter(self._sized([self.value(element, inner) for inner in self._rounds(loops, local)]))
-            case ast.DictComp(key=key, value=element, generators=loops):
-                pairs = [(self.value(key, inner), self.value(element, inner)) for inner in self._rounds(loops, local)]
-                return self._sized(run(dict, pairs))
-            case ast.JoinedStr(values=pieces):
-                return self._sized("".join(self._piece(piece, local) for piece in pieces))
-            case ast.Lambda(args=parameters, body=body):
-                return self._function(parameters, body, local)
+                return [self.value(element, inner) for inner in self._rounds(loops, local)]
             case ast.Await() | ast.Yield() | ast.YieldFrom():
                 raise ExpressionFails("SyntaxError: await and yield belong into functions")
             case _:
                 raise Undetermined("an expression of this kind is not supported")
-
-    def _sized(self, value: Value) -> Value:
-        if type(value) is not float:
-            self._budget.spend(check_size(value) // 16)
-        return value
 
     def _compare(
         self, left: Value, ops: list[ast.cmpop], comparators: list[ast.expr], local: Mapping[str, Value]
     ) -> Value:
         for op, comparator in zip(ops, comparators, strict=True):
             right = self.value(comparator, local)
-            if not compare(op, left, right):
+            if not compare(op, left, right, self._budget):
                 return False
             left = right
         return True
@@ -161,58 +119,24 @@ class _Evaluator:
                 break
         return value
 
+    def _key(self, key: ast.expr, local: Mapping[str, Value]) -> Value:
+        if not isinstance(key, ast.Slice):
+            return self.value(key, local)
+        return slice(
+            *(None if bound is None else self.value(bound, local) for bound in (key.lower, key.upper, key.step))
+        )
+
     def _call(self, node: ast.Call, local: Mapping[str, Value]) -> Value:
         function = self.value(node.func, local)
-        args = self._elements(node.args, local)
+        args = [self.value(argument, local) for argument in node.args]
         kwargs: dict[str, Value] = {}
         for keyword in node.keywords:
-            value = self.value(keyword.value, local)
-            more = {keyword.arg: value} if keyword.arg is not None else run(make_dict, value)
-            if repeated := kwargs.keys() & more.keys():
-                raise ExpressionFails(f"SyntaxError: keyword argument repeated: {min(repeated)}")
-            kwargs |= more
-        self._budget.spend(check_size([args, list(kwargs.values())]) // 16)
-        return self._sized(call(function, args, kwargs))
-
-    def _elements(self, nodes: list[ast.expr], local: Mapping[str, Value]) -> list[Value]:
-        values: list[Value] = []
-        for node in nodes:
-            if isinstance(node, ast.Starred):
-                values += items_of(self.value(node.value, local))
-            else:
-                values.append(self.value(node, local))
-        return values
-
-    def _dict(
-        self, keys: list[ast.expr | None], values: list[ast.expr], local: Mapping[str, Value]
-    ) -> dict[Value, Value]:
-        table: dict[Value, Value] = {}
-        for key, node in zip(keys, values, strict=True):
-            if key is None:
-                table |= run(make_dict, self.value(node, local))
-            else:
-                run(table.__setitem__, self.value(key, local), self.value(node, local))
-        return table
-
-    def _piece(self, piece: ast.expr, local: Mapping[str, Value]) -> str:
-        """Return the text of one piece of an f-string."""
-        if isinstance(piece, ast.FormattedValue):
-            spec = self.value(piece.format_spec, local) if piece.format_spec is not None else ""
-            conversion = chr(piece.conversion) if piece.conversion >= 0 else None
-            return format_value(self.value(piece.value, local), spec, conversion)
-        return str(self.value(piece, local))
-
-    def _function(self, parameters: ast.arguments, body: ast.expr, local: Mapping[str, Value]) -> Function:
-        names = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
-        if parameters.vararg or parameters.kwarg or parameters.kwonlyargs or parameters.defaults:
-            raise Undetermined("a lambda of this kind is not supported")
-
-        def called(*args: Value) -> Value:
-            if len(args) != len(names):
-                raise ExpressionFails(f"this lambda takes {len(names)} arguments, not {len(args)}")
-            return self.value(body, {**local, **dict(zip(names, args, strict=True))})
-
-        return Function("lambda", called)
+            if keyword.arg is None:
+                raise Undetermined("arguments with ** are not supported")
+            if keyword.arg in kwargs:
+                raise ExpressionFails(f"SyntaxError: keyword argument repeated: {keyword.arg}")
+            kwargs[keyword.arg] = self.value(keyword.value, local)
+        return call(function, args, kwargs, self._budget)
 
     def _rounds(self, loops: list[ast.comprehension], local: Mapping[str, Value]) -> Iterator[Mapping[str, Value]]:
         """Yield the names that are bound in each round of nested loops."""
@@ -220,8 +144,8 @@ class _Evaluator:
             yield local
             return
         loop, *nested = loops
-        for item in items_of(self.value(loop.iter, local)):
-            self._budget.spend()
+        for item in items_of(self._budget.checked(self.value(loop.iter, local))):
+            self._budget.charge(_OF_NODE + len(local))
             inner = {**local, **_bound(loop.target, item)}
             if all(self.value(condition, inner) for condition in loop.ifs):
                 yield from self._rounds(nested, inner)
@@ -233,7 +157,7 @@ def _bound(target: ast.expr, value: Value) -> dict[str, Value]:
         case ast.Name(id=name):
             return {name: value}
         case ast.Tuple(elts=targets) | ast.List(elts=targets):
-            values = list(items_of(value))
+            values = items_of(value)
             if len(values) != len(targets):
                 raise ExpressionFails(f"ValueError: cannot unpack {len(values)} values into {len(targets)} names")
             pairs = zip(targets, values, strict=True)
@@ -246,5 +170,4 @@ _UNARY: Mapping[type[ast.unaryop], Callable[[Value], Value]] = {
     ast.Not: lambda value: not value,
     ast.USub: lambda value: -value,
     ast.UAdd: lambda value: +value,
-    ast.Invert: lambda value: ~value,
 }

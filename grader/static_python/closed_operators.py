@@ -2,47 +2,48 @@
 
 import ast
 import operator
-import re
 from collections.abc import Callable
 
+from grader.static_python.closed_methods import percent_format, search_cost
 from grader.static_python.closed_values import (
     MAX_BITS,
-    MAX_ITEMS,
+    MAX_PARTS,
     PLAIN,
+    Budget,
     Namespace,
     Undetermined,
     Value,
-    check_text,
     run,
     too_large,
 )
 
 _NUMBERS = (float, int)
-_LONG_NUMBER = re.compile(r"[0-9]{4}")
 
 
-def operate(op: ast.operator, left: Value, right: Value) -> Value:
+def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Value:
     """Return the value of a binary operator."""
-    simple = _SIMPLE.get(type(op))
-    if simple is not None and type(left) in _NUMBERS and type(right) in _NUMBERS:
-        return run(simple, left, right)
-    if not (isinstance(left, PLAIN) and isinstance(right, PLAIN)):
+    operation = _OPERATORS.get(type(op))
+    if operation is None or not (isinstance(left, PLAIN) and isinstance(right, PLAIN)):
         raise Undetermined("this operation is not supported")
-    match op, left, right:
-        case ast.Pow(), int(), int() if right > 0 and left.bit_length() * right > MAX_BITS:
-            too_large("number")
-        case ast.LShift(), int(), int() if left.bit_length() + right > MAX_BITS:
-            too_large("number")
-        case ast.Mult(), (str() | list() | tuple()), int() if len(left) * right > MAX_ITEMS:
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        size = budget.measure(left) + budget.measure(right)
+        times = 0
+        match op, left, right:
+            case ast.Mod(), str(), _:
+                operation, times = percent_format, left.count("%")
+            case ast.Mult(), (str() | list() | tuple()), int():
+                times = right
+            case ast.Mult(), int(), (str() | list() | tuple()):
+                times = left
+        if size * times > MAX_PARTS:
             too_large("value")
-        case ast.Mult(), int(), (str() | list() | tuple()) if len(right) * left > MAX_ITEMS:
-            too_large("value")
-        case ast.Mod(), str(), _:
-            return run(_percent_format, left, right)
-    return run(_OPERATORS[type(op)], left, right)
+        budget.charge(size * max(times, 0))
+    elif isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > MAX_BITS:
+        too_large("number")
+    return budget.checked(run(operation, left, right))
 
 
-def compare(op: ast.cmpop, left: Value, right: Value) -> bool:
+def compare(op: ast.cmpop, left: Value, right: Value, budget: Budget) -> bool:
     """Return the value of one comparison."""
     if not (isinstance(left, PLAIN) and isinstance(right, PLAIN)):
         raise Undetermined("this comparison is not supported")
@@ -50,34 +51,26 @@ def compare(op: ast.cmpop, left: Value, right: Value) -> bool:
         value is None or isinstance(value, bool) for value in (left, right)
     ):
         raise Undetermined("which values are one object is not defined")
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
     return bool(run(_COMPARISONS[type(op)], left, right))
 
 
-def subscript(owner: Value, key: Value) -> Value:
+def subscript(owner: Value, key: Value, budget: Budget) -> Value:
     """Return the value of owner[key]."""
     if isinstance(owner, Namespace) and isinstance(key, str):
         return owner.find(key)
     if not isinstance(owner, PLAIN):
         raise Undetermined("this index is not supported")
-    return run(operator.getitem, owner, key)
-
-
-def _percent_format(template: str, value: Value) -> str:
-    if "*" in template or _LONG_NUMBER.search(template):
-        raise Undetermined("this format is not supported")
-    check_text(value)
-    return str(template % value)
+    if isinstance(key, slice) and isinstance(owner, str | list | tuple):
+        budget.charge(len(owner))
+    return budget.checked(run(operator.getitem, owner, key))
 
 
 _OPERATORS: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-    ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.LShift: operator.lshift,
-    ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_, ast.BitXor: operator.xor,
-    ast.MatMult: operator.matmul,
+    ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow,
 }  # fmt: skip
-_SIMPLE: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
-    kind: _OPERATORS[kind] for kind in (ast.Add, ast.Sub, ast.Mult, ast.Div)
-}  # whose results grow slowly
 _COMPARISONS: dict[type[ast.cmpop], Callable[[Value, Value], Value]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Is: operator.is_, ast.IsNot: operator.is_not,
     ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,

@@ -56,7 +56,8 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     around = Surroundings(
         everything, submission.package, packages, submission.arguments, is_single=submission.is_single
     )
-    return replace(submission, urdf=read_as_ros(files.get(path) or urdf.data, path, around), everything=everything)
+    read = read_as_ros(files.get(path) or urdf.data, path, around)
+    return replace(submission, urdf=read, everything=everything, budget=around.budget)
 
 
 def with_files(submission: Submission, files: Files) -> Submission:

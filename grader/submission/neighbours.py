@@ -25,7 +25,9 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Map
     If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
     """
     alone = Surroundings(arguments=arguments)
-    submission = Submission(identity, read_as_ros(data, printable_path(place.name), alone), arguments=arguments)
+    submission = Submission(
+        identity, read_as_ros(data, printable_path(place.name), alone), arguments=arguments, budget=alone.budget
+    )
     if not alone.asked:
         return submission
     try:
@@ -35,11 +37,11 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Map
         tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
     except (OSError, InputError):
         tree = None
-    return _expanded(tree, path, identity, arguments) if tree is not None else submission
+    return _expanded(tree, path, identity, alone) if tree is not None else submission
 
 
-def _expanded(tree: Tree, path: str, identity: str, arguments: Mapping[str, str]) -> Submission:
-    """Return a file of a tree as a submission, with everything that is read for it."""
+def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Submission:
+    """Return a file of a tree as a submission, with everything that is read for it; `alone` is what is around it without a tree."""
     known: dict[str, bytes] = {}
 
     def read(file: File, limit: int, *, first: bool = False) -> bytes:
@@ -49,7 +51,8 @@ def _expanded(tree: Tree, path: str, identity: str, arguments: Mapping[str, str]
     recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
     packages = read_packages(recorded, "")
     data = tree.files[path].read(tree.files[path].size)
-    urdf = read_as_ros(data, path, Surroundings(recorded, None, packages, arguments, is_single=True))
+    around = replace(alone, tree=recorded, packages=packages, is_single=True)
+    urdf = read_as_ros(data, path, around)
     besides = tuple(sorted(known.keys() - {path}))
     note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
     return Submission(
@@ -57,7 +60,8 @@ def _expanded(tree: Tree, path: str, identity: str, arguments: Mapping[str, str]
         urdf,
         everything=overlaid(tree, known),
         notes=(note,) if besides else (),
-        arguments=arguments,
+        arguments=alone.arguments,
+        budget=alone.budget,
         neighbours=packages,
         besides=besides,
     )

@@ -25,11 +25,12 @@ def read_submission(
     data: bytes, *, identity: str, path: str, arguments: Mapping[str, str] = _NO_ARGUMENTS
 ) -> Submission:
     """Return the submission that consists of the bytes of one URDF; `arguments` are those of xacro."""
-    if not arguments:
+    if not arguments and b"xacro" not in data:
         return Submission(identity, read_as_ros(data, path))
     from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
 
-    return Submission(identity, read_as_ros(data, path, Surroundings(arguments=arguments)), arguments=arguments)
+    around = Surroundings(arguments=arguments)
+    return Submission(identity, read_as_ros(data, path, around), arguments=arguments, budget=around.budget)
 
 
 def open_submission(
@@ -110,9 +111,9 @@ def submission_of(
 
     chosen = select(tree, wanted, package, folders, limit)
     urdf: Urdf = Absent()
+    around = Surroundings(tree, chosen.package, chosen.packages, arguments)
     if chosen.urdf is not None:
         try:
-            around = Surroundings(tree, chosen.package, chosen.packages, arguments)
             urdf = read_as_ros(tree.files[chosen.urdf].read(limit), chosen.urdf, around)
         except InputError as error:  # the rest of the submission is graded
             urdf = Unreadable(chosen.urdf, str(error))
@@ -131,6 +132,7 @@ def submission_of(
         other_lab=chosen.other_lab,
         no_documents=no_documents,
         arguments=arguments,
+        budget=around.budget,
         reopen=partial(
             submission_of,
             identity=identity,

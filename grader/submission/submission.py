@@ -14,6 +14,7 @@ from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
+from grader.static_python.closed_values import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
 
@@ -46,6 +47,7 @@ class Submission:
     other_lab: str = ""  # the folder of another lab, where it is graded
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
     arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
+    budget: Budget = field(default_factory=Budget, repr=False, compare=False)  # of the work to read it
     neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
     reopen: Callable[[Tree], Submission] | None = field(default=None, repr=False)  # opens other files in the same way

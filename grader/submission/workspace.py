@@ -10,6 +10,7 @@ from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
 from grader.package.package import Package
+from grader.static_python.closed_values import Budget
 
 if TYPE_CHECKING:
     from grader.package.launch.model import Reference
@@ -30,6 +31,7 @@ class Surroundings:
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = field(default_factory=dict)
     asked: list[str] = field(default_factory=list, repr=False)
+    budget: Budget = field(default_factory=Budget, repr=False)
     is_single: bool = False
 
     def robot_references(self, path: str) -> list[Reference]:
@@ -42,7 +44,9 @@ class Surroundings:
 
         folders = {package.name: package.folder for package in reversed(self.packages)}
         is_part = not folders and bool(self.tree.files)
-        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part, self.asked.append)
+        return Workspace(
+            self._read, folders.get, self.budget, tuple(self.tree.files), self._installed, is_part, self.asked.append
+        )
 
     def _read(self, path: str) -> bytes:
         file = self.tree.files.get(path)

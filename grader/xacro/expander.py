@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.source import Location
-from grader.static_python.closed import Budget, OutOfSteps
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value, text_of
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
@@ -16,7 +15,8 @@ from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
-_MAX_STEPS = 40_000
+_MAX_DOCUMENT = 1024 * 1024  # characters of the names, values and texts in the expanded document
+_OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
 _MAX_LISTED = 100
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
@@ -53,11 +53,16 @@ class Expander:
     """The state of one expansion. `calls` are the macro calls around the current place."""
 
     def __init__(
-        self, files: Files, arguments: Mapping[str, str | None], handlers: Mapping[str, Handler], other: Handler
+        self,
+        files: Files,
+        arguments: Mapping[str, str | None],
+        budget: Budget,
+        handlers: Mapping[str, Handler],
+        other: Handler,
     ) -> None:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
-        self.budget = Budget(_MAX_STEPS)
+        self.budget = budget
         own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108  texts is set below
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
@@ -71,13 +76,9 @@ class Expander:
         ] = {}  # of macros, each with its calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
+        self._length = 0  # of the expanded document
         self._handlers = handlers
         self._other = other
-
-    @property
-    def spent(self) -> int:
-        """The number of steps up to now."""
-        return _MAX_STEPS - self.budget.left
 
     def root(self, source: Node) -> Node:
         """Return the expanded root element of a document."""
@@ -85,8 +86,10 @@ class Expander:
         out = self.start(source, scopes)
         try:
             self.content(source, out, scopes)
-        except (OutOfSteps, RecursionError):
-            self.leave_open(out, Undetermined("expanding this file takes too long"), source.place)
+        except OutOfBudget as error:
+            self.leave_open(out, error, source.place)
+        except RecursionError:
+            self.leave_open(out, Undetermined("elements and macros are nested too deeply"), source.place)
         self._is_expanded = True
         return out
 
@@ -99,8 +102,10 @@ class Expander:
                 if isinstance(child, Node):
                     self._element(child, out, scopes)
                 else:
-                    out.children.append(self.texts.text(child, scopes.symbols))
-            except OutOfSteps:
+                    text = self.texts.text(child, scopes.symbols)
+                    self._grow(text)
+                    out.children.append(text)
+            except OutOfBudget:
                 raise
             except ExpressionFails as error:
                 self.refuse(error, place)
@@ -126,7 +131,16 @@ class Expander:
             value = text if is_plain else self._attribute(out, name, text, scopes)
             if not name.startswith("xacro:"):
                 out.attributes[name] = value
+                self._grow(name, value)
         return out
+
+    def _grow(self, *texts: str) -> None:
+        """Charge texts that the expanded document contains. Raises OutOfBudget."""
+        length = sum(map(len, texts))
+        self.budget.charge(_OF_ATTRIBUTE, length)
+        self._length += length
+        if self._length > _MAX_DOCUMENT:
+            raise OutOfBudget("the expanded document is larger than a URDF may be")
 
     def refuse(self, error: ExpressionFails, place: Place, attribute: str | None = None) -> None:
         """List that xacro refuses something, unless it is listed already."""
@@ -149,6 +163,7 @@ class Expander:
 
     def use(self, name: str, body: Place, call: Place) -> None:
         """Note that a macro is called."""
+        self.budget.charge(len(self.calls))
         _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
         calls[call.source.path, call.tag] = call
 
@@ -173,7 +188,7 @@ class Expander:
         return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
-        self.budget.spend()
+        self.budget.charge(_OF_ELEMENT)
         handler = self._handlers.get(node.tag)
         if handler is not None:
             handler(self, node, out, scopes)
@@ -188,7 +203,7 @@ class Expander:
         """Return the value of an attribute; its text as it is written where it has none."""
         try:
             return self.texts.text(text, scopes.symbols)
-        except OutOfSteps:
+        except OutOfBudget:
             raise
         except ExpressionFails as error:
             self.refuse(error, out.place, name)
@@ -201,4 +216,4 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        return read_yaml_values(self.files.read(self.files.path(text_of(name))), self.texts.constant)
+        return read_yaml_values(self.files.read(self.files.path(text_of(name))), self.texts.constant, self.budget)

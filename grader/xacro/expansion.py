@@ -5,13 +5,14 @@ same, so that one defect does not hide another.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.markup import element_end
 from grader.problems import Problem
 from grader.source import Correction, Edit, Location, Source
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
@@ -50,16 +51,15 @@ class Expansion(NamedTuple):
         )
 
 
-_STEPS_OF_READING, _ELEMENTS_OF_READING = 200, 100  # of a short file
+_READING_OF_SHORT = 3_000  # parts
 
 
 class ExpandedSource(Source):
     """The text of a xacro file, whose start tags are those of the expanded elements. Edits are imported late: grading needs none."""
 
-    def __init__(self, source: Source, nodes: list[Node], expander: Expander) -> None:
+    def __init__(self, source: Source, nodes: list[Node], expander: Expander, work: int) -> None:
         super().__init__(source.path, source.text)
-        self._nodes = nodes
-        self._expander = expander
+        self._nodes, self._expander, self._work = nodes, expander, work
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """Return the location in the source of an expanded element, or of an attribute if it has it."""
@@ -90,7 +90,7 @@ class ExpandedSource(Source):
     @property
     def cost(self) -> int:
         """How much longer this takes to expand and to read than a short file."""
-        return super().cost + self._expander.spent // _STEPS_OF_READING + len(self._nodes) // _ELEMENTS_OF_READING
+        return super().cost + self._work // _READING_OF_SHORT
 
     def element(self, tag: int) -> tuple[Source, int]:
         """Return the text that an expanded element was written in, and the offset of its start tag: also of an included file."""
@@ -139,40 +139,44 @@ class ExpandedSource(Source):
 
 def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
-    plain = Source(path, data.decode("utf-8", "surrogateescape"))
-    at = plain.at(0)
-    refused: tuple[Problem, ...] = ()
-    is_recovered = False
+    plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
+    before = budget.used
     try:
-        try:
-            source = read_nodes(data, path)
-        except XMLSyntaxError as error:
-            refused = (_not_xml(error, path),)
-            source = read_nodes(data, path, is_repaired=True)
-    except XMLSyntaxError:
-        recovered, assumed = recovered_nodes(data, path)
-        if recovered is None:
-            return Expansion(None, plain, refused, (), {})
-        source, is_recovered, refused = recovered, True, (*refused, *assumed)
+        source, refused, is_recovered = _read(data, path, budget)
     except ExpressionFails as error:
-        return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", at),), (), {})
+        problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
+        return Expansion(None, plain, (problem,), (), {})
     except Undetermined as error:
-        return Expansion(None, plain, (), (Open(str(error), at),), {})
+        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {})
+    if source is None:
+        return Expansion(None, plain, refused, (), {})
     files = Files(workspace, path)
     files.documents[path] = source
-    expander = Expander(files, arguments, HANDLERS, CALL)
+    expander = Expander(files, arguments, budget, HANDLERS, CALL)
     root = expander.root(source)
     nodes: list[Node] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
     return Expansion(
         None if is_recovered else element,
-        ExpandedSource(plain, nodes, expander),
+        ExpandedSource(plain, nodes, expander, budget.used - before),
         (*refused, *expander.problems),
         tuple(expander.undetermined),
         unresolved,
         element if is_recovered else None,
     )
+
+
+def _read(data: bytes, path: str, budget: Budget) -> tuple[Node | None, tuple[Problem, ...], bool]:
+    """Return the elements of a file, what xacro refuses in it, and whether they are only what broken tags leave."""
+    try:
+        return read_nodes(data, path, budget), (), False
+    except XMLSyntaxError as error:
+        refused = (_not_xml(error, path),)
+    with suppress(XMLSyntaxError):
+        return read_nodes(data, path, budget, is_repaired=True), refused, False
+    recovered, assumed = recovered_nodes(data, path, budget)
+    return recovered, (*refused, *assumed) if recovered is not None else refused, True
 
 
 def _not_xml(error: XMLSyntaxError, path: str) -> Problem:

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
@@ -18,6 +18,8 @@ _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?
 _ADDED = re.compile(r".*\.(?:urdf|xacro)([^/]*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_FILES = 200  # that one pattern names
+_MAX_PATH = 1_000  # characters
+_OF_FILE = 50  # what looking for one is charged
 
 
 class Workspace(NamedTuple):
@@ -25,11 +27,13 @@ class Workspace(NamedTuple):
 
     `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of a package
     of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the files may be a part of
-    any package, because there is none among them. `ask` is called with the name of each file that is looked for.
+    any package, because there is none among them. `ask` is called with the name of each file that is looked for; `budget` is that
+    of the submission.
     """
 
     read: Callable[[str], bytes]
     package: Callable[[str], str | None]
+    budget: Budget
     paths: Collection[str] = ()
     installed: Callable[[str, str], str | None] = lambda *_: None
     is_part: bool = False
@@ -48,7 +52,7 @@ class Files:
     """The files that are open while a document is expanded, innermost last."""
 
     def __init__(self, workspace: Workspace, path: str) -> None:
-        self._workspace = workspace
+        self._workspace, self._budget = workspace, workspace.budget
         self.open = [path]
         self.documents: dict[str, Node] = {}  # every file that was read, as it is written
         self.followed: dict[tuple[str, int], list[str]] = {}  # the tags that include files, and the paths of these
@@ -66,6 +70,9 @@ class Files:
 
     def path(self, text: str) -> str:
         """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""
+        if len(text) > _MAX_PATH:
+            raise Undetermined("the path of a file is too long")
+        self._budget.charge(_OF_FILE + len(self._workspace.paths) * (1 + text.count("/")))
         self._workspace.ask(text)
         shared = _SHARED.fullmatch(text)
         if shared is not None:
@@ -96,6 +103,7 @@ class Files:
         try:
             return self._workspace.read(path)
         except InputError as error:
+            self._budget.charge(len(self._workspace.paths))
             folder = posixpath.dirname(path)
             names = (posixpath.basename(other) for other in self._workspace.paths if posixpath.dirname(other) == folder)
             unknown = UnknownName(posixpath.basename(path), dict.fromkeys(names))
@@ -108,7 +116,7 @@ class Files:
         if self.open.count(path) and len(self.open) > _MAX_OPEN:
             raise FileFails(f"{path} includes itself again and again")
         try:
-            self.documents[path] = read_nodes(self.read(path), path)
+            self.documents[path] = read_nodes(self.read(path), path, self._budget)
         except XMLSyntaxError as error:
             raise XmlFails(f"{path} is not well-formed XML: {error.msg}") from None
         return self.documents[path]

@@ -30,15 +30,14 @@ def namespace(name: str, names: Mapping[str, Value]) -> Namespace:
     return Namespace(name, find)
 
 
-def dotted(value: Value) -> Value:
-    """Return a value from YAML whose dicts have their items as attributes."""
-    if isinstance(value, dict):
-        return DottedDict({key: dotted(item) for key, item in value.items()})
-    return [dotted(item) for item in value] if isinstance(value, list) else value
-
-
 def _dotify(value: Value) -> Value:
-    return dotted(run(make_dict, value))
+    return _dotted(run(make_dict, value))
+
+
+def _dotted(value: Value) -> Value:
+    if isinstance(value, dict):
+        return DottedDict({key: _dotted(item) for key, item in value.items()})
+    return [_dotted(item) for item in value] if isinstance(value, list) else value
 
 
 def argument_value(text: str) -> Value:

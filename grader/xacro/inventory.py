@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Place
@@ -88,7 +88,7 @@ def _hidden_in(node: Node, found: Inventory) -> frozenset[str]:
     if node.tag != "xacro:macro":
         return frozenset()
     try:
-        parameters = read_parameters(node.attributes.get("params", ""))
+        parameters = read_parameters(node.attributes.get("params", ""), Budget())
     except (ExpressionFails, Undetermined):
         return frozenset()
     found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)

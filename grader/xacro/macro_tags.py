@@ -1,6 +1,5 @@
 """The tags of xacro that define macros and call them, and that insert the elements which a call gives."""
 
-from grader.names import did_you_mean
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
 from grader.xacro.macros import (
@@ -32,12 +31,12 @@ def renamed(node: Node, tag: str, without: str) -> Node:
     return other
 
 
-def define_macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+def define_macro(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     """Bind a macro to its name; <xacro:macro> itself writes nothing."""
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
-    macro = Macro(name, node, read_parameters(node.attributes.get("params", "")))
+    macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
 
@@ -60,9 +59,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     if found is None:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open
-        known = scopes.macros.definitions()
-        message = f"there is no macro {name} at this place{did_you_mean(name, known)}"
-        raise MacroError(message, UnknownName(name, known))
+        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros.definitions()))
     macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")

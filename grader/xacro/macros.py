@@ -3,7 +3,7 @@
 import re
 from typing import NamedTuple
 
-from grader.static_python.closed_values import Undetermined
+from grader.static_python.closed_values import Budget
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Definition, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
@@ -12,8 +12,6 @@ from grader.xacro.texts import Texts
 _WITH_DEFAULT = re.compile(
     r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]++)+|)(?:\s+|$)(.*)""", re.ASCII
 )
-_MAX_PARAMETERS = 200
-_MAX_QUOTES = 30  # in the parameters of one macro: the time to match them doubles with each
 
 
 class MacroError(XacroFails):
@@ -41,13 +39,13 @@ class Macro(NamedTuple):
     parameters: tuple[Parameter, ...]
 
 
-def read_parameters(text: str) -> tuple[Parameter, ...]:
-    """Return the parameters in the attribute params of a macro."""
+def read_parameters(text: str, budget: Budget) -> tuple[Parameter, ...]:
+    """Return the parameters in the attribute params of a macro. Raises OutOfBudget."""
     parameters: list[Parameter] = []
     defaults: dict[str, Parameter] = {}  # the last of several counts
-    if text.count("'") + text.count('"') > _MAX_QUOTES:
-        raise Undetermined("the parameters of a macro have too many quotes")
     while text:
+        quotes = text.count("'") + text.count('"')
+        budget.charge(1 << quotes * 2 // 3, len(text))  # the time to match grows with Fibonacci's numbers
         found = _WITH_DEFAULT.match(text)
         if found is None:
             words = text.lstrip().split(None, 1)
@@ -59,8 +57,6 @@ def read_parameters(text: str) -> tuple[Parameter, ...]:
             name, forward, default, text = found.groups()
             defaults[name] = Parameter(name, default or None, is_forwarded=bool(forward))
             parameters.append(defaults[name])
-        if len(parameters) > _MAX_PARAMETERS:
-            raise Undetermined("a macro has too many parameters")
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
 

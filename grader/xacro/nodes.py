@@ -4,13 +4,13 @@ import re
 
 from grader.problems import Problem
 from grader.source import Source
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.scopes import Place
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
 
 Children = list["Node | str"]
-
+_OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
 
 # xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
 _DECLARATION = re.compile(
@@ -42,12 +42,12 @@ class Node:
         return [child for child in self.children if isinstance(child, Node)]
 
 
-def read_nodes(data: bytes, path: str, *, is_repaired: bool = False) -> Node:
+def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> Node:
     """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
     """
-    text = _decoded(data)
+    text = _decoded(data, budget)
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
         xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
@@ -61,9 +61,9 @@ def read_nodes(data: bytes, path: str, *, is_repaired: bool = False) -> Node:
     return _nodes(root, Source(path, text))
 
 
-def recovered_nodes(data: bytes, path: str) -> tuple[Node | None, list[Problem]]:
+def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[Node | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
-    text = _decoded(data)
+    text = _decoded(data, budget)
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
     assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.assumed]
@@ -83,8 +83,10 @@ def _nodes(root: Element, source: Source) -> Node:
     return nodes[root]
 
 
-def _decoded(data: bytes) -> str:
-    """Return the text of a file, which xacro reads as UTF-8 whatever its declaration says."""
+def _decoded(data: bytes, budget: Budget) -> str:
+    """Return the text of a file, which xacro reads as UTF-8 whatever its declaration says; its tags and attributes are charged."""
+    prefixes = data.count(b"xmlns") * data.count(b":") // 8
+    budget.charge(_OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data))
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:

@@ -51,11 +51,15 @@ class Definition(NamedTuple):
         return self.place.source.path, self.place.tag, self.attribute, self.name
 
 
+# Names that are defined, each with the tag and attribute that define it where they are known.
+Known = Mapping[str, tuple[Place, str] | None]
+
+
 class UnknownName(NamedTuple):
-    """A name that is not defined, and those that are, each with the place and attribute that define it where they are known."""
+    """A name that is not defined, and those that are."""
 
     name: str
-    known: "Mapping[str, tuple[Place, str] | None]"
+    known: Known
 
 
 class XacroFails(ExpressionFails):

@@ -5,15 +5,14 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
-from grader.static_python.closed import Budget
-from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
 from grader.xacro.written import Change, Written, defined
 
 _ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
-_MAX_STEPS = 40_000  # of all evaluations for one document
+_WORK = 150_000  # parts that all evaluations for one document may look at
 _MAX_SITES = 10  # texts that one number is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_DIGITS = 6
@@ -34,7 +33,7 @@ class Evaluator:
 
     def __init__(self, texts: Texts) -> None:
         self._texts = texts
-        self._budget = Budget(_MAX_STEPS)
+        self._budget = Budget(_WORK)
         self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
 
     def text(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:

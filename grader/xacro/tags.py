@@ -4,8 +4,7 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.static_python.closed import OutOfSteps
-from grader.static_python.closed_values import Undetermined, Value, text_of
+from grader.static_python.closed_values import OutOfBudget, Undetermined, Value, text_of
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
@@ -131,7 +130,7 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
             return
         texts.names_open = texts.names_open or Reported(str(error))
         raise
-    except OutOfSteps:
+    except OutOfBudget:
         raise
     except Undetermined as error:
         if not isinstance(texts.names_open, Undetermined):

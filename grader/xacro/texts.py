@@ -7,16 +7,27 @@ from keyword import iskeyword
 from typing import Any
 
 from grader.names import did_you_mean
-from grader.static_python.closed import Budget, OutOfSteps, evaluate
-from grader.static_python.closed_values import ExpressionFails, Namespace, Undetermined, Value, check_size, text_of
+from grader.static_python.closed import evaluate
+from grader.static_python.closed_values import (
+    Budget,
+    ExpressionFails,
+    Namespace,
+    OutOfBudget,
+    Undetermined,
+    Value,
+    joined,
+    text_of,
+)
 from grader.xacro.functions import GLOBALS, argument_value
-from grader.xacro.scopes import Definition, Key, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
+from grader.xacro.scopes import Definition, Key, Known, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
 
 PIECE = re.compile(
     r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_OF_NAME = 20  # what comparing a name with another one is charged
+_MAX_SHOWN = 60  # characters of a name
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
 
 
@@ -40,6 +51,9 @@ class Texts:
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
+        self._similar: dict[
+            tuple[str, ...], str
+        ] = {}  # what is said of similar names, by a name and those that are known
 
     def supposing(self, texts: Mapping[Key, str], budget: Budget) -> "Texts":
         """Return the same with other texts where names are defined. Nothing is reported or remembered."""
@@ -51,26 +65,28 @@ class Texts:
         """Return the value of a text: that of its expression, if it is a single one, else a text."""
         if "$" not in text:
             return text
-        self._budget.spend(1 + len(text) // 64)
+        self._budget.charge(1, len(text))
         values: list[Value] = []
         position = 0
         while position < len(text):
+            self._budget.charge(1)
             piece = PIECE.match(text, position)
             if piece is None:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
-        if len(values) == 1:
-            return values[0]
-        joined = "".join(map(text_of, values))
-        check_size(joined)
-        return joined
+        return values[0] if len(values) == 1 else joined(map(self._written, values))
+
+    def _written(self, value: Value) -> str:
+        return value if isinstance(value, str) else text_of(self._budget.checked(value))
 
     def text(self, text: str, scope: Scope) -> str:
         """Return the value of a text as it is written into the expanded file."""
         if "$" not in text:
             return text
-        return for_xml(text_of(self.evaluate(text, scope)))
+        value = self._written(self.evaluate(text, scope))
+        self._budget.charge(1, len(value))
+        return for_xml(value)
 
     def find(self, name: str, scope: Scope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
@@ -82,9 +98,17 @@ class Texts:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open
-        known = {**dict.fromkeys(self._globals), **scope.definitions()}
-        message = f"there is no property {name} at this place{did_you_mean(name, known)}"
-        raise XacroFails(message, UnknownName(name, known))
+        raise XacroFails(*self.unknown("property", name, {**dict.fromkeys(self._globals), **scope.definitions()}))
+
+    def unknown(self, kind: str, name: str, known: Known) -> tuple[str, UnknownName]:
+        """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
+        self._budget.charge(len(known))
+        key = (name, *known)
+        if key not in self._similar:
+            self._budget.charge(_OF_NAME * len(known))
+            self._similar[key] = did_you_mean(name, known)
+        message = f"there is no {kind} {name[:_MAX_SHOWN]} at this place{self._similar[key]}"
+        return message, UnknownName(name, known)
 
     def _again(self, definition: Definition) -> Value:
         """Return the value of a definition with the supposed texts."""
@@ -99,9 +123,10 @@ class Texts:
         """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
         failure: ExpressionFails | Undetermined | None = None
         value: Value = ""
+        self._budget.charge(1, len(text))
         try:
             value = self.evaluate(text, scope)
-        except OutOfSteps:
+        except OutOfBudget:
             raise
         except Reported as error:
             failure = error
@@ -159,7 +184,7 @@ class Texts:
                 return {"true": True, "false": False}[name] if name in ("true", "false") else GLOBALS[name]
             raise Undetermined(f"the argument {name} has no default, and no value is given")
 
-        return text_of(evaluate(expression, find, self._budget))
+        return self._written(evaluate(expression, find, self._budget))
 
     def constant(self, expression: str) -> Value:
         """Return the value of an expression that uses xacro's own names only."""
@@ -174,7 +199,7 @@ class Texts:
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
         if self._supposed is not None and name in self.defaults:
-            return text_of(self._again(self.defaults[name]))
+            return self._written(self._again(self.defaults[name]))
         if name in self.arguments:
             return known(name, self.arguments[name])
         raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")

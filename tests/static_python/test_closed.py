@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.static_python.closed import Budget, OutOfSteps, evaluate
+from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS, MATH
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 
 NAMES: dict[str, Value] = {**BUILTINS, **MATH, "size": 4, "text": "wheel", "table": {"a": [1, 2]}, "flag": True}
 PLAIN = {name: NAMES[name] for name in ("size", "text", "table", "flag", "pi")}
@@ -37,30 +37,24 @@ def value(text: str, steps: int = 10_000) -> Value:
         "'big' if size > 3 else missing",
         "not text or size",
         "'a,b'.upper().split(',')",
-        "f'{text}_{size:03d}{pi!r:.5}'",
         "'%s_%.3f %%' % (size, pi)",
-        "'{} {0}'.format(1) if False else '{0:>5}|{n}'.format(text, n=size)",
         "[item + 1 for item in (1, 2, 3) if item != 2]",
-        "{name: n for name, n in [('a', 1), ('b', 2)]}",
-        "sorted({3, 1, 2}), max({0.5, 2}), sorted([3, 1, 2], key=lambda n: -n)",
+        "[n * name for name, n in [('a', 1), ('b', 2)]]",
+        "dict([('a', 1), ('b', 2)]), dict(dict(a=1), b=2), sorted([3, 1, 2], reverse=True)",
         "table['a'][-1] + len(table)",
         "text[::-1][1:3]",
-        "sum(x * y for x in range(3) for y in (1, 2))",
+        "sum([x * y for x in range(3) for y in (1, 2)])",
         "max(1, 2) + min([3, 4]) + abs(-2) + round(2.675, 2)",
-        "list(map(str, filter(None, [0, 1, 2])))",
-        "dict(zip('ab', enumerate('xy')))",
+        "list(map(str, [0, 1, 2]))",
+        "list(map(max, [0, 5], [1, 2]))",
         "int('12') + float('.5') + bool(text)",
-        "isinstance(size, (int, float)), divmod(7, 2), all([flag]), any([])",
-        "{'a', *'bc'} == set('abc')",
-        "'-'.join(reversed('abc')).replace('b', 'x').center(9, '*')",
-        "(lambda a, b: a - b)(5, size)",
+        "'-'.join(sorted('cba')).replace('b', 'x').rsplit('-', 1)",
         "table.get('b', 'none'), list(table.items())",
         " size ",
-        "~size & 0xff | 1 << 3",
     ],
 )
 def test_the_value_is_pythons(text: str) -> None:
-    """Operators, strings, containers, comprehensions, lambdas and functions have Python's values, of the same type."""
+    """Operators, strings, containers, comprehensions and functions have Python's values, of the same type."""
     expected = eval(text.strip(), {**PLAIN})
     found = value(text)
     assert (found, type(found)) == (expected, type(expected))
@@ -68,7 +62,7 @@ def test_the_value_is_pythons(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["1 +", "missing", "1 / 0", "'a' + 1", "[][0]", "{}['a']", "size.missing", "float('x')", "5(3)", "len(5)", "1\n2",
+    ["1 +", "missing", "1 / 0", "'a' + 1", "[][0]", "dict()['a']", "size.missing", "float('x')", "5(3)", "len(5)", "1\n2",
      "x = 1", "sqrt(-1)", "max()", "dict(a=1, a=2)", "await 1", "''.join([1])", "sorted([1, 'a'])", "-text", ""],
 )  # fmt: skip
 def test_what_python_refuses_fails(text: str) -> None:
@@ -83,7 +77,10 @@ def test_what_python_refuses_fails(text: str) -> None:
      "(lambda: 0).__globals__", "[x.__class__ for x in (1,)]", "open('a')", "type(1)", "vars()", "table.update(a=1)",
      "table.pop('a')", "str(len)", "hash('a')", "'%*d' % (10**9, 1)", "'{:9999999}'.format(1)", "9**9**9", "1 << 10**9",
      "'a' * 10**9", "[0] * 10**9", "10**9 * 'a'", "range(10**9)", "factorial(10**6)", "round(1, -10**9)",
-     "'a'.ljust(10**9)", "[[[0] * 99] * 99] * 99", "size is 4", "(a := 1)", "[]" + "()" * 400, "-" * 3000 + "1"],
+     "'a'.ljust(10**9)", "[[[0] * 99] * 99] * 99", "size is 4", "(a := 1)", "[]" + "()" * 400, "-" * 3000 + "1",
+     "f'{text}'", "'{}'.format(1)", "{size}", "{'a': 1}", "[*text]", "max(*[1, 2])", "dict(**table)", "lambda: 1", "(x for x in [1])",
+     "~size", "size << 1", "size | 1", "1j", "b'a'", "...", "zip([1], [2])", "enumerate('a')", "any([1])", "divmod(7, 2)",
+     "isinstance(1, int)", "text.zfill(9)", "(-8) ** 0.5", "dict([(0.5, 1)])", "dict([(2**40, 1)])", "len(table.keys())"],
 )  # fmt: skip
 def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:
     """Attributes with underscores, formats that reach them, huge values and everything else outside the list are refused."""
@@ -99,7 +96,7 @@ def test_what_python_cannot_parse_has_no_value() -> None:
 
 def test_steps_are_bounded() -> None:
     """A loop that takes too long ends with its own exception."""
-    with pytest.raises(OutOfSteps):
+    with pytest.raises(OutOfBudget):
         value("[[0 for i in range(1000)] for j in range(1000)]")
 
 

@@ -9,6 +9,7 @@ from lxml import etree
 
 from grader.errors import InputError
 from grader.robot.reader import read_urdf
+from grader.static_python.closed_values import Budget
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
 
@@ -28,7 +29,7 @@ def expand(document: Document, asked: list[str] | None = None) -> Any:
             raise InputError(f"{path} does not exist")
         return content if isinstance(content, bytes) else content.encode()
 
-    workspace = expansion.Workspace(read=read, package=PACKAGES.get, paths=sorted(files))
+    workspace = expansion.Workspace(read=read, package=PACKAGES.get, budget=Budget(), paths=sorted(files))
     return expansion.expand(read(document.path), document.path, workspace, document.arguments)
 
 

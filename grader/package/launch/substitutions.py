@@ -10,9 +10,9 @@ from pathlib import PurePosixPath
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.static_python.closed import Budget, evaluate
+from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS
-from grader.static_python.closed_values import ExpressionFails, Undetermined, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, text_of
 from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
@@ -20,7 +20,7 @@ from grader.static_python.values import Call, Unknown, Value
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
-_MAX_STEPS = 10_000  # of an expression
+_WORK = 10_000  # of an expression
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
 _PACKAGE_FOLDERS = (
@@ -212,7 +212,7 @@ class _Substitution:
             reason = "the value of this expression is known only at run time"
             return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
         try:
-            return text_of(evaluate(text, _builtin, Budget(_MAX_STEPS)))
+            return text_of(evaluate(text, _builtin, Budget(_WORK)))
         except (ExpressionFails, Undetermined):
             return Unknown("the value of this expression is known only at run time", self.call.at)
 

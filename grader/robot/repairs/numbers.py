@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from grader.robot.edits.families import number as written
 from grader.robot.numbers import NumberError, numbers
-from grader.static_python.closed import Budget, evaluate
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.static_python.closed import evaluate
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value
 
 COUNTS = {"xyz": 3, "rpy": 3, "size": 3, "scale": 3, "rgba": 4}
 _TEXTS = frozenset({"name", "type", "link", "joint", "filename", "version"})
-_EXPRESSION_STEPS = 200
+_WORK = 1_000  # of one expression
 _UNITS = {"mm": 0.001, "cm": 0.01, "deg": pi / 180, "degrees": pi / 180, "\u00b0": pi / 180, "%": 0.01}
 _UNIT = re.compile(r"([0-9.]+)[ ]?(mm|cm|meters?|metres?|m|radians|rad|degrees|deg|\u00b0|kg|%)(?![\w])", re.IGNORECASE)
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
@@ -109,7 +109,7 @@ def _is_number(text: str) -> bool:
 
 def _value(text: str) -> str:
     try:
-        value = evaluate(text.replace("\u03c0", "pi"), _name, Budget(_EXPRESSION_STEPS))
+        value = evaluate(text.replace("\u03c0", "pi"), _name, Budget(_WORK))
     except (ExpressionFails, Undetermined):
         return text
     if isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):

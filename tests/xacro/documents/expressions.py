@@ -170,7 +170,7 @@ _MORE = (
     "python.issubclass(python.int, python.int)",
 )
 
-# What a robot does not need: it shows an address in memory, changes values in place, or is a kind of value of its own.
+# What no public robot uses: it shows an address in memory, changes values in place, or is a rare function, method or operator.
 _BEYOND = {
     "1 is 1", "1 is not 1", "'a\\tb'.expandtabs(4)", "xacro.arg('missing')",
     "sin", "len", "range(3)", "reversed([1, 2])", "enumerate(['a'])", "(x for x in [1])", "python.enumerate([1])", "python.map(str, [1])", "'abc'.nothing", "math", "abs",
@@ -180,6 +180,11 @@ _BEYOND = {
     "max([1, 2], key=lambda v: -v)", "(lambda x: x + 1)(2)", "(lambda: 5)()", "(y := 5)", "math.pi.real", "math['pi']", "python.range(3)", "python.set([1])", "python.complex(1, 2)", "python.frozenset([1])",
     "python.slice(1)", "sin(*[0])", "max(*[1, 2])", "dict(**dict(a=1))", "python.isinstance(1, python.int)", "python.isinstance('a', python.str)", "str(1, 2)", "dict(a=1).a", "'abc'.nothing()",
     "'abc'()", "python.repr('a')", "[*[1, 2], 3]", "list(x for x in [1])",
+    "~5", "1 << 4", "256 >> 2", "6 & 3", "6 | 1", "6 ^ 3", "~1.5", "1 << -1", "5 & 2.0", "1 << 2.0", "'5'.zfill(3)", "'a'.rjust(3)",
+    "'a'.ljust(3) + '|'", "'a'.center(3)", "'a'.center()", "'a'.zfill('a')", "'a-b'.partition('-')", "'abc'.swapcase()",
+    "'abc'.isalpha()", "'abc'.removeprefix('a')", "'abc'.removesuffix('c')", "'a'.casefold()", "[1, 2].index(2)", "[1, 2].count(1)",
+    "[1].index(2)", "[1].index()", "python.tuple([1])", "python.any([1])", "python.all([1])", "list(python.enumerate(['a']))",
+    "list(python.zip([1], [2]))", "list(python.reversed([1, 2]))", "python.divmod(7, 2)", "list(python.filter(None, [0, 1]))",
 }  # fmt: skip
 _BEYOND_USES = {"width.real", "width . real", "n.bit_length()", "name.nothing", "width(2)", "width is length"}
 

@@ -21,8 +21,6 @@ plain: !meters 0.5
 text: |
   two
   lines
-date: 2020-01-02
-octal: 010
 hex: 0x10
 exponent: 1e-3
 true_text: "true"
@@ -31,10 +29,14 @@ list-key: 1
 1: one
 copied: &c {k: v}
 again: *c
-merged: {<<: *c, l: w}
 """
 _FILES: dict[str, str | bytes] = {
     "config/robot.yaml": _YAML,
+    "urdf/date.yaml": "a: 2020-01-02\n",
+    "urdf/octal.yaml": "a: 010\n",
+    "urdf/merged.yaml": "a: &a {k: v}\nb: {<<: *a, l: w}\n",
+    "urdf/sexagesimal.yaml": "a: 1:30\n",
+    "urdf/underscore.yaml": "a: 1_000\n",
     "urdf/units.yaml": "turn: !radians pi/2\ndepth: !foot 1 + 1\nnegative: !degrees -45.5\n",
     "urdf/near.yaml": "a: 1\n",
     "urdf/list.yaml": "- 1\n- {b: 2}\n- [3, 4]\n",
@@ -87,7 +89,7 @@ _VALUES = bodies(
     unit_expressions=near("units", "${y.turn}", "${y.depth}", "${y.negative}"),
     lengths=loaded("${y.height}", "${y.width}", "${y.plain}"),
     lines=loaded("${y.text}"),
-    octal=loaded("${y.octal}", "${y.hex}"),
+    hex=loaded("${y.hex}"),
     key_with_dash=loaded("${y['list-key']}"),
     key_number=loaded("${y[1]}"),
     missing_key=loaded("${y.nothing}"),
@@ -96,7 +98,7 @@ _VALUES = bodies(
     get=loaded("${y.get('nothing', 5)}", "${y.get('wheel')['radius']}"),
     membership=loaded("${'wheel' in y}", "${'x' in y}", "${len(y.wheel)}"),
     keys=loaded("${list(y.wheel.keys())}", "${[k for k in y.wheel]}"),
-    aliases=loaded("${y.again.k}", "${y.merged.k + y.merged.l}"),
+    aliases=loaded("${y.again.k}"),
     vector=loaded("${' '.join([str(v) for v in y.base.size])}", "${y.base.size[0]} ${y.base.size[1]} 1"),
     in_macro="<xacro:macro name='m' params='v'>" + shown("${v.radius}") + "</xacro:macro>" + loaded("1") + '<xacro:m v="${y.wheel}"/>',
     forwarded="<xacro:macro name='m' params='y:=^'>" + shown("${y.wheel.radius}") + "</xacro:macro>" + loaded("1") + "<xacro:m/>",
@@ -143,7 +145,7 @@ _OUTSIDE = merged(
     bodies(
         "perhaps",
         _FILES,
-        date=loaded("${y.date}"),
+        **{name: near(name, "${y}") for name in ("date", "octal", "merged", "sexagesimal", "underscore")},
         bad_unit=near("bad_unit", "${y}"),
         bad_unit_syntax=near("bad_unit_syntax", "${y}"),
         latin=near("latin", "${y}"),
