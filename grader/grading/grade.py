@@ -21,6 +21,7 @@ _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
 )
 _MIN_OF_CONVENTION = 2  # criteria that a convention decides
+_NO_HINTS = "no hints were searched, because reading this robot takes too much work"
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
 
@@ -43,6 +44,8 @@ def grade(
     evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
     notes += _note_on_convention(rubric, submission, results)
+    if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
+        notes += (_NO_HINTS,)
     graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
     return Report(graded, rubric, chosen, results, problems, *evidence, notes)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from grader.static_python.closed_methods import percent_format, search_cost
 from grader.static_python.closed_values import (
+    CHARACTERS,
     MAX_BITS,
     MAX_PARTS,
     PLAIN,
@@ -27,17 +28,17 @@ def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Valu
         raise Undetermined("this operation is not supported")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
         size = budget.measure(left) + budget.measure(right)
-        times = 0
+        made = 0
         match op, left, right:
             case ast.Mod(), str(), _:
-                operation, times = percent_format, left.count("%")
-            case ast.Mult(), (str() | list() | tuple()), int():
-                times = right
-            case ast.Mult(), int(), (str() | list() | tuple()):
-                times = left
-        if size * times > MAX_PARTS:
+                operation, made = percent_format, size * left.count("%")
+            case (ast.Mult(), str() as text, int() as times) | (ast.Mult(), int() as times, str() as text):
+                made = len(text) * times // CHARACTERS
+            case (ast.Mult(), list() | tuple(), int() as times) | (ast.Mult(), int() as times, list() | tuple()):
+                made = size * times
+        if made > MAX_PARTS:
             too_large("value")
-        budget.charge(size * max(times, 0))
+        budget.charge(max(made, 0))
     elif isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > MAX_BITS:
         too_large("number")
     return budget.checked(run(operation, left, right))

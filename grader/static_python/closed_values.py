@@ -11,7 +11,7 @@ MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
 _MAX_KEY = 2**31  # keys that are larger could all have one hash
 _MAX_MESSAGE = 300  # characters
-_CHARACTERS, _BITS = 16, 256  # that count as one part
+CHARACTERS, _BITS = 16, 256  # that count as one part
 PLAIN: tuple[Any, ...] = (str, int, float, type(None), range, list, tuple, dict)
 
 
@@ -46,7 +46,7 @@ class Budget:
 
     def charge(self, parts: int, characters: int = 0) -> None:
         """Charge parts and characters. Raises OutOfBudget."""
-        self.left -= parts + characters // _CHARACTERS
+        self.left -= parts + characters // CHARACTERS
         if self.left < 0:
             raise OutOfBudget("reading this takes more work than is allowed for one submission")
 
@@ -58,7 +58,7 @@ class Budget:
             inside: Iterable[Value] = ()
             count = 0
             if isinstance(part, str):
-                count = len(part) // _CHARACTERS
+                count = len(part) // CHARACTERS
                 if len(part) > MAX_TEXT:
                     too_large("text")
             elif isinstance(part, int):

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
     from grader.documents.evidence import Proof
 
+_FILES_OF_READING = 200
+_MAX_COST = 60  # of one reading, for hints
 _NO_FILES = make_tree("", (), ())
 
 
@@ -91,6 +93,17 @@ class Submission:
         hashes = [sha256_of(self.everything.files[path].read(MAX_FILE_SIZE)) for path in self.besides]
         lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
         return sha256_of("".join([f"{own}\n", *lines]).encode())
+
+    @property
+    def cost(self) -> int:
+        """How much longer reading it takes than reading a short URDF."""
+        of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
+        return of_urdf + len(self.everything.files) // _FILES_OF_READING
+
+    @property
+    def is_costly(self) -> bool:
+        """Return whether reading it takes so long that no hints are searched."""
+        return self.cost > _MAX_COST or self.budget.used > self.budget.limit // 10
 
     @property
     def has_urdf(self) -> bool:

@@ -51,7 +51,7 @@ class Expansion(NamedTuple):
         )
 
 
-_READING_OF_SHORT = 3_000  # parts
+_READING_OF_SHORT = 1_500  # parts
 
 
 class ExpandedSource(Source):

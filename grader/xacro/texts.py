@@ -136,6 +136,7 @@ class Texts:
         except Undetermined as error:  # xacro evaluates it even if nothing uses it
             self._report(error, place, attribute)
             failure = error
+        self._budget.charge(0, len(value) if isinstance(value, str) else 0)  # it is read as a number
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 

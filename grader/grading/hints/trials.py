@@ -19,8 +19,6 @@ Edits = tuple[Edit, ...]
 
 _MAX_STEPS = 600  # of one submission
 _PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
-_MAX_COST = 60  # of one reading: no hints are searched for a larger robot
-_FILES_OF_READING = 200
 
 
 class OutOfBudget(Exception):
@@ -52,7 +50,7 @@ class Trials:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         own = {name: result for name, result in results.items() if result.criterion.part in parts}
         self.start = State(submission, (), own)
-        self.left = _MAX_STEPS if _cost(submission) <= _MAX_COST else 0
+        self.left = 0 if submission.is_costly else _MAX_STEPS
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
@@ -102,16 +100,9 @@ class Trials:
             return None
 
     def _spend(self, submission: Submission) -> None:
-        self.left -= 1 + _cost(submission)
+        self.left -= 1 + submission.cost
         if self.left < 0:
             raise OutOfBudget
-
-
-def _cost(submission: Submission) -> int:
-    """Return how much more a reading of a submission costs than one of a short URDF."""
-    urdf = submission.urdf
-    of_urdf = urdf.reading.source.cost if isinstance(urdf, Read) else 0
-    return of_urdf + len(submission.everything.files) // _FILES_OF_READING
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
