@@ -4,6 +4,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from contextlib import nullcontext
 from importlib import import_module
 from typing import Annotated
 
@@ -16,12 +17,14 @@ from grader.cli.output import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.limits import outer_limits
 from grader.usecases.writing import write_stdout
 
 # In the order of the help. Each is a function, or a group of commands, in the module of its name.
 COMMANDS = (
     "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "gradebook", "rubric",
 )  # fmt: skip
+_LIMITED = ("grade", "inspect")  # the commands that read one submission
 COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")
 _OPTION = re.compile(r"--[^=]+")  # such as --comment, whose value may be -1
@@ -102,7 +105,9 @@ def _run(arguments: Sequence[str]) -> int:
 
             return set_up(arguments)
         app = make_app(_command(arguments) or COMMANDS)
-        result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
+        is_limited = arguments and arguments[0] in _LIMITED and "--watch" not in arguments
+        with outer_limits() if is_limited else nullcontext():
+            result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
         if isinstance(result, str):
             write_stdout(result)
     except GraderError as error:

@@ -12,6 +12,7 @@ from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
+from grader.usecases.limits import OutOfTime
 from grader.usecases.writing import make_folder, save_bytes
 
 _MAX_NAMED = 6
@@ -38,7 +39,7 @@ def with_hints(
         return report, None
     try:
         found = hinted(report, submission, level)
-    except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
+    except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
         warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
         return report, None
     return found.report, fixed(found, submission) if is_fixed else None

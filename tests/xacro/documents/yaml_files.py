@@ -145,7 +145,11 @@ _OUTSIDE = merged(
     bodies(
         "perhaps",
         _FILES,
-        **{name: near(name, "${y}") for name in ("date", "octal", "merged", "sexagesimal", "underscore")},
+        date=near("date", "${y}"),
+        octal=near("octal", "${y}"),
+        merged=near("merged", "${y}"),
+        sexagesimal=near("sexagesimal", "${y}"),
+        underscore=near("underscore", "${y}"),
         bad_unit=near("bad_unit", "${y}"),
         bad_unit_syntax=near("bad_unit_syntax", "${y}"),
         latin=near("latin", "${y}"),

@@ -1,0 +1,65 @@
+"""The outer limits of a command that reads one submission, where the system has them: processor time and memory.
+
+Everything that reads a student's files counts its own work. These limits are for what that misses.
+"""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from threading import current_thread, main_thread
+from typing import Any
+
+from grader.errors import GraderError
+
+_SECONDS = 60  # of processor time, after which the command ends with a message
+_GRACE = 30  # more seconds, after which the process is ended, whatever it does
+_MEMORY = 2 * 1024**3  # bytes more than at the start
+
+
+class OutOfTime(BaseException):
+    """The processor time is used up. No handler of errors in student files or in checks may take it for one of these."""
+
+
+@contextmanager
+def outer_limits() -> Iterator[None]:
+    """Limit the processor time and the memory of what follows. Raises GraderError."""
+    if sys.platform == "win32" or current_thread() is not main_thread():
+        yield
+        return
+    import resource
+    import signal
+
+    def stop(*_: Any) -> None:
+        signal.signal(signal.SIGXCPU, signal.SIG_IGN)  # it is sent again every second
+        raise OutOfTime
+
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each thread reserves memory
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    wanted = {resource.RLIMIT_CPU: int(used.ru_utime + used.ru_stime) + _SECONDS, resource.RLIMIT_AS: _size() + _MEMORY}
+    before = {limit: resource.getrlimit(limit) for limit in wanted}
+    handler = signal.signal(signal.SIGXCPU, stop)
+    signal.setitimer(signal.ITIMER_PROF, _SECONDS + _GRACE)
+    try:
+        for limit, value in wanted.items():
+            soft, hard = before[limit]
+            with suppress(ValueError, OSError):  # one that is lower already stays
+                resource.setrlimit(limit, (value if soft == resource.RLIM_INFINITY else min(soft, value), hard))
+        yield
+    except OutOfTime:
+        raise GraderError(f"this takes more than {_SECONDS} s of processor time") from None
+    except MemoryError:
+        raise GraderError(f"this needs more than {_MEMORY // 1024**2} MiB of memory") from None
+    finally:
+        for limit, values in before.items():
+            resource.setrlimit(limit, values)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGXCPU, handler)
+
+
+def _size() -> int:
+    """Return the address space that this process uses; 0 where the system does not tell."""
+    with suppress(OSError, ValueError):
+        return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    return 0

@@ -1,0 +1,85 @@
+"""`grade` and `inspect` end by themselves, whatever a file makes them do: limits of processor time and of memory."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+import grader.grading.hints.hinting
+import grader.submission.opening
+import grader.usecases.hints
+import grader.usecases.inspect
+from grader.usecases import limits
+from tests.command_line import ROOT, run
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX limits")
+URDF = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+
+
+def hang(*_: object, **__: object) -> None:
+    """Use processor time without end, and take every error for one of the file."""
+    while True:
+        with suppress(Exception):
+            sum(range(1000))
+
+
+def fill_memory(*_: object, **__: object) -> bytes:
+    """Ask for more memory than the limit allows."""
+    return bytes(2 * limits._MEMORY)
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [(hang, b"this takes more than 1 s of processor time"), (fill_memory, b"this needs more than 512 MiB of memory")],
+)
+@pytest.mark.parametrize("command", ["grade", "inspect"])
+def test_reading_ends(command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One line says which limit it was, and nothing was graded: exit code 2."""
+    monkeypatch.setattr(limits, "_SECONDS", 1)
+    monkeypatch.setattr(limits, "_MEMORY", 512 * 1024**2)
+    monkeypatch.setattr(grader.submission.opening, "read_as_ros", what)
+    done = run((command, URDF))
+    assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
+
+
+def test_a_search_for_hints_costs_no_report(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """The report is printed without hints."""
+    monkeypatch.setattr(limits, "_SECONDS", 1)
+    monkeypatch.setattr(grader.usecases.hints, "hinted", hang)
+    wrong = tmp_path / "my_robot.urdf"
+    wrong.write_bytes(URDF.read_bytes().replace(b"0.15 0 0.225", b"0.15 0 0.3"))
+    done = run(("grade", wrong))
+    assert done.returncode == 1
+    assert b"lidar" in done.stdout
+    assert b"no hints:" in done.stderr
+
+
+def test_limits_end_with_the_command() -> None:
+    """The process has its own limits again."""
+    import resource
+
+    def all_limits() -> list[tuple[int, int]]:
+        return [resource.getrlimit(limit) for limit in (resource.RLIMIT_CPU, resource.RLIMIT_AS)]
+
+    before = all_limits()
+    assert run(("inspect", URDF)).returncode == 0
+    assert all_limits() == before
+
+
+def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
+    """Work inside of one call into C, which no exception can interrupt, ends with the process."""
+    program = tmp_path / "stuck.py"
+    program.write_text(
+        "from grader.usecases import limits\n"
+        "limits._SECONDS, limits._GRACE = 1, 1\n"
+        "with limits.outer_limits():\n"
+        "    sum(range(10**12))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, program], check=False, capture_output=True, env={**os.environ, "PYTHONPATH": str(ROOT)}
+    )
+    assert done.returncode < 0
