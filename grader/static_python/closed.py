@@ -22,7 +22,7 @@ _OF_NODE = 2  # what evaluating a part of an expression is charged
 def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     """Return the value of an expression. `find` returns the value of a name, and raises as this function does.
 
-    Raises ExpressionFails where Python raises an error, Undetermined where the value cannot be determined.
+    Raises ExpressionFails where Python raises an error, Undetermined where the value cannot be determined, OutOfBudget.
     """
     text = text.strip()
     if len(text) > _MAX_LENGTH:

@@ -1,6 +1,6 @@
 """The values of closed expressions, plain ones of bounded size, and the budget that the work with them is charged to."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import Any, NoReturn
 
 Value = Any
@@ -23,7 +23,7 @@ class Undetermined(Exception):
     """The value of an expression cannot be determined statically; the text says why."""
 
 
-class OutOfBudget(Undetermined):
+class OutOfBudget(Exception):
     """The budget of a submission is spent: nothing more of it can be expanded or evaluated."""
 
 
@@ -55,29 +55,29 @@ class Budget:
         pending, size = [value], 0
         while pending:
             part = pending.pop()
-            inside: Iterable[Value] = ()
-            count = 0
+            inside: Collection[Value] = ()
             if isinstance(part, str):
-                count = len(part) // CHARACTERS
+                size += len(part) // CHARACTERS
                 if len(part) > MAX_TEXT:
                     too_large("text")
             elif isinstance(part, int):
-                count = part.bit_length() // _BITS
+                size += part.bit_length() // _BITS
                 if part.bit_length() > MAX_BITS:
                     too_large("number")
-            elif isinstance(part, list | tuple | dict | range):
-                count = len(part)
-                inside = (*part.keys(), *part.values()) if isinstance(part, dict) else part
+            elif isinstance(part, list | tuple | range):
+                inside = part
+            elif isinstance(part, dict):
+                inside = [*part.keys(), *part.values()]
             elif isinstance(part, Items):
                 inside = part.values
-                count = len(part.values)
             elif not isinstance(part, float | None | Function | Namespace):
                 raise Undetermined(f"values of the type {type(part).__name__} are not supported")
-            size += 1 + count
-            self.charge(1 + count)
-            if size > MAX_PARTS:
+            size += 1
+            if size + len(pending) + len(inside) > MAX_PARTS:
                 too_large("value")
-            pending += inside if not isinstance(inside, range) else ()
+            self.charge(len(inside))
+            pending += inside
+        self.charge(size)
         return size
 
     def checked(self, value: Value) -> Value:
@@ -125,7 +125,7 @@ def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
     """Return what a function of plain values returns; what it raises is ExpressionFails."""
     try:
         return function(*args, **kwargs)
-    except (ExpressionFails, Undetermined, RecursionError, MemoryError):
+    except (ExpressionFails, Undetermined, OutOfBudget, RecursionError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
         if not _has_text([*args, *kwargs.values()]):

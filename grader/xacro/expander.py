@@ -77,6 +77,7 @@ class Expander:
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
+        self._stopped: Place | None = None  # where the budget was spent
         self._handlers = handlers
         self._other = other
 
@@ -87,9 +88,9 @@ class Expander:
         try:
             self.content(source, out, scopes)
         except OutOfBudget as error:
-            self.leave_open(out, error, source.place)
+            out.open = self.report(error, self._stopped or source.place)
         except RecursionError:
-            self.leave_open(out, Undetermined("elements and macros are nested too deeply"), source.place)
+            out.open = self.report(Undetermined("elements and macros are nested too deeply"), source.place)
         self._is_expanded = True
         return out
 
@@ -106,12 +107,11 @@ class Expander:
                     self._grow(text)
                     out.children.append(text)
             except OutOfBudget:
+                self._stopped = self._stopped or place
                 raise
-            except ExpressionFails as error:
-                self.refuse(error, place)
-                out.open = out.open or ""
-            except Undetermined as error:
-                self.leave_open(out, error, place)
+            except (ExpressionFails, Undetermined) as error:
+                reason = self.report(error, place)
+                out.open = out.open or reason
 
     def insert(self, source: Node, out: Node, scopes: Scopes) -> None:
         """Expand the children of an element, but not the element itself, such as <xacro:if>; attributes set on it are lost."""
@@ -142,40 +142,29 @@ class Expander:
         if self._length > _MAX_DOCUMENT:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
-    def refuse(self, error: ExpressionFails, place: Place, attribute: str | None = None) -> None:
-        """List that xacro refuses something, unless it is listed already."""
-        if not isinstance(error, Reported):
-            self.report(error, place, attribute)
-
-    def report(self, error: ExpressionFails | Undetermined, place: Place, attribute: str | None) -> None:
-        """List a problem at a place, or what cannot be determined."""
-        if isinstance(error, Undetermined):
-            self.note(error, place, attribute)
-            return
+    def report(
+        self, error: ExpressionFails | Undetermined | OutOfBudget, place: Place, attribute: str | None = None
+    ) -> str:
+        """List a problem at a place, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
         message = str(error)
-        if self._is_new(message, place, attribute):
-            location = self._placed(place).at(attribute)
-            joint = " " if message.endswith("?") else "; "
-            kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
-            self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
-            if isinstance(error, XacroFails) and error.unknown is not None:
-                self.unknown.append((error.unknown, place, attribute))
+        if isinstance(error, Reported) or not self._is_new(message, place, attribute):
+            return "" if isinstance(error, ExpressionFails) else message
+        location = self._placed(place).at(attribute)
+        if not isinstance(error, ExpressionFails):
+            self.undetermined.append(Open(message, location))
+            return message
+        joint = " " if message.endswith("?") else "; "
+        kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
+        self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
+        if isinstance(error, XacroFails) and error.unknown is not None:
+            self.unknown.append((error.unknown, place, attribute))
+        return ""
 
     def use(self, name: str, body: Place, call: Place) -> None:
         """Note that a macro is called."""
         self.budget.charge(len(self.calls))
         _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
         calls[call.source.path, call.tag] = call
-
-    def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
-        """Note that an expanded element may have more content than is known."""
-        out.open = out.open or str(error)
-        self.note(error, place)
-
-    def note(self, error: Undetermined, place: Place, attribute: str | None = None) -> None:
-        """List something that cannot be determined."""
-        if self._is_new(str(error), place, attribute):
-            self.undetermined.append(Open(str(error), self._placed(place).at(attribute)))
 
     def _is_new(self, message: str, place: Place, attribute: str | None) -> bool:
         """Return whether something is to be listed: once for each place in the source, however often a macro is called."""
@@ -203,17 +192,12 @@ class Expander:
         """Return the value of an attribute; its text as it is written where it has none."""
         try:
             return self.texts.text(text, scopes.symbols)
-        except OutOfBudget:
-            raise
-        except ExpressionFails as error:
-            self.refuse(error, out.place, name)
-            out.unresolved[name] = ""
-        except Undetermined as error:
-            self.note(error, out.place, name)
-            out.unresolved[name] = str(error)
+        except (ExpressionFails, Undetermined) as error:
+            out.unresolved[name] = self.report(error, out.place, name)
         return text
 
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        return read_yaml_values(self.files.read(self.files.path(text_of(name))), self.texts.constant, self.budget)
+        data = self.files.read(self.files.path(text_of(name)))
+        return read_yaml_values(data, lambda name: self.texts.find(name, Scope()), self.budget)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.markup import element_end
 from grader.problems import Problem
 from grader.source import Correction, Edit, Location, Source
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
@@ -146,7 +146,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     except ExpressionFails as error:
         problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return Expansion(None, plain, (problem,), (), {})
-    except Undetermined as error:
+    except (Undetermined, OutOfBudget) as error:
         return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {})
     if source is None:
         return Expansion(None, plain, refused, (), {})

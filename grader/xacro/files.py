@@ -3,7 +3,6 @@
 import posixpath
 import re
 from collections.abc import Callable, Collection
-from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
@@ -13,11 +12,9 @@ from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
 
-_GLOB = re.compile(r"[*\[?]")
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
 _ADDED = re.compile(r".*\.(?:urdf|xacro)([^/]*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
-_MAX_FILES = 200  # that one pattern names
 _MAX_PATH = 1_000  # characters
 _OF_FILE = 50  # what looking for one is charged
 
@@ -60,13 +57,6 @@ class Files:
     def has_package(self, name: str) -> bool:
         """Return whether a package is, or may be, part of the submission."""
         return self._workspace.is_part or not self._workspace.paths or self._workspace.package(name) is not None
-
-    def named(self, text: str) -> list[str]:
-        """Return the paths of the files that an include names: several for a pattern."""
-        path = self.path(text)
-        if not _GLOB.search(text) or not self._workspace.paths:
-            return [path]
-        return sorted(other for other in self._workspace.paths if _matches(other, path))[:_MAX_FILES]
 
     def path(self, text: str) -> str:
         """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""
@@ -120,9 +110,3 @@ class Files:
         except XMLSyntaxError as error:
             raise XmlFails(f"{path} is not well-formed XML: {error.msg}") from None
         return self.documents[path]
-
-
-def _matches(path: str, pattern: str) -> bool:
-    """Return whether a path matches a pattern folder by folder."""
-    steps, patterns = path.split("/"), pattern.split("/")
-    return len(steps) == len(patterns) and all(map(fnmatchcase, steps, patterns))

@@ -40,16 +40,6 @@ def _dotted(value: Value) -> Value:
     return [_dotted(item) for item in value] if isinstance(value, list) else value
 
 
-def argument_value(text: str) -> Value:
-    """Return the value that $(eval ...) takes an argument's text for."""
-    for kind in (float,) if "." in text else (int,):
-        try:
-            return kind(text)
-        except ValueError:
-            pass
-    return {"true": True, "false": False}.get(text.lower(), text)
-
-
 def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:
     """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it."""
     load = Function("load_yaml", load_yaml)

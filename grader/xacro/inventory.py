@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Place
@@ -89,7 +89,7 @@ def _hidden_in(node: Node, found: Inventory) -> frozenset[str]:
         return frozenset()
     try:
         parameters = read_parameters(node.attributes.get("params", ""), Budget())
-    except (ExpressionFails, Undetermined):
+    except (ExpressionFails, Undetermined, OutOfBudget):
         return frozenset()
     found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)

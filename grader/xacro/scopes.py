@@ -9,7 +9,7 @@ from grader.static_python.closed_values import ExpressionFails, Undetermined, Va
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
 Evaluate = Callable[[str, "Scope"], Value]
-Report = Callable[[ExpressionFails | Undetermined, "Place", str], None]
+Report = Callable[[ExpressionFails | Undetermined, "Place", str], object]
 
 
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
@@ -40,7 +40,7 @@ class Evaluator:
         """Return what a text is in the expanded file; None if it has no value, or no steps are left."""
         try:
             return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
-        except (ExpressionFails, Undetermined, RecursionError):
+        except (ExpressionFails, Undetermined, OutOfBudget, RecursionError):
             return None
 
     def arguments(self, text: str) -> list[Definition]:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.static_python.closed_values import OutOfBudget, Undetermined, Value, text_of
+from grader.static_python.closed_values import Undetermined, Value, text_of
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
@@ -12,6 +12,7 @@ from grader.xacro.nodes import Node
 from grader.xacro.scopes import BOOLEANS, Definition, Reported, Scope
 from grader.xacro.texts import for_xml
 
+_PATTERN = re.compile(r"[*\[?]")
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
 
 
@@ -122,15 +123,13 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:
-        for path in expander.files.named(texts.text(needed(node, "filename"), scopes.symbols)):
-            _insert_file(expander, path, out, inner)
-            expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
+        path = expander.files.path(texts.text(needed(node, "filename"), scopes.symbols))
+        _insert_file(expander, path, out, inner)
+        expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
         if is_optional:
             return
         texts.names_open = texts.names_open or Reported(str(error))
-        raise
-    except OutOfBudget:
         raise
     except Undetermined as error:
         if not isinstance(texts.names_open, Undetermined):
@@ -139,6 +138,8 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
 
 
 def _insert_file(expander: Expander, path: str, out: Node, scopes: Scopes) -> None:
+    if _PATTERN.search(path):
+        raise Undetermined("a pattern that names several files is not supported")
     root = expander.files.nodes(path)
     expander.files.open.append(path)
     try:

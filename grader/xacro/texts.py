@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Mapping
 from copy import copy
 from keyword import iskeyword
-from typing import Any
 
 from grader.names import did_you_mean
 from grader.static_python.closed import evaluate
@@ -12,13 +11,12 @@ from grader.static_python.closed_values import (
     Budget,
     ExpressionFails,
     Namespace,
-    OutOfBudget,
     Undetermined,
     Value,
     joined,
     text_of,
 )
-from grader.xacro.functions import GLOBALS, argument_value
+from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import Definition, Key, Known, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
 
 PIECE = re.compile(
@@ -126,8 +124,6 @@ class Texts:
         self._budget.charge(1, len(text))
         try:
             value = self.evaluate(text, scope)
-        except OutOfBudget:
-            raise
         except Reported as error:
             failure = error
         except ExpressionFails as error:
@@ -158,38 +154,19 @@ class Texts:
 
     def _substitution(self, text: str) -> str:
         """Return what $(...) gives."""
-        if text.startswith("eval "):
-            return self._python(text[5:])
-        if "$" in text or "(" in text:
-            raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
+        command, *args = [word for word in text.split(" ") if word] or [""]
         if not text:
             return "$()"
-        command, *args = [word for word in text.split(" ") if word] or [""]
-        if text == "cwd":
-            raise Undetermined("the folder in which xacro runs is known only at run time")
-        if command not in _SUBSTITUTIONS:
-            raise ExpressionFails(f"$({text}): unknown substitution; xacro knows find, arg, env, optenv, eval and cwd")
-        found = _SUBSTITUTIONS[command](self, args)
+        if text.startswith("eval "):
+            raise Undetermined("$(eval ...) is not supported: use ${...}")
+        if (command in ("env", "optenv") and args) or text == "cwd":
+            raise Undetermined(f"the value of $({text[:_MAX_SHOWN]}) is known only at run time")
+        if "$" in text or "(" in text:
+            raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
+        if command not in ("find", "arg") or len(args) != 1:
+            raise ExpressionFails(f"$({text}): xacro knows find, arg and env with one name, optenv, eval and cwd")
+        found = self.share(args[0]) if command == "find" else self.argument(args[0])
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
-
-    def _python(self, expression: str) -> str:
-        if "__" in expression:
-            raise ExpressionFails("$(eval ...) may not contain two underscores in a row")
-
-        def find(name: str) -> Value:
-            if name in self.arguments and name not in GLOBALS:
-                return argument_value(known(name, self.arguments[name]))
-            if name in ("env", "optenv", "find", "arg", "dirname"):
-                raise Undetermined(f"the function {name} in $(eval ...) is not supported")
-            if name in GLOBALS or name in ("true", "false"):
-                return {"true": True, "false": False}[name] if name in ("true", "false") else GLOBALS[name]
-            raise Undetermined(f"the argument {name} has no default, and no value is given")
-
-        return self._written(evaluate(expression, find, self._budget))
-
-    def constant(self, expression: str) -> Value:
-        """Return the value of an expression that uses xacro's own names only."""
-        return evaluate(expression, lambda name: self.find(name, Scope()), self._budget)
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
@@ -218,26 +195,3 @@ def known(argument: str, value: str | None) -> str:
     if value is None:
         raise Undetermined(f"the launch file gives the argument {argument} a value that is known only at run time")
     return value
-
-
-def _one(command: str, args: list[str]) -> str:
-    if len(args) != 1:
-        raise ExpressionFails(f"$({command} ...) takes one name, not {len(args)}")
-    return args[0]
-
-
-def _environment(name: str) -> str:
-    raise Undetermined(f"the environment variable {name} is known only at run time")
-
-
-def _no_folder(*_: Any) -> str:
-    raise ExpressionFails("xacro does not know $(dirname)")
-
-
-_SUBSTITUTIONS: dict[str, Callable[[Texts, list[str]], str]] = {
-    "find": lambda texts, args: texts.share(_one("find", args)),
-    "arg": lambda texts, args: texts.argument(_one("arg", args)),
-    "env": lambda _, args: _environment(_one("env", args)),
-    "optenv": lambda _, args: _environment(args[0] if args else _one("optenv", args)),
-    "dirname": _no_folder,
-}

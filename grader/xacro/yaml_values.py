@@ -6,6 +6,7 @@ from typing import Any
 
 import yaml
 
+from grader.static_python.closed import evaluate
 from grader.static_python.closed_values import (
     Budget,
     DottedDict,
@@ -17,9 +18,7 @@ from grader.static_python.closed_values import (
 )
 
 _OF_EVENT = 10  # what a part of the file is charged
-_MAX_DEPTH = 100
-_MAX_PLAIN = 100  # characters of a scalar that may be a number
-_STANDARD = "tag:yaml.org,2002:"
+_MAX_NUMBER = 100  # characters
 _UNITS = {
     "!radians": 1.0, "!degrees": 3.141592653589793 / 180.0, "!meters": 1.0, "!millimeters": 0.001, "!foot": 0.3048,
     "!inches": 0.0254,
@@ -31,39 +30,38 @@ _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _RESOLVER: Any = yaml.resolver.Resolver()
 
 
-def read_yaml_values(data: bytes, number: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of a YAML text. `number` evaluates an expression that has a unit, such as !degrees 90.
+def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
+    """Return the value of a YAML text. `find` returns the value of a name in an expression that has a unit: !radians pi/2.
 
     Raises ExpressionFails for what is not YAML, Undetermined for what is too large or rarely used.
     """
     budget.charge(1, len(data))
     try:
-        text = data.decode("utf-8")
+        events = yaml.parse(data.decode("utf-8"), _LOADER)
+        values = [*_Values(events, find, budget).items(yaml.StreamEndEvent)]
     except UnicodeDecodeError:
         raise ExpressionFails("the YAML file is not UTF-8 text") from None
-    try:
-        return budget.checked(_Values(yaml.parse(text, _LOADER), number, budget).document())
     except (yaml.YAMLError, ValueError) as error:
         raise ExpressionFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
+    except RecursionError:
+        raise Undetermined("the YAML file is nested too deeply") from None
+    if len(values) > 1:
+        raise ExpressionFails("the file is not YAML: it has more than one document")
+    return budget.checked(values[0]) if values else None
 
 
 class _Values:
-    def __init__(self, events: Iterator[Any], number: Callable[[str], Value], budget: Budget) -> None:
-        self._events, self._number, self._budget = events, number, budget
+    def __init__(self, events: Iterator[Any], find: Callable[[str], Value], budget: Budget) -> None:
+        self._events, self._find, self._budget = events, find, budget
         self._anchors: dict[str, Value] = {}
-        self._depth = 0
 
-    def document(self) -> Value:
-        """Return the value of the only document, None if there is none."""
-        value: Value = None
-        documents = 0
+    def items(self, end: type) -> Iterator[Value]:
+        """Yield the values up to the end of a collection, or of all documents."""
         for event in self._events:
-            if isinstance(event, yaml.DocumentStartEvent):
-                documents += 1
-                if documents > 1:
-                    raise ExpressionFails("the file is not YAML: expected a single document")
-                value = self._value(next(self._events))
-        return value
+            if isinstance(event, end):
+                return
+            if isinstance(event, yaml.NodeEvent):
+                yield self._value(event)
 
     def _value(self, event: Any) -> Value:
         self._budget.charge(_OF_EVENT)
@@ -71,38 +69,23 @@ class _Values:
             if event.anchor not in self._anchors:
                 raise Undetermined(f"the alias {event.anchor} has no value, or contains itself")
             return self._budget.checked(self._anchors[event.anchor])
-        if isinstance(event, yaml.ScalarEvent):
-            value = self._scalar(event)
-        elif event.tag not in (None, "!"):
-            raise self._unknown(event.tag)
+        if event.tag not in (None, "!", *_UNITS):
+            raise Undetermined(f"the YAML tag {event.tag} is not supported")
+        if isinstance(event, yaml.MappingStartEvent):
+            items = self.items(yaml.MappingEndEvent)
+            value: Value = DottedDict((checked_key(key), next(items)) for key in items)
         else:
-            self._depth += 1
-            if self._depth > _MAX_DEPTH:
-                raise Undetermined("the YAML file is nested too deeply")
-            value = self._mapping() if isinstance(event, yaml.MappingStartEvent) else [*self._items()]
-            self._depth -= 1
+            is_list = isinstance(event, yaml.SequenceStartEvent)
+            value = [*self.items(yaml.SequenceEndEvent)] if is_list else self._scalar(event)
         if event.anchor is not None:
             self._anchors[event.anchor] = value
         return value
 
-    def _items(self) -> Iterator[Value]:
-        for event in self._events:
-            if isinstance(event, yaml.CollectionEndEvent):
-                return
-            yield self._value(event)
-
-    def _mapping(self) -> DottedDict:
-        items = self._items()
-        return DottedDict((checked_key(key), next(items)) for key in items)
-
     def _scalar(self, event: Any) -> Value:
-        tag, text = event.tag, event.value
-        if tag in _UNITS:
-            return run(float, self._number(text)) * _UNITS[tag]
-        if tag not in (None, "!"):
-            raise self._unknown(tag)
-        kind = _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_PLAIN], event.implicit).removeprefix(_STANDARD)
-        match kind:
+        text = event.value
+        if event.tag in _UNITS:
+            return run(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
+        match _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_NUMBER], event.implicit).rpartition(":")[2]:
             case "str":
                 return text
             case "null":
@@ -111,12 +94,6 @@ class _Values:
                 return _WORDS[text.lower()]
             case "int" if _INTEGER.fullmatch(text):
                 return int(text, 0)
-            case "float" if not re.search("[_:]", text) and len(text) <= _MAX_PLAIN:
+            case "float" if not re.search("[_:]", text) and len(text) <= _MAX_NUMBER:
                 return float(_SPECIAL.get(text.lower(), text))
-        raise Undetermined(f"the YAML value {text[:_MAX_PLAIN]} is not supported")
-
-    @staticmethod
-    def _unknown(tag: str) -> ExpressionFails | Undetermined:
-        if tag.startswith(_STANDARD) and ":python/" not in tag:
-            return Undetermined(f"the YAML tag {tag} is not supported")
-        return ExpressionFails(f"the file is not YAML: there is no tag {tag}")
+        raise Undetermined(f"the YAML value {text[:_MAX_NUMBER]} is not supported")

@@ -117,7 +117,8 @@ def test_includes() -> None:
         outcome = graded(xacro_uses, IN_XACRO, includes=includes)
         assert (outcome.status, outcome.message) == ("failed", message)
     assert replaced("wheel.xacro", "heel.xacro", includes=1).message == "0 files included; there should be 1"
-    assert found('<xacro:include filename="*.inc"/>', {"a.inc": "", "b.inc": ""}, includes=2).status == "passed"
+    pattern = found('<xacro:include filename="*.inc"/>', {"a.inc": "", "b.inc": ""}, includes=2)
+    assert pattern.status == "pending"
 
 
 def test_one_file_is_meant() -> None:

@@ -55,6 +55,49 @@ def test_what_xacro_accepts_is_not_refused(expression: str, tmp_path: Path) -> N
     assert (code, report["score"], statuses(report)["urdf-loads"]) == (1, 67, "pending")
 
 
+WORK = '<note a="${[i * j for i in range(100) for j in range(100)][0]}"/>'  # takes some 80,000 parts of the budget
+WRONG = ROBOT.replace("0.15 0 0.225", "0.15 0 0.325")
+
+
+def test_a_file_that_takes_too_much_work_is_undetermined(tmp_path: Path) -> None:
+    """What was expanded before the budget is spent is graded; the rest is named, and needs manual grading."""
+    (tmp_path / "my_robot.xacro").write_text(ROBOT.replace("</robot>", WORK * 20 + "</robot>"))
+    code, report = graded(tmp_path / "my_robot.xacro")
+    assert code == 1
+    (problem,) = report["problems"]
+    assert problem["code"] == "XACRO006"
+    assert problem["message"] == "reading this takes more work than is allowed for one submission"
+    assert problem["location"]["line"] == ROBOT.count("\n")  # where it stopped
+    found = statuses(report)
+    assert (found["urdf-loads"], found["base-box"], found["lidar-on-top"]) == ("pending", "passed", "passed")
+    assert "failed" not in found.values()
+
+
+@pytest.mark.parametrize("factor", [0, 1, 20])
+def test_hints_are_searched_if_reading_takes_little_work(factor: int, tmp_path: Path) -> None:
+    """Above a tenth of the budget there are none, and the report says so."""
+    (tmp_path / "my_robot.xacro").write_text(WRONG.replace("</robot>", WORK * factor + "</robot>"))
+    report = graded(tmp_path / "my_robot.xacro")[1]
+    lost = [result for result in report["results"] if result["status"] == "failed"]
+    assert [result["id"] for result in lost] == ["lidar-frame", "lidar-on-top"]
+    assert any(result["hints"] for result in lost) == (factor == 0)
+    said = [note for note in report["notes"] if "no hints were searched" in note]
+    assert len(said) == (factor > 0)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    ["lambda: 1", "python.set([1])", "python.zip([1], [2])", "1 | 2", "max(*[1, 2])", "'a'.zfill(3)"],
+)
+def test_what_no_public_robot_uses_is_undetermined(expression: str, tmp_path: Path) -> None:
+    """It needs manual grading with a message that says so, and everything else is graded."""
+    (tmp_path / "my_robot.xacro").write_text(ROBOT.replace("</robot>", f'<note a="${{{expression}}}"/></robot>'))
+    report = graded(tmp_path / "my_robot.xacro")[1]
+    assert [problem["code"] for problem in report["problems"]] == ["XACRO006"]
+    assert "not supported" in report["problems"][0]["message"]
+    assert set(statuses(report).values()) == {"passed", "pending"}
+
+
 def test_a_macro_may_have_a_parameter_twice(tmp_path: Path) -> None:
     """The last default counts, as in xacro."""
     macro = f'<xacro:macro name="m" params="c:=1 c:=\'{GREEN}\'"><material name="green"><color rgba="${{c}}"/></material></xacro:macro>'

@@ -12,7 +12,7 @@ from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, text_of
 from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
@@ -213,7 +213,7 @@ class _Substitution:
             return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
         try:
             return text_of(evaluate(text, _builtin, Budget(_WORK)))
-        except (ExpressionFails, Undetermined):
+        except (ExpressionFails, Undetermined, OutOfBudget):
             return Unknown("the value of this expression is known only at run time", self.call.at)
 
 

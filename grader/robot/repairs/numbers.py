@@ -8,7 +8,7 @@ from typing import NamedTuple
 from grader.robot.edits.families import number as written
 from grader.robot.numbers import NumberError, numbers
 from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 
 COUNTS = {"xyz": 3, "rpy": 3, "size": 3, "scale": 3, "rgba": 4}
 _TEXTS = frozenset({"name", "type", "link", "joint", "filename", "version"})
@@ -110,7 +110,7 @@ def _is_number(text: str) -> bool:
 def _value(text: str) -> str:
     try:
         value = evaluate(text.replace("\u03c0", "pi"), _name, Budget(_WORK))
-    except (ExpressionFails, Undetermined):
+    except (ExpressionFails, Undetermined, OutOfBudget):
         return text
     if isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):
         return written(float(value))

@@ -1,4 +1,4 @@
-"""Arguments and `$(...)`: defaults, the command line, `$(eval ...)`, the environment."""
+"""Arguments and `$(...)`: defaults, the command line, the environment."""
 
 from tests.xacro.documents.document import Documents, bodies, merged, named, shown
 
@@ -67,7 +67,6 @@ _GIVEN = bodies(
     given_by_xacro_arg=shown("${xacro.arg('number')}", "${float(xacro.arg('number'))}"),
     given_in_name="<link name='$(arg text)_link'/>",
     given_case="<link name='$(arg A)'/>" + _A,
-    eval_given=shown("$(eval a + 1)", "$(eval number * 2)", "$(eval text)", "$(eval not flag)"),
 )  # fmt: skip
 _GIVEN["given-case"] = _GIVEN["given-case"]._replace(undetermined="perhaps")
 
@@ -84,51 +83,22 @@ _UNDECLARED_ASKED = bodies(
     "perhaps",
     used_before=shown("$(arg a)") + _A,
     undeclared_by_xacro_arg=shown("${xacro.arg('a')}"),
-    undeclared_in_eval=shown("$(eval a)"),
 )
 
-_EVAL = bodies(
-    eval_number=shown("$(eval 1 + 2)", "$(eval 1 / 2)", "$(eval 2 ** 3)"),
-    eval_in_text=shown("a $(eval 1 + 2) b"),
-    eval_two=shown("$(eval 1)$(eval 2)"),
-    eval_pi=shown("$(eval pi)", "$(eval pi / 2)"),
-    eval_string=shown("$(eval 'a' + 'b')"),
-    eval_list=shown("$(eval [1, 2][0])"),
-    eval_argument=_A + shown("$(eval a + 1)"),
-    eval_argument_is_converted='<xacro:arg name="a" default="1.50"/>' + shown("$(eval a)"),
-    eval_argument_boolean='<xacro:arg name="a" default="TRUE"/>' + shown("$(eval a)", "$(eval not a)"),
-    eval_argument_text='<xacro:arg name="a" default="b c"/>' + shown("$(eval a)", "$(eval a == 'b c')"),
-    eval_argument_hides='<xacro:arg name="pi" default="3"/>' + shown("$(eval pi)"),
-    eval_property=named("p", "2") + shown("$(eval p + 1)"),
-    eval_expression_inside=named("p", "2") + shown("$(eval ${p} + 1)"),
-    eval_argument_inside=_A + shown("$(eval $(arg a) + 1)"),
-    eval_call=shown("$(eval sqrt(4))"),
-    eval_brackets=shown("$(eval (1 + 2) * 3)"),
-    eval_empty=shown("$(eval )"),
-    eval_without_space=shown("$(eval)"),
-    eval_error=shown("$(eval 1 / 0)"),
-    eval_undefined=shown("$(eval missing_name)"),
-    eval_true=shown("$(eval true)", "$(eval True and false)"),
-    eval_condition='<xacro:if value="$(eval 1 &lt; 2)"><b/></xacro:if>',
-    eval_condition_number='<xacro:if value="$(eval 2 - 2)"><b/></xacro:if><a/>',
-    eval_condition_fraction='<xacro:if value="$(eval 0.5)"><b/></xacro:if>',
-    eval_in_property=named("p", "$(eval 3)") + shown("${p + 1}"),
-    eval_in_expression=shown("${$(eval 3) + 1}"),
-    eval_double_underscore=shown("$(eval 'a__b')"),
-    eval_leading_spaces=shown("$( eval 1)"),
-    eval_attribute=shown("$(eval 'a'.upper)"),
-    eval_conditional=_A + shown("$(eval 'x' if a == 1 else 'y')"),
-    eval_comparison_chain=shown("$(eval 1 < 2 < 3)"),
-    eval_none=shown("$(eval None)"),
+_SUBSTITUTIONS = bodies(
     dirname=shown("$(dirname)"),
     dirname_in_text=shown("$(dirname)/a.stl"),
     anon=shown("$(anon a)"),
     env_without_name=shown("$(env)"),
     optenv_without_name=shown("$(optenv)"),
 )
-_EVAL["eval-attribute"] = _EVAL["eval-attribute"]._replace(undetermined="perhaps")  # shows an address in memory
-for _name in ("eval-undefined", "eval-property"):  # the launch file can give an argument of this name
-    _EVAL[_name] = _EVAL[_name]._replace(undetermined="perhaps")
+_EVAL = bodies(
+    "always",
+    eval_number=shown("$(eval 1 + 2)"),
+    eval_in_text=shown("a $(eval 1 + 2) b"),
+    eval_argument=_A + shown("$(eval a + 1)"),
+    eval_condition='<xacro:if value="$(eval 1 &lt; 2)"><b/></xacro:if>',
+)
 
 _ENVIRONMENT = bodies(
     "always",
@@ -147,5 +117,5 @@ _ENVIRONMENT |= bodies("perhaps", env_two_names=shown("$(env A B)"), cwd_with_sp
 
 DOCUMENTS: Documents = merged(
     {name: document for name, document in _DEFAULTS.items() if name not in _UNDECLARED_ASKED},
-    _GIVEN, _UNDECLARED, _UNDECLARED_ASKED, _EVAL, _ENVIRONMENT,
+    _GIVEN, _UNDECLARED, _UNDECLARED_ASKED, _SUBSTITUTIONS, _EVAL, _ENVIRONMENT,
 )  # fmt: skip
