@@ -17,7 +17,7 @@ from grader.xacro.yaml_values import read_yaml_values
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the names, values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
-_MAX_LISTED = 100
+_MAX_LISTED, _MAX_MESSAGE = 100, 500  # problems, and the characters of one
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
 
@@ -84,8 +84,9 @@ class Expander:
     def root(self, source: Node) -> Node:
         """Return the expanded root element of a document."""
         scopes = Scopes(Scope(), Scope())
-        out = self.start(source, scopes)
+        out = Node(source.tag, source.place)
         try:
+            out = self.start(source, scopes)
             self.content(source, out, scopes)
         except OutOfBudget as error:
             out.open = self.report(error, self._stopped or source.place)
@@ -146,7 +147,7 @@ class Expander:
         self, error: ExpressionFails | Undetermined | OutOfBudget, place: Place, attribute: str | None = None
     ) -> str:
         """List a problem at a place, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
-        message = str(error)
+        message = str(error)[:_MAX_MESSAGE]
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
             return "" if isinstance(error, ExpressionFails) else message
         location = self._placed(place).at(attribute)
