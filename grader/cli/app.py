@@ -4,8 +4,11 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
-from typing import Annotated
+from itertools import dropwhile
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
@@ -15,6 +18,7 @@ from grader.cli.options import SHELLS
 from grader.cli.output import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
+from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.writing import write_stdout
 
@@ -88,7 +92,36 @@ def run(arguments: Sequence[str]) -> int:
     Every error is one line on standard error, never a traceback.
     """
     with quiet_interrupts():
-        return _run(arguments)
+        code = _run(arguments)
+        words = [*dropwhile(lambda word: word.startswith("-"), arguments)]
+        if code == ExitCode.NOT_GRADED and words[:1] == ["grade"]:
+            _discard_reports(words[1:])
+        return code
+
+
+def _discard_reports(words: Sequence[str]) -> None:
+    """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them."""
+    from typer.main import get_command
+
+    from grader.usecases.grade import remove_reports
+    from grader.usecases.saves import read_saves
+
+    command: Any = get_command(make_app(["grade"]))
+    options = [param for param in command.commands["grade"].params if param.param_type_name == "option"]
+    with_value = {name for option in options if not option.is_flag for name in option.opts}
+    given: dict[str, list[str]] = {"": [], "--save": [], "--rubric": [DEFAULT_RUBRIC]}
+    rest = iter(words)
+    for word in rest:
+        name, equals, value = word.partition("=")
+        if name not in with_value:
+            name, value = "", word
+        given.setdefault(name, []).append(value if equals or not name else next(rest, ""))
+    saves: list[tuple[Any, Path]] = []
+    for text in given["--save"]:
+        with suppress(GraderError):
+            saves += read_saves([text])
+    with suppress(GraderError):
+        remove_reports(tuple(saves), given["--rubric"][-1], *given[""])
 
 
 def _run(arguments: Sequence[str]) -> int:
