@@ -40,6 +40,8 @@ def with_hints(
     except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
         warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
         return report, None
+    if found.faults:
+        warn(f"some hints are missing: the grader itself failed ({found.faults[0]}); please report it")
     return found.report, fixed(found, submission) if is_fixed else None
 
 
