@@ -4,9 +4,11 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from importlib import import_module
-from typing import Annotated
+from itertools import dropwhile
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
@@ -16,6 +18,7 @@ from grader.cli.options import SHELLS
 from grader.cli.output import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
+from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.limits import outer_limits
 from grader.usecases.writing import write_stdout
@@ -91,7 +94,34 @@ def run(arguments: Sequence[str]) -> int:
     Every error is one line on standard error, never a traceback.
     """
     with quiet_interrupts():
-        return _run(arguments)
+        code = _run(arguments)
+        words = [*dropwhile(lambda word: word.startswith("-"), arguments)]
+        if code == ExitCode.NOT_GRADED and words[:1] == ["grade"]:
+            _discard_reports(words[1:])
+        return code
+
+
+def _discard_reports(words: Sequence[str]) -> None:
+    """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them."""
+    from typer.main import get_command
+
+    from grader.usecases.grade import remove_reports
+    from grader.usecases.saves import read_saves
+
+    command: Any = get_command(make_app(["grade"]))
+    command = command.commands["grade"]
+    command.ignore_unknown_options = True
+    flags = {name for option in command.params if getattr(option, "is_flag", False) for name in option.opts}
+    known = [
+        name if (name := word.partition("=")[0]) in flags else word for word in words
+    ]  # --verbose=yes ends parsing
+    given = command.make_context("grade", known, resilient_parsing=True).params
+    saves: list[tuple[Any, Path]] = []
+    for text in given["save"] or ():
+        with suppress(GraderError):
+            saves += read_saves([text])
+    with suppress(GraderError):
+        remove_reports(tuple(saves), given["rubric"] or DEFAULT_RUBRIC, given["path"] or "")
 
 
 def _run(arguments: Sequence[str]) -> int:

@@ -113,6 +113,7 @@ def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None
     roots = (next(iter(robot.main_tree), None), next(iter(solution.main_tree), None) if solution is not None else None)
     known = [pair for pair in pairs if robot.robot.has_link(pair[0]) and _has(solution, pair[1])]
     sizes = Counter(_root_of(robot, link.name) for link in robot.robot.links)
+    del sizes[""]  # links on loops have no pose in each other's frames
     return max(known, key=lambda pair: sizes[_root_of(robot, pair[0])], default=roots)
 
 

@@ -1,6 +1,7 @@
 """The content of a picture of a robot: shapes in their colours, frames, and driving directions of wheels."""
 
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import NamedTuple
@@ -71,9 +72,16 @@ class Scene:
         return self.poses[body.link] @ body.T_link_shape
 
     @property
+    def root(self) -> str:
+        """The root of the tree that `frame` is in; `frame` itself if it is on or below a loop of joints."""
+        with suppress(MissingElement):
+            return self.robot.root_of(self.frame)
+        return self.frame
+
+    @property
     def ground(self) -> Transform | None:
-        """The frame of the root of the robot's tree, at whose z = 0 the robot stands; None if it has no pose here."""
-        return self.poses.get(self.robot.root_of(self.frame))
+        """The frame of the root, at whose z = 0 the robot stands; None if it has no pose here."""
+        return self.poses.get(self.root)
 
 
 def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:

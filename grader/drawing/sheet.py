@@ -144,9 +144,8 @@ def framed_links(picture: Picture) -> list[str]:
     """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
-    root = scene.robot.root_of(scene.frame)
     shown = [link.name for link in scene.robot.robot.links if link.visuals] or list(scene.poses)
-    links = dict.fromkeys([scene.frame, root, *called, *picture.frames, *shown])
+    links = dict.fromkeys([scene.frame, scene.root, *called, *picture.frames, *shown])
     if len(links) > (_MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE):
         links = dict.fromkeys([scene.frame, *called[:_MAX_FRAMES]])
     return [link for link in links if link in scene.poses]

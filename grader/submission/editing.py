@@ -45,6 +45,11 @@ def content(submission: Submission, path: str) -> bytes | None:
         return None
 
 
+def creates(submission: Submission, edit: Edit) -> bool:
+    """Return whether an edit creates a file, which may be empty."""
+    return edit.path != submission.path and edit.path not in submission.everything.files
+
+
 def with_urdf(submission: Submission, files: Files) -> Submission:
     """Return a submission with the URDF read again, and nothing else: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf

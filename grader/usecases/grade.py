@@ -12,18 +12,19 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.errors import GraderError, InputError
 from grader.grading.levels import Level
 from grader.report.formats import Format, needed, render
-from grader.text import printable, printable_path, shell_quoted
+from grader.text import printable, shell_quoted
 from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
-from grader.usecases.rubrics import load
+from grader.usecases.rubrics import files_of, load
 from grader.usecases.saves import Saves, picture_beside
-from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
+from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.report import Fix, Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
+_KEPT = (*ROBOT_FILES, ".toml")  # files that stay until a report replaces them
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
@@ -80,13 +81,17 @@ class GradeResult(NamedTuple):
 
 def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
     """Grade a submission and save its reports. Raises GraderError."""
-    modes = remove_reports(request)
+    modes = remove_reports(request.saves, request.rubric, request.path)
     result = grade_submission(request, warn, show_progress)
-    save_reports(request, result, modes)
-    if request.fix is not None and result.fix is not None:
-        from grader.usecases.hints import write_fix  # late: few ask for it
+    if request.fix is None or result.fix is None:
+        save_reports(request, result, modes)
+        return result
+    from grader.usecases.hints import files_to_fix, write_fix  # late: few ask for it
 
-        warn(write_fix(request.fix, request.path, result.report, result.fix, result.besides))
+    others = [*files_of(request.rubric), *(file for _, file in request.saves)]
+    files = files_to_fix(request.fix, request.path, result.report, result.fix, result.besides, others)
+    save_reports(request, result, modes)
+    warn(write_fix(request.fix, request.path, result.report, result.fix, files))
     return result
 
 
@@ -140,38 +145,36 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     return GradeResult(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
-def remove_reports(request: GradeRequest) -> dict[Path, int]:
-    """Remove the files that `--save` is about to write and return their permissions.
+def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
+    """Remove the files that `--save` names and return their permissions.
 
     They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its reports. Robot
-    descriptions stay, because they may be what is graded. Raises InputError if a report would overwrite what is graded or lead
-    through a symlink of the submission.
+    descriptions and TOML files stay, because they may be what is read. Raises InputError if a report would overwrite a file of
+    the rubric or one of the submissions, or lead through a symlink of a submission.
     """
-    _refuse_graded(request, request.path, request.rubric)
+    if not saves:
+        return {}
     refusals: list[InputError] = []
     modes: dict[Path, int | None] = {}
-    for _, file in request.saves:
+    inputs = [*files_of(rubric), *(Path(path) for path in paths if not Path(path).is_dir())]
+    for _, file in saves:
         try:
-            refuse_symlinks(file, (request.path,))
+            refuse_symlinks(file, paths)
+            refuse_inputs("--save", file, inputs)
+            if Path(os.path.realpath(file)).suffix.lower() not in _KEPT:
+                modes[file] = remove_previous(file)
         except InputError as error:  # the others are removed nevertheless
             refusals.append(error)
-            continue
-        if Path(os.path.realpath(file)).suffix.lower() not in ROBOT_FILES:
-            modes[file] = remove_previous(file)
     if refusals:
         raise refusals[0]
     return {file: mode for file, mode in modes.items() if mode is not None}
 
 
-def _refuse_graded(request: GradeRequest, *inputs: str) -> None:
-    for _, file in request.saves:
-        if any(is_same_file(file, Path(path)) and Path(path).is_file() for path in inputs):
-            raise InputError(f"--save would overwrite {printable_path(file)}, which is graded: choose another file")
-
-
 def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path, int]) -> None:
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
-    _refuse_graded(request, os.path.join(request.path, result.report.submission.path or ""))  # noqa: PTH118  names
+    graded = Path(request.path, result.report.submission.path or "")
+    for _, file in request.saves:
+        refuse_inputs("--save", file, [graded] if graded.is_file() else ())
     for kind, file in request.saves:
         picture = picture_beside(file, request.saves)
         text = render(result.report, kind, result.base, verbose=request.verbose, picture=picture)

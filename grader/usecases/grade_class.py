@@ -26,7 +26,8 @@ from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.grades_csv import grades_csv
-from grader.usecases.writing import is_same_file, missing_folder, refuse_gradebook, refuse_symlinks, save
+from grader.usecases.rubrics import files_of
+from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
 
 _MAX_LINES = 10
 
@@ -177,10 +178,8 @@ def _refuse_targets(request: ClassRequest) -> None:
 
 def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
-    rubric = Path(request.rubric) if request.rubric else None
-    files = [path for path in (request.roster, rubric, *request.ignore_files) if path is not None]
-    if any(file.is_file() and is_same_file(csv, file) for file in files):
-        raise InputError(f"cannot write {printable_path(csv)}: the command reads it; name another file for --csv")
+    roster = [request.roster] if request.roster is not None else []
+    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_files])
     if request.root in (csv.resolve(), *csv.resolve().parents):
         raise InputError(
             f"cannot write {printable_path(csv)}: the next run would take it for a submission; choose a file outside of the class"

@@ -1,7 +1,6 @@
 """Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes their edits."""
 
-import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.limits import OutOfTime
-from grader.usecases.writing import make_folder, save_bytes
+from grader.usecases.writing import make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
 _MAX_NAMED = 6
 
@@ -42,48 +41,43 @@ def with_hints(
     except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
         warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
         return report, None
+    if found.faults:
+        warn(f"some hints are missing: the grader itself failed ({found.faults[0]}); please report it")
     return found.report, fixed(found, submission) if is_fixed else None
 
 
-def write_fix(target: Path, graded: str, report: Report, fix: Fix, besides: Sequence[Path] = ()) -> str:
-    """Write the files that edits change, and return what was done in a sentence. Raises InputError.
+def files_to_fix(
+    target: Path, graded: str, report: Report, fix: Fix, besides: Sequence[Path], others: Iterable[Path]
+) -> dict[Path, bytes]:
+    """Return the files to write that edits change. Raises InputError if one of them may not be written.
 
-    A target that is a folder, or whose name ends in a slash, gets each file under its path; any other is the one file that changes.
-    `besides` are the files that were read besides a single one.
+    A target that is a folder gets each file under its path; any other is the one file that changes.
+    `besides` are the files that were read besides a single one, `others` what else the run reads or writes.
     """
     files = {path: data for path, data in fix.files.items() if data is not None}
-    if not files:
-        return "--fix: there is no edit to make, so nothing was written"
-    is_folder = target.is_dir() or str(target).endswith(os.sep)
+    is_folder = target.is_dir()
     if len(files) > 1 and not is_folder:
         names = ", ".join(map(printable, files))
         raise InputError(f"--fix: the edits change {len(files)} files ({names}): name a folder that exists")
     own = report.submission.path
-    if besides and not is_folder and own not in files:
+    if files and besides and not is_folder and own not in files:
         raise InputError(f"--fix: the edits change {printable(*files)}, not {own}: name a folder that exists")
     written = {(target / path if is_folder else target): data for path, data in files.items()}
     for file in written:
-        for path in (graded, *map(str, besides)):
-            _refuse_input(file, path)
+        refuse_symlinks(file, (graded,))
+        refuse_inputs("--fix", file, (Path(graded), *besides, *others))
+    return written
+
+
+def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapping[Path, bytes]) -> str:
+    """Write the files that edits change, and return what was done in a sentence. Raises InputError."""
+    if not written:
+        return "--fix: there is no edit to make, so nothing was written"
     for file, data in written.items():
-        if is_folder:
+        if target.is_dir():
             make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
+    names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
     score = f"{format_points(report.score)} -> {format_points(fix.report.score)} of {format_points(report.max_score)} points"
-    names = enumerated(list(map(printable, files)), _MAX_NAMED)
     return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"
-
-
-def _refuse_input(file: Path, graded: str) -> None:
-    """Raise InputError if a file that exists is the submission or in it."""
-    root = Path(os.path.realpath(graded))
-    real = Path(os.path.realpath(file))
-    if real.exists() and graded != "-" and (real == root or root in real.parents or _is_same(file, root)):
-        raise InputError(
-            f"--fix would overwrite {printable_path(file)}, which is graded: choose another file or folder"
-        )
-
-
-def _is_same(file: Path, other: Path) -> bool:
-    return other.exists() and file.samefile(other)

@@ -1,6 +1,8 @@
 """Load, list and check rubrics."""
 
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
@@ -52,6 +54,25 @@ def _size(rubric: "Rubric") -> str:
     from grader.grading.worth import worth
 
     return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
+
+
+def files_of(name: str) -> list[Path]:
+    """Return the files and folders that a rubric is read from: its own file, its model answers, its reference.
+
+    It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder it is only the URDF.
+    """
+    from grader.grading.rubric import find_rubric, load_rubric
+
+    found: list[Path] = []
+    with suppress(GraderError):
+        file = find_rubric(name)
+        found.append(file)
+        rubric = load_rubric(name)
+        found += [file.parent / rubric.answers] * bool(rubric.answers)
+        if rubric.reference:
+            place = file.parent / rubric.reference
+            found.append(place / rubric.urdf if place.resolve() in file.resolve().parents else place)
+    return found
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:

@@ -34,7 +34,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     """
     besides: set[Path] = set()
     changes = _changes(request, besides, terminal.warn)
-    modes = remove_reports(request)
+    modes = remove_reports(request.saves, request.rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     code: ExitCode | None = None

@@ -6,7 +6,7 @@ None is written through a symlink of a submission, and none over the gradebook.
 import os
 import stat
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -158,6 +158,17 @@ def refuse_gradebook(path: Path, gradebook: Path) -> None:
     book = Path(os.path.realpath(gradebook))
     if any(is_same_file(path, book.with_name(book.name + ending)) for ending in _SQLITE_FILES):
         raise InputError(f"cannot write {path}: this would overwrite the gradebook and all its manual marks")
+
+
+def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
+    """Raise InputError if a file that an option names is one of the inputs, or exists in one that is a folder."""
+    real = Path(os.path.realpath(path))
+    for found in inputs:
+        if is_same_file(path, found) or (real.exists() and Path(os.path.realpath(found)) in real.parents):
+            shown = printable_path(path)
+            raise InputError(
+                f"cannot write {shown}: the command also reads or writes it; name another file for {option}"
+            )
 
 
 def is_same_file(path: Path, other: Path) -> bool:

@@ -1,6 +1,7 @@
 """Hints of grader grade: their levels, the files that --fix writes, and what --watch says about them."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -203,6 +204,62 @@ def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) 
     assert done.returncode == 1
     assert json.loads(done.stdout)["score"] == 42
     assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
+
+
+MISSPELT_FRAME = ROOT / "submissions/rviz-fixed-frame-misspelt"
+
+
+def test_a_missing_resource_index_costs_no_other_hint(tmp_path: Path) -> None:
+    """The hint that creates its empty file is one edit without text; `--fix` writes the file."""
+    sample = tmp_path / "sample"
+    shutil.copytree(MISSPELT_FRAME, sample, ignore=shutil.ignore_patterns("resource"))
+    found = hints(sample)
+    assert found["rviz-fixed-frame"][0]["edits"][0]["new"] == "base_footprint"
+    [created] = found["setup-installs-urdf"]
+    assert created["message"].startswith("Create the empty file `my_robot/resource/my_robot`")
+    assert [edit["path"] for edit in created["edits"]] == ["my_robot/resource/my_robot"]
+    (tmp_path / "fixed").mkdir()
+    assert run(("grade", sample, "--fix", tmp_path / "fixed")).returncode == 1
+    assert (tmp_path / "fixed/my_robot/resource/my_robot").read_bytes() == b""
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in MISSPELT_FRAME.glob("my_robot/*")))
+def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
+    """Without any one file or folder of the package the search does not fail."""
+    shutil.copytree(MISSPELT_FRAME, tmp_path / "sample")
+    gone = tmp_path / "sample/my_robot" / name
+    shutil.rmtree(gone) if gone.is_dir() else gone.unlink()
+    assert b"the grader itself failed" not in run(("grade", tmp_path / "sample")).stderr
+
+
+@pytest.mark.parametrize(
+    ("place", "lost"),
+    [
+        ("grader.package.edits.candidates.manifest_edits.one_name", ()),
+        ("grader.grading.hints.proposing.proposals", ("base-green",)),
+        ("grader.grading.hints.search.Search._load", ()),
+        ("grader.grading.hints.search.Search._combine", ()),
+    ],
+)
+def test_a_fault_of_one_family_costs_no_other_hint(
+    place: str, lost: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The hints of the other families are shown, and standard error says that some are missing."""
+    shutil.copytree(MISSPELT_FRAME, tmp_path / "sample")
+    urdf = tmp_path / "sample/my_robot/urdf/my_robot.urdf"
+    urdf.write_text(urdf.read_text().replace("0 0.6 0 1", "0 1 0 1"))
+
+    def fail(*_: object, **__: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(place, fail)
+    done = run(("grade", tmp_path / "sample", "--format", "json"))
+    found = {result["id"] for result in json.loads(done.stdout)["results"] if result["hints"]}
+    assert found == {"base-green", "rviz-fixed-frame"} - {*lost}
+    assert (
+        done.stderr
+        == b"grader: some hints are missing: the grader itself failed (ZeroDivisionError); please report it\n"
+    )
 
 
 def test_a_hint_that_was_applied_is_named() -> None:

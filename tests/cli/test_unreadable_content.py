@@ -123,7 +123,7 @@ def test_inputs_are_not_overwritten(tmp_path: Path) -> None:
         options = ("--rubric", str(tmp_path / "lab.toml"), "--save", f"json={tmp_path / 'a.json'}")
         done = run(("grade", str(folder), *options, "--save", f"markdown={tmp_path / over}"))
         assert done.returncode == 2
-        assert b"which is graded: choose another file" in done.stderr
+        assert b"also reads or writes it; name another file for --save" in done.stderr
         assert (tmp_path / over).read_bytes() == before
         assert not (tmp_path / "a.json").exists()
 

@@ -344,7 +344,7 @@ def test_a_fix_of_an_included_file(tmp_path: Path) -> None:
             tmp_path / "fixed.urdf.xacro",
             b"the edits change urdf/materials.xacro, not urdf/my_robot.urdf.xacro: name a folder",
         ),
-        (tmp_path / "my_robot", b"which is graded: choose another file or folder"),
+        (tmp_path / "my_robot", b"also reads or writes it; name another file for --fix"),
     ):
         done = run(("grade", path, "--fix", target), COLUMNS="1000")
         assert (done.returncode, message in done.stderr) == (2, True), done.stderr

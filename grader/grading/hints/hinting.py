@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 
 class Hinted(NamedTuple):
-    """A report with hints, and the edits of all hints that fit together."""
+    """A report with hints, the edits of all hints that fit together, and the types of exceptions that cost other hints."""
 
     report: Report
     edits: Edits
+    faults: list[str]
 
 
 def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
@@ -36,17 +37,16 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     trials = Trials(report.rubric, submission, results)
     search = Search(trials, _draft(solution), lambda: _package(solution)).run()
     costs = costs_of(results)
-    hints = {
-        name: hint
-        for found in reversed(search.found)
-        for hint in [_hint(found, level, submission, costs, keep_edits=keep_edits)]
-        for name in found.gains
-    }
+    hints: dict[str, Hint] = {}
+    for found in reversed(search.found):
+        with trials.isolated():
+            hint = _hint(found, level, submission, costs, keep_edits=keep_edits)
+            hints.update(dict.fromkeys(found.gains, hint))
     with_hints = [
         result._replace(hints=(hints[result.criterion.id],)) if result.criterion.id in hints else result
         for result in report.results
     ]
-    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits)
+    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits, trials.faults)
 
 
 def fixed(found: Hinted, submission: Submission) -> Fix:

@@ -9,7 +9,7 @@ from grader.edits import Proposal
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.hints.targets import Targets, moving_child, targets_of
-from grader.grading.hints.trials import State
+from grader.grading.hints.trials import State, Trials
 from grader.grading.subjects import named_links
 from grader.robot.edits.bodies import body_proposals
 from grader.robot.edits.candidates import proposals
@@ -36,8 +36,8 @@ NO_TARGETS = Targets((), ())
 class Proposing:
     """Proposes edits by the robot and the package of the rubric's reference solution."""
 
-    def __init__(self, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
-        self.reference = reference
+    def __init__(self, reference: Draft | None, package: "Callable[[], Package | None]", trials: Trials) -> None:
+        self.reference, self._trials = reference, trials
         self._package = package
 
     def targets(self, state: State, criterion: Criterion) -> Targets:
@@ -56,26 +56,30 @@ class Proposing:
             from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
 
             wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
-            found += package_proposals(state.submission.package, self._package(), wanted)
-        found += raw_xacro_proposals(state.submission) if about_urdf else ()
+            found += package_proposals(state.submission.package, self._package(), wanted, self._trials.isolated)
+        with self._trials.isolated():
+            found += raw_xacro_proposals(state.submission) if about_urdf else ()
+        with self._trials.isolated():
+            found += self._of_robot(state, criteria, about_urdf=about_urdf)
+        return found
+
+    def _of_robot(self, state: State, criteria: list[Criterion], *, about_urdf: bool) -> Iterator[Proposal]:
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
-        if draft is not None:
-            criteria = [*_with_links(criteria, Configuration(draft.robot))]
-            for link, mass in _bodies(criteria).items():
-                found += body_proposals(draft, link, mass)
-            reference = self.reference or draft
-            for element in _elements(criteria):
-                found += element_proposals(draft, reference, element)
-            shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
-            anchors = tuple(dict.fromkeys((*shown, *moved)))
-            if about_urdf:
-                shown = moved = tuple(dict.fromkeys((*anchors, *(link.name for link in reference.robot.links))))
-            places = [
-                result.outcome.location for result in state.results.values() if result.outcome.location is not None
-            ]
-            found += proposals(draft, reference, shown, moved, anchors, places, _given(criteria, draft.robot))
-        return found
+        if draft is None:
+            return
+        criteria = [*_with_links(criteria, Configuration(draft.robot))]
+        for link, mass in _bodies(criteria).items():
+            yield from body_proposals(draft, link, mass)
+        reference = self.reference or draft
+        for element in _elements(criteria):
+            yield from element_proposals(draft, reference, element)
+        shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
+        anchors = tuple(dict.fromkeys((*shown, *moved)))
+        if about_urdf:
+            shown = moved = tuple(dict.fromkeys((*anchors, *(link.name for link in reference.robot.links))))
+        places = [result.outcome.location for result in state.results.values() if result.outcome.location is not None]
+        yield from proposals(draft, reference, shown, moved, anchors, places, _given(criteria, draft.robot))
 
 
 def _bodies(criteria: Iterable[Criterion]) -> dict[str, float | None]:

@@ -1,6 +1,7 @@
 """Search the edits that make failed criteria pass, the costliest first, and prove them."""
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from decimal import Decimal
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +13,7 @@ from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Tria
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
+from grader.submission.editing import creates
 from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ class Search:
         """`reference` and `package` are the robot and the package of the rubric's reference solution."""
         self.trials = trials
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        self._choice = Choice(trials, Proposing(reference, package), self._criteria)
+        self._choice = Choice(trials, Proposing(reference, package, trials), self._criteria)
         self._reference = reference
         robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
         # One with as many links may be the lab's, with other names.
@@ -55,15 +57,16 @@ class Search:
         """Search until nothing more is found, or the budget is spent."""
         if not self.trials.left:
             return self
-        try:
-            self._load()
-            for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):
-                while self._round(self.final, ranks):
-                    pass
-            self._combine()
-        except OutOfBudget:
-            pass
+        with suppress(OutOfBudget):
+            for phase in (self._load, self._rounds, self._combine):
+                with self.trials.isolated():
+                    phase()
         return self
+
+    def _rounds(self) -> None:
+        for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):
+            while self._round(self.final, ranks):
+                pass
 
     def _round(self, state: State, ranks: range) -> bool:
         """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
@@ -125,7 +128,7 @@ class Search:
         if state is None or state.lost:
             return False
         gains = gained(start.results, state.results)
-        edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed)
+        edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed or creates(start.submission, edit))
         if name in gains:
             self.found.append(Found(proposal, edits, gains, after))
         return name in gains

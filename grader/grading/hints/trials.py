@@ -1,6 +1,7 @@
 """Try edits of a submission: which criteria pass with them, and whether the whole proves it."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -51,6 +52,17 @@ class Trials:
         own = {name: result for name, result in results.items() if result.criterion.part in parts}
         self.start = State(submission, (), own)
         self.left = 0 if submission.is_costly else _MAX_STEPS
+        self.faults: list[str] = []  # the types of exceptions
+
+    @contextmanager
+    def isolated(self) -> Iterator[None]:
+        """Record a fault of the grader in one family of edits or one step: it must not cost the hints of the others."""
+        try:
+            yield
+        except OutOfBudget:
+            raise
+        except Exception as error:  # noqa: BLE001
+            self.faults.append(type(error).__name__)
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""

@@ -6,6 +6,7 @@ from decimal import Decimal
 from grader.grading.hints.search import Found
 from grader.grading.levels import Level
 from grader.source import Edit, Location, Source
+from grader.submission.editing import creates
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
@@ -115,8 +116,8 @@ def _change(edit: Edit, submission: Submission) -> str:
     old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, submission.path)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
-    if edit.path != submission.path and edit.path not in submission.everything.files:
-        return f"create `{edit.path}` (--fix writes it)"
+    if creates(submission, edit):
+        return f"create {'' if edit.new else 'the empty file '}`{edit.path}` (--fix writes it)"
     if not edit.old:
         is_line, is_below = edit.new.endswith("\n"), edit.new.lstrip(" \r").startswith("\n")
         return f"insert {new} ({'before ' if is_line else 'after ' if is_below else ''}{where})"

@@ -65,7 +65,7 @@ def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] 
         "order": [links[name] for name in _top_down(robot, links)],
         "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],
         "frame": links[scene.frame],
-        "root": links[robot.root_of(scene.frame)],
+        "root": links[scene.root],
         "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],
         "wheels": [_wheel(wheel, scene, links, expected, failed) for wheel in scene.wheels],
     }
