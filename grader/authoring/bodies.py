@@ -5,7 +5,8 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, exact, length, lengths, shown, whole_angle
+from grader.authoring.fact import Fact, Omission, exact, length, lengths, shown, whole_angle
+from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
 from grader.xml.wanted_element import readable
@@ -19,12 +20,15 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _DIAGONAL = (0, 3, 5)
 
 
-def body_facts(link: Link) -> Iterator[Fact]:
+def body_facts(link: Link) -> Iterator[Fact | Omission]:
     """Yield the mass of a link, and that its inertia and its collision shapes fit its shapes."""
     if link.inertial is not None and isfinite(link.inertial.mass):
         yield _mass(link.name, exact(link.inertial.mass))
         if link.inertial.mass > 0:
             yield _inertia(link, link.inertial)
+    if len(link.collisions) > MAX_SHAPES:
+        yield Omission(f"how {link.name} collides", f"it has more than {MAX_SHAPES} collisions")
+        return
     others = [
         _collision(link.name, collision, index, only=len(link.collisions) == 1)
         for index, collision in enumerate(link.collisions)

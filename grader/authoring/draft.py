@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,9 +19,11 @@ from grader.authoring.solution import Solution
 from grader.authoring.toml_text import literal
 from grader.authoring.whole import loading_facts, motion_facts, tree_facts
 from grader.checks.outcome import Outcome
+from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 
+MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 _SEE_BELOW = "the reference does not pass it (see below)"
 
 
@@ -35,8 +37,12 @@ class Draft(NamedTuple):
 
 
 def draft(solution: Solution, head: Head, path: Path) -> Draft:
-    """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test."""
-    found = list(_measured(solution))
+    """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test. Raises InputError."""
+    found = list(islice(_measured(solution), MAX_FACTS + 1))
+    if len(found) > MAX_FACTS:
+        raise InputError(
+            f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
+        )
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [*_omissions(found)]
     ignored, doubts = list(ignored_mutants(solution)), Doubts()

@@ -19,6 +19,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
 _NAMED_BY = ("reference", "name", "filename", "type")
 
+_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _MAX_LISTED = 4  # values in a title
 
 Values = dict[str, Any]
@@ -29,7 +30,11 @@ def element_facts(root: Element) -> Iterator[Fact | Omission]:
     used = texts_in(root)
     for element in _children(root):
         if name_of(element) in _FOREIGN:
-            yield from _facts_in(element)
+            size = sum(1 + len(inner.attrib) for inner in element.iter())
+            if size > _MAX_VALUES:
+                yield Omission(_title(element, "", {}), f"it has more than {_MAX_VALUES} elements and attributes")
+            else:
+                yield from _facts_in(element)
         elif name_of(element) == "joint":
             for child in _children(element):
                 yield from _fact_of_joint(element, child, is_used=_name(element) in used)

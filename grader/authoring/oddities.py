@@ -1,16 +1,18 @@
 """What looks odd in a reference: it gets full marks anyway, so only its author knows whether it is correct."""
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from itertools import chain, combinations
 
 from grader.authoring.elements import texts_in
 from grader.authoring.fact import Fact, shown
 from grader.authoring.solution import Solution
 from grader.checks.outcome import Outcome
+from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import is_of_one_machine, one_machine_only
 from grader.robot.model import Cylinder, Joint, Link, Mesh
 from grader.robot.shapes import is_empty
-from grader.robot.transforms import dot
+from grader.robot.transforms import Vector, dot
 from grader.text import counted, enumerated
 
 _OPPOSITE = -0.999  # the cosine of the angle between two axes
@@ -85,15 +87,16 @@ def _of_joint(joint: Joint) -> Iterator[str]:
 
 def _mirrored_wheels(solution: Solution) -> Iterator[str]:
     """Yield pairs of equal wheels on one link whose axes are opposite: then one of them turns backward to drive forward."""
-    wheels = [joint for joint in solution.moving_joints if joint.type == "continuous" and _wheel(solution, joint)]
-    for one, other in combinations(wheels, 2):
-        if one.parent == other.parent and _wheel(solution, one) == _wheel(solution, other):
-            axes = [
-                solution.robot.pose(it.child, relative_to=it.parent).rotate(solution.robot.axis(it))
-                for it in (one, other)
-            ]
-            if dot(*axes) < _OPPOSITE:
-                yield f"{one.child} and {other.child} are equal wheels with opposite axes: positive velocities of both turn the robot on the spot"
+    wheels: list[tuple[Joint, Mapping[str, float], Vector]] = []
+    for joint in solution.moving_joints:
+        size = _wheel(solution, joint) if joint.type == "continuous" else None
+        if size is not None:
+            with suppress(MissingElement, NotDecided):  # an axis of length zero, an origin that is too far away
+                pose = solution.robot.pose(joint.child, relative_to=joint.parent)
+                wheels.append((joint, size, pose.rotate(solution.robot.axis(joint))))
+    for (one, size, axis), (other, other_size, other_axis) in combinations(wheels, 2):
+        if one.parent == other.parent and size == other_size and dot(axis, other_axis) < _OPPOSITE:
+            yield f"{one.child} and {other.child} are equal wheels with opposite axes: positive velocities of both turn the robot on the spot"
 
 
 def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:

@@ -68,12 +68,13 @@ def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored
 def criterion_ids(facts: Sequence[Fact]) -> dict[str, Fact]:
     """Return the facts by their ids: words of the names that they are about, such as upper-arm-mass."""
     found: dict[str, Fact] = {}
+    numbers: dict[str, int] = {}  # the last that each name got
     for fact in facts:
         words = re.sub(r"[\W_]+", "-", f"{fact.subject} {fact.aspect}".lower()).strip("-")[:_MAX_ID].strip("-")
-        name, number = words or "criterion", 1
+        name = words = words or "criterion"
         while name in found:
-            number += 1
-            name = f"{words or 'criterion'}-{number}"
+            numbers[words] = numbers.get(words, 1) + 1
+            name = f"{words}-{numbers[words]}"
         found[name] = fact
     return found
 

@@ -5,16 +5,21 @@ from typing import Any
 
 from grader.authoring.fact import Fact, Omission, direction, is_same, length, lengths, shown
 from grader.checks.mesh_files import mesh_file
+from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty, volume
 from grader.robot.transforms import rotation_from_rpy
 
+_MANY = f"it has more than {MAX_SHAPES} visuals"
 _Z = (0.0, 0.0, 1.0)
 _CLEARLY_SMALLER = 0.95  # of the largest volume: more could be the largest in an equivalent robot
 
 
 def shape_facts(link: Link) -> Iterator[Fact | Omission]:
     """Yield what a link shows, shape by shape; of several shapes of one kind all sizes, and the place of the largest."""
+    if len(link.visuals) > MAX_SHAPES:
+        yield Omission(f"what {link.name} shows", _MANY)
+        return
     visuals = [visual for visual in link.visuals if not is_empty(visual.geometry)]
     by_kind: dict[type[Geometry], list[Visual]] = {}
     for visual in visuals:

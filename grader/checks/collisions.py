@@ -99,14 +99,16 @@ def collides_as(
         return found if found is None or xyz is not None else found._replace(apart=0.0)
 
     solid = _solid(robot, link, what)
-    nearest, *others = sorted(solid, key=lambda one: (not _fits(off(one), tolerance), _rank(off(one))))
-    if not _fits(off(nearest), tolerance):
+    fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
+    if fitting is None:
+        nearest = min(solid, key=lambda one: _rank(off(one)))
         differences, at = _differences(nearest, off(nearest), tolerance)
         message = f"no collision shape of {link!r} is {what}; the nearest is {_described(nearest)}{differences}"
         return failed(message, at or nearest.location)
-    if only and others:
-        message = f"{link!r} has another collision shape, {_described(others[0])}; it should have only {what}"
-        return failed(message, others[0].location)
+    other = next((one for one in solid if one is not fitting), None)
+    if only and other is not None:
+        message = f"{link!r} has another collision shape, {_described(other)}; it should have only {what}"
+        return failed(message, other.location)
     return passed(f"{link!r} collides as {what}")
 
 

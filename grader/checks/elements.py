@@ -62,11 +62,12 @@ def element_present(
             raise NotDecided(reading.undetermined, reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
     outcome = _searched(reading, root, wanted)
-    is_dropped = outcome.status == "passed" and tag == "link" and not _having(_kept(robot, root), wanted)
+    is_dropped = outcome.status == "passed" and tag == "link" and _having(_kept(robot, root), wanted) is None
     if outcome.status == "failed" or is_dropped:
         _check_known(reading, root, wanted)
     if is_dropped:
-        link = _having(root, wanted)[0]
+        link = _having(root, wanted)
+        assert link is not None  # it passed
         steps = (step for key in (path, *wanted.values) for step in steps_of(key))
         part = next(step for step in steps if step in _PARTS)
         message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
@@ -86,17 +87,16 @@ def _kept(robot: Configuration, root: Element) -> Element:
     return copy
 
 
-def _having(root: Element, wanted: WantedElement) -> list[Element]:
-    """Return the elements below <robot> that have the wanted content."""
+def _having(root: Element, wanted: WantedElement) -> Element | None:
+    """Return the first element below <robot> that has the wanted content."""
     fitting = (child for child in root if name_of(child) == wanted.tag and wanted.fits(child))
-    return [
-        child
-        for child in fitting
-        if any(not wanted.wrong(inner) for inner in elements_at(child, steps_of(wanted.path)))
-    ]
+    steps = steps_of(wanted.path)
+    return next((it for it in fitting if not all(map(wanted.wrong, elements_at(it, steps)))), None)
 
 
 def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
+    if _having(root, wanted) is not None:
+        return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     tags = [child for child in root if name_of(child) == wanted.tag]
     if not tags:
         return _no_tag(reading, root, wanted)
@@ -110,8 +110,6 @@ def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome
     wrong = wanted.wrong(best)
     if (len(found) > 1 or wanted.identity == "@name") and wanted.identity in wrong:
         return _no_identity(reading, fitting[0], found, wanted)
-    if not wrong:
-        return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
     first = next((text for text in texts_at(best, wrong[0]) if not wanted.has(wrong[0], text)), Found("", best))
     at = _place(reading, first.element, first.attribute)

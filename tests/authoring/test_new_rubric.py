@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from jsonschema import validate
 
+from grader.files.reading import URDF_LIMIT
 from tests.command_line import ROOT, Done, run
 
 ARM = Path(__file__).parent / "arm.urdf"
@@ -345,6 +346,77 @@ def test_a_reference_that_ros_rejects_is_refused(name: str, tmp_path: Path) -> N
     file.write_text(text)
     assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", file)), reason)
     assert not (tmp_path / "lab.toml").exists()
+
+
+NUMBER = re.compile(r"""(?<=[" ])-?[\d.]+(?=[" ])""")
+WHEELS = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+
+
+@pytest.mark.parametrize(
+    "tag", ["origin", "box", "cylinder", "sphere", "color", "axis", "limit", "mass", "inertia", ""]
+)
+@pytest.mark.parametrize("source", [ARM, WHEELS])
+def test_huge_numbers_are_no_fault(source: Path, tag: str, tmp_path: Path) -> None:
+    """A rubric is written, in which what cannot be measured is omitted, or one line says why not."""
+    text = "".join(
+        NUMBER.sub("1e308", line) if f"<{tag or 'robot'}" in line or (not tag and "<?" not in line) else line
+        for line in source.read_text().splitlines(keepends=True)
+    )
+    (tmp_path / "r.urdf").write_text(text)
+    done = run(("rubric", "new", tmp_path / "lab.toml", "--from", tmp_path / "r.urdf"))
+    assert done.returncode == 0, done.stderr
+    assert run(("rubric", "check", tmp_path / "lab.toml")).returncode == 0
+
+
+def megabyte(item: str, before: str = "", after: str = "") -> str:
+    """Return a robot with nearly 1 MiB of elements, each with its number in the place of {}."""
+    head, tail = f'<robot name="r"><link name="base"/>{before}', f"{after}</robot>"
+    count = (URDF_LIMIT - len(head + tail) - 10) // (len(item) + 8)
+    return head + "".join(item.replace("{}", str(number)) for number in range(count)) + tail
+
+
+LARGE = {
+    "links": (
+        '<link name="l{}"/><joint name="j{}" type="continuous"><parent link="base"/><child link="l{}"/></joint>',
+        "more than 2000 facts",
+    ),
+    "elements for simulators": ('<gazebo reference="base"><x{}>1</x{}></gazebo>', "more than 2000 facts"),
+    "equal elements for simulators": ('<gazebo reference="base"/>', "more than 2000 facts"),
+}
+
+
+@pytest.mark.parametrize("what", LARGE)
+def test_a_robot_with_too_many_facts_is_refused(what: str, tmp_path: Path) -> None:
+    """It is refused before anything is tried on it, and nothing is written."""
+    item, reason = LARGE[what]
+    (tmp_path / "r.urdf").write_text(megabyte(item))
+    assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", tmp_path / "r.urdf")), reason)
+    assert not (tmp_path / "lab.toml").exists()
+
+
+@pytest.mark.parametrize(
+    ("tag", "item", "omitted"),
+    [
+        (
+            "link",
+            '<visual><geometry><box size="1 1 {}1"/></geometry></visual>',
+            "what x shows: it has more than 50 visuals",
+        ),
+        (
+            "link",
+            '<collision><geometry><box size="1 1 {}1"/></geometry></collision>',
+            "how x collides: it has more than 50 collisions",
+        ),
+        ("gazebo", "<y{}>1</y{}>", "There is a <gazebo> of x: it has more than 500 elements and attributes"),
+        ("gazebo", '<y a{}="1"/>', "There is a <gazebo> of x: it has more than 500 elements and attributes"),
+    ],
+)
+def test_an_element_with_too_much_in_it_is_omitted(tag: str, item: str, omitted: str, tmp_path: Path) -> None:
+    """What is compared each with each is bounded; the rest of the robot is tested."""
+    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="x"/></joint>' if tag == "link" else ""
+    (tmp_path / "r.urdf").write_text(megabyte(item, f'{joint}<{tag} name="x">', f"</{tag}>"))
+    done = run(("rubric", "new", tmp_path / "lab.toml", "--from", tmp_path / "r.urdf"))
+    assert (done.returncode, f"omitted: {omitted}" in done.stdout.decode()) == (0, True), done.stdout
 
 
 def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
