@@ -160,7 +160,8 @@ class Texts:
         if text.startswith("eval "):
             raise Undetermined("$(eval ...) is not supported: use ${...}")
         if (command in ("env", "optenv") and args) or text == "cwd":
-            raise Undetermined(f"the value of $({text[:_MAX_SHOWN]}) is known only at run time")
+            what = f"the environment variable {args[0]}" if args else "the folder in which xacro runs"
+            raise Undetermined(f"{what} is known only at run time")
         if "$" in text or "(" in text:
             raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
