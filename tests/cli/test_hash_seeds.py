@@ -2,12 +2,17 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from tests.command_line import run
-from tests.samples import ROOT
+from tests.command_line import HANG_TIMEOUT, clean_environment, run
+from tests.samples import ROOT, SAMPLES
+
+SEEDS = 20
+HINT_GROUPS = 7  # of samples; with each seed the hints of one are searched
 
 PACKAGE = ROOT / "rubrics/lab6/my_robot"
 GREEN = "0 0.6 0 1"
@@ -116,3 +121,19 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
     assert len(reports) == 1
     statuses = graded(folder)[3]
     assert [statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")] == ["pending"] * 3
+
+
+@pytest.mark.slow
+def test_every_sample_has_one_report_over_twenty_hash_seeds() -> None:
+    """All samples are graded with each seed, in one process; hints, which take longer, are searched with two or three seeds."""
+    digests: dict[str, list[str]] = {}
+    for seed in range(SEEDS):
+        words = [sys.executable, "-m", "tests.report_digests", str(seed % HINT_GROUPS), str(HINT_GROUPS)]
+        environment = {**clean_environment(), "PYTHONHASHSEED": str(seed)}
+        done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, check=True, timeout=HANG_TIMEOUT)
+        for line in done.stdout.decode().splitlines():
+            name, _, digest = line.rpartition(" ")
+            digests.setdefault(name, []).append(digest)
+    assert {len(digests[name]) for name in SAMPLES} == {SEEDS}
+    assert {len(found) for name, found in digests.items() if name not in SAMPLES} == {2, 3}
+    assert [name for name, found in digests.items() if len({*found}) > 1] == []
