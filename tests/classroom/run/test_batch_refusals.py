@@ -207,7 +207,9 @@ def test_grades_do_not_replace_what_the_command_reads(folder: Path, tmp_path: Pa
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
     for name in ("roster.csv", "link.csv", "robot.urdf"):
         line = refused("batch", folder, *inputs, "--csv", tmp_path / name)
-        assert line == f"cannot write {tmp_path / name}: the command also reads or writes it; name another file for --csv"
+        assert (
+            line == f"cannot write {tmp_path / name}: the command also reads or writes it; name another file for --csv"
+        )
     inside = refused("batch", folder, *inputs, "--csv", folder / "grades.csv")
     assert inside.endswith("the next run would take it for a submission; choose a file outside of the class")
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
