@@ -15,8 +15,9 @@ from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
-_MAX_DOCUMENT = 1024 * 1024  # characters of the names, values and texts in the expanded document
+_MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
+_COMPARED = 16  # names that are compared for one part
 _MAX_LISTED = 100
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
@@ -125,20 +126,24 @@ class Expander:
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
         out = Node(source.tag, self._placed(source.place, scopes.symbols))
-        out.moved, out.unresolved = source.moved, dict(source.unresolved)
+        out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
             value = text if is_plain else self._attribute(out, name, text, scopes)
             if not name.startswith("xacro:"):
-                out.attributes[name] = value
-                self._grow(name, value)
+                self.set(out, name, value)
         return out
 
-    def _grow(self, *texts: str) -> None:
-        """Charge texts that the expanded document contains. Raises OutOfBudget."""
-        length = sum(map(len, texts))
-        self.budget.charge(_OF_ATTRIBUTE, length)
-        self._length += length
+    def set(self, out: Node, name: str, value: str) -> None:
+        """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all others."""
+        self.budget.charge(len(out.attributes) // _COMPARED, len(name))
+        self._grow(value)
+        out.attributes[name] = value
+
+    def _grow(self, text: str) -> None:
+        """Charge a text that the expanded document contains. Raises OutOfBudget."""
+        self.budget.charge(_OF_ATTRIBUTE, len(text))
+        self._length += len(text)
         if self._length > _MAX_DOCUMENT:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
@@ -188,12 +193,10 @@ class Expander:
         return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
-        self.budget.charge(_OF_ELEMENT)
-        handler = self._handlers.get(node.tag)
-        if handler is not None:
-            handler(self, node, out, scopes)
-        elif node.tag.startswith("xacro:"):
-            self._other(self, node, out, scopes)
+        self.budget.charge(_OF_ELEMENT, len(node.tag))
+        if node.tag.startswith("xacro:"):
+            self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
+            self._handlers.get(node.tag, self._other)(self, node, out, scopes)
         else:
             new = self.start(node, scopes)
             out.children.append(new)

@@ -20,6 +20,7 @@ _MAX_OPEN = 50  # files that include each other
 _MAX_FILES = 200  # that one pattern names
 _MAX_PATH = 1_000  # characters
 _OF_FILE = 50  # what looking for one is charged
+_OF_CHARACTER, _OF_MATCH = 10, 2  # of a pattern, and what comparing a path with it is charged
 
 
 class Workspace(NamedTuple):
@@ -66,6 +67,7 @@ class Files:
         path = self.path(text)
         if not _GLOB.search(text) or not self._workspace.paths:
             return [path]
+        self._budget.charge(_OF_CHARACTER * len(path) + _OF_MATCH * len(self._workspace.paths))
         return sorted(other for other in self._workspace.paths if _matches(other, path))[:_MAX_FILES]
 
     def path(self, text: str) -> str:

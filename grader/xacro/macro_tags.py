@@ -58,11 +58,12 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     found = find_macro(name, *scopes)
     if found is None:
         if expander.texts.names_open is not None:
-            raise expander.texts.names_open
-        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros.definitions()))
+            raise expander.texts.names_open.with_traceback(None)
+        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros))
     macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
+    expander.budget.charge(len(macro.parameters))
     inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
     left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
     given = Node(node.tag, node.place)
@@ -91,7 +92,8 @@ def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> N
             break
     else:
         if expander.texts.names_open is not None:
-            raise expander.texts.names_open
+            raise expander.texts.names_open.with_traceback(None)
+        expander.budget.charge(len(scopes.symbols.properties))
         raise MacroError(f"there is no block {name} at this place", UnknownName(name, scopes.symbols.blocks()))
     if key.startswith("**"):
         expander.start(block, scopes)

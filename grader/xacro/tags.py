@@ -89,7 +89,7 @@ def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
 
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
-    _check_name(name, node)
+    _check_name(name, node, expander)
     holder = Node("", node.place)
     holder.children.append(renamed(node, name, "xacro:name"))
     expander.content(holder, out, scopes)
@@ -97,15 +97,17 @@ def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
 
 def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
-    _check_name(name, node)
+    _check_name(name, node, expander)
     if value and not isinstance(value, str):
+        expander.budget.measure(value)
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {text_of(value)}")
-    out.attributes[name] = for_xml(value or "")
-    out.moved = {**out.moved, name: node.place._replace(scope=scopes.symbols)}
+    expander.set(out, name, for_xml(value or ""))
+    out.moved[name] = node.place._replace(scope=scopes.symbols)
 
 
-def _check_name(name: Value, node: Node) -> None:
+def _check_name(name: Value, node: Node, expander: Expander) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
+        expander.budget.measure(name)
         raise TagFails(f"<{node.tag}> needs a name that XML allows, not {text_of(name)[:60]!r}")
 
 

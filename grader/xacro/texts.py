@@ -1,7 +1,7 @@
 """The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from keyword import iskeyword
 from typing import Any
@@ -75,7 +75,12 @@ class Texts:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
-        return values[0] if len(values) == 1 else joined(map(self._written, values))
+        return self._charged(values[0] if len(values) == 1 else joined(map(self._written, values)))
+
+    def _charged(self, value: Value) -> Value:
+        """Return a value once its text is charged: it is searched, and read as a number."""
+        self._budget.charge(1, len(value) if isinstance(value, str) else 0)
+        return value
 
     def _written(self, value: Value) -> str:
         return value if isinstance(value, str) else text_of(self._budget.checked(value))
@@ -84,24 +89,25 @@ class Texts:
         """Return the value of a text as it is written into the expanded file."""
         if "$" not in text:
             return text
-        value = self._written(self.evaluate(text, scope))
-        self._budget.charge(1, len(value))
-        return for_xml(value)
+        return for_xml(self._written(self.evaluate(text, scope)))
 
     def find(self, name: str, scope: Scope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
         if holder is not None:
             definition = holder.properties[name].definition if self._supposed is not None else None
-            return self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
+            found = self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
+            return self._charged(found)
         if name in self._globals:
             return self._globals[name]
         if self.names_open is not None:
-            raise self.names_open
-        raise XacroFails(*self.unknown("property", name, {**dict.fromkeys(self._globals), **scope.definitions()}))
+            raise self.names_open.with_traceback(None)
+        raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
-    def unknown(self, kind: str, name: str, known: Known) -> tuple[str, UnknownName]:
+    def unknown(self, kind: str, name: str, scope: Scope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
         """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
+        self._budget.charge(scope.count)
+        known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
@@ -113,6 +119,7 @@ class Texts:
     def _again(self, definition: Definition) -> Value:
         """Return the value of a definition with the supposed texts."""
         text = (self._supposed or {}).get(definition.key, definition.text)
+        self._budget.charge(1, len(text))
         return literal(self.evaluate(text, definition.scope)) if "$" in text else literal(text)
 
     def is_bound(self, name: str, scope: Scope) -> bool:
@@ -136,7 +143,6 @@ class Texts:
         except Undetermined as error:  # xacro evaluates it even if nothing uses it
             self._report(error, place, attribute)
             failure = error
-        self._budget.charge(0, len(value) if isinstance(value, str) else 0)  # it is read as a number
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
@@ -169,7 +175,7 @@ class Texts:
             raise Undetermined("the folder in which xacro runs is known only at run time")
         if command not in _SUBSTITUTIONS:
             raise ExpressionFails(f"$({text}): unknown substitution; xacro knows find, arg, env, optenv, eval and cwd")
-        found = _SUBSTITUTIONS[command](self, args)
+        found = self._charged(_SUBSTITUTIONS[command](self, args))
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 
     def _python(self, expression: str) -> str:
@@ -178,7 +184,7 @@ class Texts:
 
         def find(name: str) -> Value:
             if name in self.arguments and name not in GLOBALS:
-                return argument_value(known(name, self.arguments[name]))
+                return argument_value(self._charged(known(name, self.arguments[name])))
             if name in ("env", "optenv", "find", "arg", "dirname"):
                 raise Undetermined(f"the function {name} in $(eval ...) is not supported")
             if name in GLOBALS or name in ("true", "false"):
