@@ -6,17 +6,17 @@ from itertools import islice
 from grader.text import quoted
 
 _MAX_CANDIDATES = 300
-_MAX_LENGTH = 60  # characters of names that are compared
+MAX_LENGTH = 60  # characters of names that are compared
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that is most like this one, or None if none is close."""
     from difflib import get_close_matches  # imported late: most files have no misspelt name
 
-    if len(name) > _MAX_LENGTH:
+    if len(name) > MAX_LENGTH:
         return None
     lower = name.lower()
-    others = (other for other in sorted(known, reverse=True) if other != name and len(other) <= _MAX_LENGTH)
+    others = (other for other in sorted(known, reverse=True) if other != name and len(other) <= MAX_LENGTH)
     candidates = {other.lower(): other for other in others}
     if len(candidates) > _MAX_CANDIDATES:  # comparing is slow: keep those that begin or end alike
         alike = (other for other in candidates if other[:3] == lower[:3] or other[-3:] == lower[-3:])

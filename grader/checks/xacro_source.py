@@ -11,6 +11,7 @@ from grader.names import did_you_mean
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import find_xacro
 from grader.source import LazyLocation, Location, Source
+from grader.static_python.closed_values import OutOfBudget
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted
@@ -58,7 +59,10 @@ def xacro_uses(
         return _expansion(submission)
     from grader.xacro.inventory import take_inventory  # late: few rubrics need it
 
-    found = take_inventory(source.documents.values())
+    try:
+        found = take_inventory(source.documents.values())
+    except OutOfBudget as error:
+        raise NotDecided(str(error), str(error)) from None
     paths = (
         [path for path in source.documents if _ends(path, file)] if not submission.is_single else [*source.documents]
     )

@@ -86,7 +86,8 @@ class Problems:
 
     def line(self, element: Element) -> int:
         """Return the line of an element, counted from 1."""
-        return self.location(element).resolve().line
+        source, start = self.source.element(self._indices[element])
+        return source.at(start).line
 
     def element(self, joint: Joint) -> Element:
         """Return the element that a joint was read from."""

@@ -63,7 +63,9 @@ def subscript(owner: Value, key: Value, budget: Budget) -> Value:
         return owner.find(key)
     if not isinstance(owner, PLAIN):
         raise Undetermined("this index is not supported")
-    if isinstance(key, slice) and isinstance(owner, str | list | tuple):
+    if not isinstance(key, slice):
+        budget.measure(key)  # it is hashed, and shown where it is missing
+    elif isinstance(owner, str | list | tuple):
         budget.charge(len(owner))
     return budget.checked(run(operator.getitem, owner, key))
 

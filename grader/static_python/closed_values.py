@@ -10,16 +10,21 @@ MAX_TEXT = 100_000  # characters
 MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
 _MAX_KEY = 2**31  # keys that are larger could all have one hash
-_MAX_MESSAGE = 300  # characters
+_MAX_MESSAGE = 1_000  # characters
 CHARACTERS, _BITS = 16, 256  # that count as one part
 PLAIN: tuple[Any, ...] = (str, int, float, type(None), range, list, tuple, dict)
 
 
-class ExpressionFails(Exception):
+class _Failure(Exception):
+    def __init__(self, message: str) -> None:
+        super().__init__(message[:_MAX_MESSAGE])
+
+
+class ExpressionFails(_Failure):
     """Python certainly raises an error for this expression; the text is a sentence without its end."""
 
 
-class Undetermined(Exception):
+class Undetermined(_Failure):
     """The value of an expression cannot be determined statically; the text says why."""
 
 
@@ -130,7 +135,7 @@ def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
         if not _has_text([*args, *kwargs.values()]):
             raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
-        raise ExpressionFails(f"{type(error).__name__}: {str(error)[:_MAX_MESSAGE]}") from None
+        raise ExpressionFails(f"{type(error).__name__}: {error}") from None
 
 
 def items_of(value: Value) -> list[Value]:

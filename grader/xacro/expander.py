@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.source import Location
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
@@ -15,9 +15,10 @@ from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
-_MAX_DOCUMENT = 1024 * 1024  # characters of the names, values and texts in the expanded document
+_MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
-_MAX_LISTED, _MAX_MESSAGE = 100, 500  # problems, and the characters of one
+_COMPARED = 16  # names that are compared for one part
+_MAX_LISTED = 100
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
 
@@ -67,13 +68,9 @@ class Expander:
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
-        self.unknown: list[
-            tuple[UnknownName, Place, str | None]
-        ] = []  # names that are not defined, and where they are used
+        self.unknown: list[tuple[UnknownName, Place, str | None]] = []  # names that are not defined, and their uses
         self.calls: tuple[tuple[str, Place], ...] = ()
-        self.uses: dict[
-            tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]
-        ] = {}  # of macros, each with its calls
+        self.uses: dict[tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]] = {}  # of macros, with calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
@@ -126,20 +123,24 @@ class Expander:
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
         out = Node(source.tag, self._placed(source.place, scopes.symbols))
-        out.moved, out.unresolved = source.moved, dict(source.unresolved)
+        out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
             value = text if is_plain else self._attribute(out, name, text, scopes)
             if not name.startswith("xacro:"):
-                out.attributes[name] = value
-                self._grow(name, value)
+                self.set(out, name, value)
         return out
 
-    def _grow(self, *texts: str) -> None:
-        """Charge texts that the expanded document contains. Raises OutOfBudget."""
-        length = sum(map(len, texts))
-        self.budget.charge(_OF_ATTRIBUTE, length)
-        self._length += length
+    def set(self, out: Node, name: str, value: str) -> None:
+        """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all others."""
+        self.budget.charge(len(out.attributes) // _COMPARED, len(name))
+        self._grow(value)
+        out.attributes[name] = value
+
+    def _grow(self, text: str) -> None:
+        """Charge a text that the expanded document contains. Raises OutOfBudget."""
+        self.budget.charge(_OF_ATTRIBUTE, len(text))
+        self._length += len(text)
         if self._length > _MAX_DOCUMENT:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
@@ -147,7 +148,7 @@ class Expander:
         self, error: ExpressionFails | Undetermined | OutOfBudget, place: Place, attribute: str | None = None
     ) -> str:
         """List a problem at a place, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
-        message = str(error)[:_MAX_MESSAGE]
+        message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
             return "" if isinstance(error, ExpressionFails) else message
         location = self._placed(place).at(attribute)
@@ -178,12 +179,10 @@ class Expander:
         return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
-        self.budget.charge(_OF_ELEMENT)
-        handler = self._handlers.get(node.tag)
-        if handler is not None:
-            handler(self, node, out, scopes)
-        elif node.tag.startswith("xacro:"):
-            self._other(self, node, out, scopes)
+        self.budget.charge(_OF_ELEMENT, len(node.tag))
+        if node.tag.startswith("xacro:"):
+            self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
+            self._handlers.get(node.tag, self._other)(self, node, out, scopes)
         else:
             new = self.start(node, scopes)
             out.children.append(new)
@@ -200,5 +199,5 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        data = self.files.read(self.files.path(text_of(name)))
+        data = self.files.read(self.files.path(self.texts.written(name)))
         return read_yaml_values(data, lambda name: self.texts.find(name, Scope()), self.budget)

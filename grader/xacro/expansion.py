@@ -7,6 +7,7 @@ same, so that one defect does not hide another.
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cached_property
+from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.markup import element_end
@@ -195,13 +196,14 @@ def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[Node, Element]] = []
-        for child in node.children:
-            if isinstance(child, Node):
-                children.append((child, make_element(_name(child.tag), _named(child.attributes), element)))
+        for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
+            if not is_text:
+                inside = (child for child in found if isinstance(child, Node))
+                children += [(it, make_element(_name(it.tag), _named(it.attributes), element)) for it in inside]
             elif children:
-                children[-1][1].tail = (children[-1][1].tail or "") + child
+                children[-1][1].tail = "".join(map(str, found))
             else:
-                element.text = (element.text or "") + child
+                element.text = "".join(map(str, found))
         pending += reversed(children)
     return made
 

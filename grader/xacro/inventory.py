@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Place
@@ -38,7 +38,7 @@ class Inventory:
 
 def take_inventory(documents: Iterable[Node]) -> Inventory:
     """Return what files define and use. A parameter of a macro is no use of a property of its name."""
-    found, roots = Inventory(), [*documents]
+    found, roots, budget = Inventory(), [*documents], Budget()
     spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
@@ -47,7 +47,9 @@ def take_inventory(documents: Iterable[Node]) -> Inventory:
         texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
         names = {name for text in texts for name in _names_in(text, spaces)}
         found.used.update(names - hidden - {own})
-        waiting += [(child, hidden | _hidden_in(node, found)) for child in reversed(node.elements)]
+        if node.tag == "xacro:macro":
+            hidden |= _parameters(node, found, budget)
+        waiting += [(child, hidden) for child in reversed(node.elements)]
     return found
 
 
@@ -83,13 +85,11 @@ def _note_tag(node: Node, found: Inventory) -> str:
     return ""
 
 
-def _hidden_in(node: Node, found: Inventory) -> frozenset[str]:
-    """Return the names that are parameters in an element; a forwarded one is a use of the caller's property."""
-    if node.tag != "xacro:macro":
-        return frozenset()
+def _parameters(node: Node, found: Inventory, budget: Budget) -> frozenset[str]:
+    """Return the names of a macro's parameters; a forwarded one is a use of the caller's property. Raises OutOfBudget."""
     try:
-        parameters = read_parameters(node.attributes.get("params", ""), Budget())
-    except (ExpressionFails, Undetermined, OutOfBudget):
+        parameters = read_parameters(node.attributes.get("params", ""), budget)
+    except (ExpressionFails, Undetermined):
         return frozenset()
     found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)
@@ -97,7 +97,9 @@ def _hidden_in(node: Node, found: Inventory) -> frozenset[str]:
 
 def _names_in(text: str, spaces: set[str]) -> Iterator[str]:
     """Yield the names in the expressions of a text: the first of a dotted name, and what is after a namespace."""
-    for piece in PIECE.finditer(text) if "$" in text else ():
+    position = text.find("$")
+    while position >= 0 and (piece := PIECE.match(text, position)) is not None:
+        position = piece.end()
         if piece["substitution"] is not None:
             yield from _names_in(piece["substitution"], spaces)
         for found in _NAME.finditer(_STRING.sub("''", piece["expression"] or "")):

@@ -2,15 +2,7 @@
 
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
-from grader.xacro.macros import (
-    Macro,
-    MacroError,
-    bind_blocks,
-    bind_defaults,
-    bind_values,
-    find_macro,
-    read_parameters,
-)
+from grader.xacro.macros import Macro, MacroError, bind_blocks, bind_defaults, bind_values, find_macro, read_parameters
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Definition, Scope, UnknownName
 
@@ -48,8 +40,6 @@ def call_macro(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
 def call_dynamically(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     """Expand a call of a macro whose name is a value: <xacro:call macro="${name}"/>."""
     name = expander.texts.text(needed(node, "macro"), scopes.symbols)
-    if not name:
-        raise TagFails("<xacro:call> has an empty attribute macro")
     call = renamed(node, f"xacro:{name}", "macro")
     _call_named(expander, name, call, out, scopes)
 
@@ -58,11 +48,12 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     found = find_macro(name, *scopes)
     if found is None:
         if expander.texts.names_open is not None:
-            raise expander.texts.names_open
-        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros.definitions()))
+            raise expander.texts.names_open.with_traceback(None)
+        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros))
     macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
+    expander.budget.charge(len(macro.parameters))
     inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
     left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
     given = Node(node.tag, node.place)
@@ -91,7 +82,8 @@ def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> N
             break
     else:
         if expander.texts.names_open is not None:
-            raise expander.texts.names_open
+            raise expander.texts.names_open.with_traceback(None)
+        expander.budget.charge(len(scopes.symbols.properties))
         raise MacroError(f"there is no block {name} at this place", UnknownName(name, scopes.symbols.blocks()))
     if key.startswith("**"):
         expander.start(block, scopes)

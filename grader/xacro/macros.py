@@ -3,15 +3,17 @@
 import re
 from typing import NamedTuple
 
-from grader.static_python.closed_values import Budget
+from grader.static_python.closed_values import Budget, Undetermined
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Definition, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
 _WITH_DEFAULT = re.compile(
-    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]++)+|)(?:\s+|$)(.*)""", re.ASCII
+    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++|)(?:\s+|$)(.*)""",
+    re.ASCII,
 )
+_QUOTED = re.compile(r"""'[^'\n]*'|"[^"\n]*\"""")
 
 
 class MacroError(XacroFails):
@@ -40,12 +42,13 @@ class Macro(NamedTuple):
 
 
 def read_parameters(text: str, budget: Budget) -> tuple[Parameter, ...]:
-    """Return the parameters in the attribute params of a macro. Raises OutOfBudget."""
+    """Return the parameters in the attribute params of a macro. Raises Undetermined."""
+    if re.search("['\"]", _QUOTED.sub("", text)):
+        raise Undetermined("a quote in the parameters of a macro is not closed")
     parameters: list[Parameter] = []
     defaults: dict[str, Parameter] = {}  # the last of several counts
     while text:
-        quotes = text.count("'") + text.count('"')
-        budget.charge(1 << quotes * 2 // 3, len(text))  # the time to match grows with Fibonacci's numbers
+        budget.charge(1, len(text))
         found = _WITH_DEFAULT.match(text)
         if found is None:
             words = text.lstrip().split(None, 1)
@@ -83,16 +86,16 @@ def _namespace(name: str, scope: Scope) -> Scope | None:
 
 def bind_values(macro: Macro, call: Node, caller: Scope, inner: Scope, texts: Texts) -> list[Parameter]:
     """Bind the parameters that a call gives values in attributes; return the others."""
-    left = list(macro.parameters)
+    left = dict(enumerate(macro.parameters))
+    first = {parameter.name: index for index, parameter in reversed(left.items())}
     for name, text in call.attributes.items():
-        parameter = next((parameter for parameter in left if parameter.name == name), None)
-        if parameter is None:
-            known = {parameter.name: (macro.body.place, "params") for parameter in macro.parameters}
+        if name not in first:
+            known = dict.fromkeys(first, (macro.body.place, "params"))
             message = f"the macro {macro.name} has no parameter {name}; it has: {', '.join(known) or 'none'}"
             raise MacroError(message, UnknownName(name, known))
-        left.remove(parameter)
+        del left[first[name]]
         texts.bind(inner, name, text, caller, call.place, name)
-    return left
+    return list(left.values())
 
 
 def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: Scope) -> None:
@@ -110,9 +113,9 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
 
 def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Scope, texts: Texts) -> None:
     """Bind the parameters that the call does not give."""
-    missing = [it.name for it in left if not it.is_block and it.default is None and not it.is_forwarded]
+    missing: list[str] = []
     for parameter in left:
-        if parameter.is_block or parameter.name in missing:
+        if parameter.is_block:
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             holder = caller.holder(parameter.name)

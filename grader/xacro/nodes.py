@@ -11,15 +11,16 @@ from grader.xml.tinyxml2.recovery import Recovery
 
 Children = list["Node | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
+_COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
 
 # xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
 _DECLARATION = re.compile(
     r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
 )
-MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
+MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
-_CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+_CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 class Node:
@@ -58,7 +59,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
         raise Undetermined("entities of a DOCTYPE are not supported")
     if any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    return _nodes(root, Source(path, text))
+    return _nodes(root, Source(path, text), budget)
 
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[Node | None, list[Problem]]:
@@ -67,12 +68,13 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[Node | None
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
     assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.assumed]
-    return _nodes(parse_xml(recovered.xml), source) if recovered.xml else None, assumed
+    return _nodes(parse_xml(recovered.xml), source, budget) if recovered.xml else None, assumed
 
 
-def _nodes(root: Element, source: Source) -> Node:
+def _nodes(root: Element, source: Source, budget: Budget) -> Node:
     nodes: dict[Element, Node] = {}
     for index, element in enumerate(root.iter()):
+        budget.charge(len(element.attrib) ** 2 // _COMPARED)
         node = nodes[element] = Node(_tag(element), Place(source, index), _attributes(element))
         _add_text(node.children, element.text)
         parent = element.getparent()

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from grader.names import MAX_LENGTH
 from grader.source import Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
 
@@ -12,6 +13,7 @@ Evaluate = Callable[[str, "Scope"], Value]
 Report = Callable[[ExpressionFails | Undetermined, "Place", str], object]
 
 
+_MAX_CALLS = 20  # that a location names
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
@@ -28,7 +30,7 @@ class Place(NamedTuple):
         location = self.source.tag(self.tag, attribute)
         if not self.calls:
             return location
-        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls))
+        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS]))
 
 
 # Where a definition whose text is in an attribute has its name; a macro call has it in no value.
@@ -113,14 +115,14 @@ class Scope:
 
     def names(self) -> list[str]:
         """Return the names that are bound here."""
-        own = [name for name in self.properties if name.isidentifier()]
+        own = [name for name in self.properties if _is_compared(name)]
         return own + (self.parent.names() if self.parent is not None else [])
 
     def definitions(self) -> dict[str, tuple[Place, str] | None]:
         """Return the names that are known here, each with the tag and attribute that define it where there is one."""
         found = self.parent.definitions() if self.parent is not None else {}
         for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
-            if name.isidentifier():
+            if _is_compared(name):
                 attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
                 found[name] = (definition.place, attribute) if definition is not None and attribute else None
         return found
@@ -145,7 +147,7 @@ class Scope:
         """Return the value of a name that this scope binds itself."""
         found = self.properties[name]
         if found.failure is not None:
-            raise found.failure
+            raise found.failure.with_traceback(None)
         if not found.is_lazy:
             return found.value
         if found.is_open:
@@ -164,6 +166,11 @@ class Scope:
         finally:
             found.is_open = False
         return found.value
+
+
+def _is_compared(name: str) -> bool:
+    """Return whether a name may be the one that a mistyped one stands for."""
+    return len(name) <= MAX_LENGTH and name.isidentifier()
 
 
 def literal(value: Value) -> Value:

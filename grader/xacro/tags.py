@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.static_python.closed_values import Undetermined, Value, text_of
+from grader.static_python.closed_values import Namespace, Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
@@ -90,7 +90,7 @@ def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
 
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
-    _check_name(name, node)
+    _check_name(name, node, expander)
     holder = Node("", node.place)
     holder.children.append(renamed(node, name, "xacro:name"))
     expander.content(holder, out, scopes)
@@ -98,16 +98,17 @@ def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
 
 def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
-    _check_name(name, node)
+    _check_name(name, node, expander)
     if value and not isinstance(value, str):
-        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {text_of(value)}")
-    out.attributes[name] = for_xml(value or "")
-    out.moved = {**out.moved, name: node.place._replace(scope=scopes.symbols)}
+        shown = expander.texts.written(value)
+        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {shown}")
+    expander.set(out, name, for_xml(value or ""))
+    out.moved[name] = node.place._replace(scope=scopes.symbols)
 
 
-def _check_name(name: Value, node: Node) -> None:
+def _check_name(name: Value, node: Node, expander: Expander) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {text_of(name)[:60]!r}")
+        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {expander.texts.written(name)[:60]!r}")
 
 
 def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
@@ -119,7 +120,7 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
         inner = Scopes(Scope(is_namespace=True), Scope(scopes.symbols, is_namespace=True))
         scopes.macros.bind(f"{space}.", inner.macros)
         scopes.symbols.bind(f"{space}.", inner.symbols)
-        scopes.symbols.bind(space, texts.namespace(space, inner.symbols))
+        scopes.symbols.bind(space, Namespace(space, lambda wanted: texts.find(wanted, inner.symbols)))
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:

@@ -1,21 +1,13 @@
 """The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from keyword import iskeyword
 
 from grader.names import did_you_mean
 from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import (
-    Budget,
-    ExpressionFails,
-    Namespace,
-    Undetermined,
-    Value,
-    joined,
-    text_of,
-)
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, text_of
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import Definition, Key, Known, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
 
@@ -49,9 +41,7 @@ class Texts:
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
-        self._similar: dict[
-            tuple[str, ...], str
-        ] = {}  # what is said of similar names, by a name and those that are known
+        self._similar: dict[tuple[str, ...], str] = {}  # what is said of a name, by this name and those that are known
 
     def supposing(self, texts: Mapping[Key, str], budget: Budget) -> "Texts":
         """Return the same with other texts where names are defined. Nothing is reported or remembered."""
@@ -73,33 +63,39 @@ class Texts:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
-        return values[0] if len(values) == 1 else joined(map(self._written, values))
+        return self._charged(values[0] if len(values) == 1 else joined(map(self.written, values)))
 
-    def _written(self, value: Value) -> str:
+    def _charged(self, value: Value) -> Value:
+        """Return a value once its text is charged: it is searched, and read as a number."""
+        self._budget.charge(1, len(value) if isinstance(value, str) else 0)
+        return value
+
+    def written(self, value: Value) -> str:
+        """Return the text of a value. Raises Undetermined, OutOfBudget."""
         return value if isinstance(value, str) else text_of(self._budget.checked(value))
 
     def text(self, text: str, scope: Scope) -> str:
         """Return the value of a text as it is written into the expanded file."""
         if "$" not in text:
             return text
-        value = self._written(self.evaluate(text, scope))
-        self._budget.charge(1, len(value))
-        return for_xml(value)
+        return for_xml(self.written(self.evaluate(text, scope)))
 
     def find(self, name: str, scope: Scope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
         if holder is not None:
             definition = holder.properties[name].definition if self._supposed is not None else None
-            return self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
+            found = self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
+            return self._charged(found)
         if name in self._globals:
             return self._globals[name]
         if self.names_open is not None:
-            raise self.names_open
-        raise XacroFails(*self.unknown("property", name, {**dict.fromkeys(self._globals), **scope.definitions()}))
+            raise self.names_open.with_traceback(None)
+        raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
-    def unknown(self, kind: str, name: str, known: Known) -> tuple[str, UnknownName]:
+    def unknown(self, kind: str, name: str, scope: Scope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
         """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
+        known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
@@ -111,6 +107,7 @@ class Texts:
     def _again(self, definition: Definition) -> Value:
         """Return the value of a definition with the supposed texts."""
         text = (self._supposed or {}).get(definition.key, definition.text)
+        self._budget.charge(1, len(text))
         return literal(self.evaluate(text, definition.scope)) if "$" in text else literal(text)
 
     def is_bound(self, name: str, scope: Scope) -> bool:
@@ -132,13 +129,8 @@ class Texts:
         except Undetermined as error:  # xacro evaluates it even if nothing uses it
             self._report(error, place, attribute)
             failure = error
-        self._budget.charge(0, len(value) if isinstance(value, str) else 0)  # it is read as a number
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
-
-    def namespace(self, name: str, scope: Scope) -> Namespace:
-        """Return the properties of a scope as a namespace."""
-        return Namespace(name, lambda wanted: self.find(wanted, scope))
 
     def _piece(self, piece: re.Match[str], scope: Scope) -> Value:
         if piece["text"] is not None:
@@ -166,7 +158,7 @@ class Texts:
             raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
             raise ExpressionFails(f"$({text}): xacro knows find, arg and env with one name, optenv, eval and cwd")
-        found = self.share(args[0]) if command == "find" else self.argument(args[0])
+        found = self._charged(self.share(args[0]) if command == "find" else self.argument(args[0]))
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 
     def share(self, package: str) -> str:
@@ -178,21 +170,17 @@ class Texts:
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
         if self._supposed is not None and name in self.defaults:
-            return self._written(self._again(self.defaults[name]))
-        if name in self.arguments:
-            return known(name, self.arguments[name])
-        raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+            return self.written(self._again(self.defaults[name]))
+        if name not in self.arguments:
+            raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+        value = self.arguments[name]
+        if value is None:
+            raise Undetermined(f"the launch file gives the argument {name} a value that is known only at run time")
+        return value
 
 
 def for_xml(value: str) -> str:
     """Return a text that is written into XML; raise ExpressionFails for characters that XML cannot hold."""
     if _NO_XML.search(value):
         raise ExpressionFails("the value has a character that XML cannot hold")
-    return value
-
-
-def known(argument: str, value: str | None) -> str:
-    """Return the value of an argument; raise Undetermined if it is unknown."""
-    if value is None:
-        raise Undetermined(f"the launch file gives the argument {argument} a value that is known only at run time")
     return value
