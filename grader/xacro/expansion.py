@@ -7,7 +7,6 @@ same, so that one defect does not hide another.
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cached_property
-from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.markup import element_end
@@ -196,11 +195,15 @@ def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[Node, Element]] = []
-        for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
-            if not is_text:
-                children += [(it, make_element(_name(it.tag), _named(it.attributes), element)) for it in found]
-            elif children:
-                children[-1][1].tail = "".join(found)
+        texts: dict[int, list[str]] = {}  # by the number of elements before them
+        for child in node.children:
+            if isinstance(child, Node):
+                children.append((child, make_element(_name(child.tag), _named(child.attributes), element)))
+            else:
+                texts.setdefault(len(children), []).append(child)
+        for index, found in texts.items():
+            if index:
+                children[index - 1][1].tail = "".join(found)
             else:
                 element.text = "".join(found)
         pending += reversed(children)

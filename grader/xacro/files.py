@@ -15,7 +15,7 @@ from grader.xml.parsing import XMLSyntaxError
 
 _GLOB = re.compile(r"[*\[?]")
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
-_ADDED = re.compile(r".*\.(?:urdf|xacro)([^/]*)", re.IGNORECASE | re.DOTALL)
+_ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_FILES = 200  # that one pattern names
 _MAX_PATH = 1_000  # characters
@@ -90,7 +90,7 @@ class Files:
 
     def _added_ending(self) -> str:
         """Return what was added to the name of the innermost file when it was uploaded without its package: .txt of a.xacro.txt."""
-        added = _ADDED.fullmatch(self.open[-1]) if self._workspace.is_part else None
+        added = _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
         return added[1] if added is not None else ""
 
     def _shared(self, package: str, inside: str) -> str:

@@ -10,7 +10,8 @@ from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
 _WITH_DEFAULT = re.compile(
-    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++|)(?:\s+|$)(.*)""", re.ASCII
+    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++|)(?:\s+|$)(.*)""",
+    re.ASCII,
 )
 
 _QUOTED = re.compile(r"""'[^'\n]*'|"[^"\n]*\"""")
