@@ -11,7 +11,7 @@ from grader import markup
 
 _BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
-_START_TAG = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<(?![/!?])", re.DOTALL)
+_START_TAG = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)

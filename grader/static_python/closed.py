@@ -138,17 +138,19 @@ class _Evaluator:
             kwargs[keyword.arg] = self.value(keyword.value, local)
         return call(function, args, kwargs, self._budget)
 
-    def _rounds(self, loops: list[ast.comprehension], local: Mapping[str, Value]) -> Iterator[Mapping[str, Value]]:
-        """Yield the names that are bound in each round of nested loops."""
+    def _rounds(
+        self, loops: list[ast.comprehension], local: Mapping[str, Value], depth: int = 0
+    ) -> Iterator[Mapping[str, Value]]:
+        """Yield the names that are bound in each round of nested loops; every loop around passes them on."""
         if not loops:
             yield local
             return
         loop, *nested = loops
         for item in items_of(self._budget.checked(self.value(loop.iter, local))):
-            self._budget.charge(_OF_NODE + len(local))
+            self._budget.charge(_OF_NODE + len(local) + depth)
             inner = {**local, **_bound(loop.target, item)}
             if all(self.value(condition, inner) for condition in loop.ifs):
-                yield from self._rounds(nested, inner)
+                yield from self._rounds(nested, inner, depth + 1)
 
 
 def _bound(target: ast.expr, value: Value) -> dict[str, Value]:

@@ -13,7 +13,7 @@ from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
 
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
-_ADDED = re.compile(r".*\.(?:urdf|xacro)([^/]*)", re.IGNORECASE | re.DOTALL)
+_ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_PATH = 1_000  # characters
 _OF_FILE = 50  # what looking for one is charged
@@ -78,7 +78,7 @@ class Files:
 
     def _added_ending(self) -> str:
         """Return what was added to the name of the innermost file when it was uploaded without its package: .txt of a.xacro.txt."""
-        added = _ADDED.fullmatch(self.open[-1]) if self._workspace.is_part else None
+        added = _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
         return added[1] if added is not None else ""
 
     def _shared(self, package: str, inside: str) -> str:

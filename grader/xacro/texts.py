@@ -16,6 +16,7 @@ PIECE = re.compile(
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_OF_PIECE = 2  # what a part of a text is charged
 _OF_NAME = 20  # what comparing a name with another one is charged
 _MAX_SHOWN = 60  # characters of a name
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
@@ -57,7 +58,7 @@ class Texts:
         values: list[Value] = []
         position = 0
         while position < len(text):
-            self._budget.charge(1)
+            self._budget.charge(_OF_PIECE)
             piece = PIECE.match(text, position)
             if piece is None:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")

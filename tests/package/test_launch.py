@@ -508,6 +508,7 @@ HOSTILE_PYTHON = {
     "closed brackets": b"x = " + b"[" * 90 + b"]" * 90,
     "minus signs": b"x = " + b"-" * 100_000 + b"1",
     "additions": b"x = 1" + b" + 1" * 20_000,
+    "thousands of expressions": python(",".join([RVIZ.format("PythonExpression('[i for i in range(2000)]')")] * 4_000)),
     "zero bytes": b"\0" * 1000,
     "zero byte in a text": python(RVIZ.format("'a\0b'")),
     "no UTF-8": b"# \xe4\n" + python(""),

@@ -9,15 +9,15 @@ from lxml import etree
 
 from grader.errors import InputError
 from grader.robot.reader import read_urdf
-from grader.static_python.closed_values import Budget
+from grader.static_python.closed_values import READING, Budget
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
 
 Tree = tuple[str, dict[str, str], list[Any]]
 
 
-def expand(document: Document, asked: list[str] | None = None) -> Any:
-    """Return the grader's expansion of a document; `asked` receives the paths of the files that it reads."""
+def expand(document: Document, asked: list[str] | None = None, limit: int = READING) -> Any:
+    """Return the grader's expansion of a document; `asked` receives the paths of the files that it reads, `limit` are parts."""
     expansion: Any = import_module("grader.xacro.expansion")
     files = {document.path: document.text, **document.files}
 
@@ -29,7 +29,7 @@ def expand(document: Document, asked: list[str] | None = None) -> Any:
             raise InputError(f"{path} does not exist")
         return content if isinstance(content, bytes) else content.encode()
 
-    workspace = expansion.Workspace(read=read, package=PACKAGES.get, budget=Budget(), paths=sorted(files))
+    workspace = expansion.Workspace(read=read, package=PACKAGES.get, budget=Budget(limit), paths=sorted(files))
     return expansion.expand(read(document.path), document.path, workspace, document.arguments)
 
 

@@ -9,14 +9,17 @@ import resource
 import sys
 from typing import Any
 
+from grader.static_python.closed_values import READING
 from tests.work import TooMuchWork, limited_work
 from tests.xacro.comparing import expand
 from tests.xacro.documents.document import Document, named, robot, shown
 from tests.xacro.hostile import HOSTILE, LARGE
+from tests.xacro.hostile_costs import COSTS
 
 CONTROL = "control"
 """The name of a harmless document, during which a file is opened."""
 LIMIT = 5_000_000  # calls
+PARTS, LIMIT_OF_PARTS = READING // 4, 1_000_000  # of the budget, and the calls that they allow
 _HARMLESS = {"compile", "object.__getattr__", "sys._getframe", "gc.collect", "signal.signal"}
 
 _events: list[str] = []
@@ -41,16 +44,16 @@ class _Opening(list[str]):
         open(os.devnull).close()
 
 
-def _watched(document: Document, paths: list[str]) -> dict[str, Any]:
+def _watched(document: Document, paths: list[str], parts: int = READING, limit: int = LIMIT) -> dict[str, Any]:
     """Return what happened while a document was expanded; `paths` receives those that it reads."""
     global _is_watched
     _events.clear()
     memory = _memory()
     outcome = "expanded"
     try:
-        with limited_work(LIMIT):
+        with limited_work(limit):
             _is_watched = True
-            found = expand(document, paths)
+            found = expand(document, paths, parts)
             _is_watched = False
         if found.undetermined or any(problem.kind.effect == "rejects" for problem in found.problems):
             outcome = "refused"
@@ -81,6 +84,8 @@ def main() -> None:
     print(json.dumps([CONTROL, _watched(Document(robot(warm), files), _Opening())]), flush=True)
     for name, document in {**HOSTILE, **LARGE}.items():
         print(json.dumps([name, _watched(document, [])]), flush=True)
+    for name, document in COSTS.items():
+        print(json.dumps([f"cost-{name}", _watched(document, [], PARTS, LIMIT_OF_PARTS)]), flush=True)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from tests.command_line import HANG_TIMEOUT, clean_environment, run
 from tests.work import TooMuchWork, limited_work
 from tests.xacro.documents.document import part, robot
 from tests.xacro.hostile import HOSTILE, LARGE
+from tests.xacro.hostile_costs import COSTS
 from tests.xacro.hostile_run import CONTROL
 
 MAX_MEGABYTES = 64
@@ -49,6 +50,13 @@ def test_large_documents_take_bounded_work(results: Results) -> None:
     """A document that is only large is expanded or refused after a bounded number of lines."""
     outcomes = {name: results[name]["outcome"] for name in LARGE}
     assert {name: outcome for name, outcome in outcomes.items() if outcome not in {"refused", "expanded"}} == {}
+
+
+def test_costly_documents_take_bounded_work(results: Results) -> None:
+    """What the budget of a submission allows takes a bounded number of calls, wherever a document wants the work to be done."""
+    outcomes = {name: results[f"cost-{name}"]["outcome"] for name in COSTS}
+    assert {name: outcome for name, outcome in outcomes.items() if outcome not in {"refused", "expanded"}} == {}
+    assert len(outcomes) >= 100
 
 
 def test_memory_is_bounded(results: Results) -> None:

@@ -211,10 +211,13 @@ class _Substitution:
         if not isinstance(text, str):
             reason = "the value of this expression is known only at run time"
             return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
+        budget = Budget(_WORK)
         try:
-            return text_of(evaluate(text, _builtin, Budget(_WORK)))
+            return text_of(evaluate(text, _builtin, budget))
         except (ExpressionFails, Undetermined, OutOfBudget):
             return Unknown("the value of this expression is known only at run time", self.call.at)
+        finally:
+            self.context.steps_left[0] -= budget.used
 
 
 def _builtin(name: str) -> Value:
