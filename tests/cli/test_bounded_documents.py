@@ -83,11 +83,11 @@ def _stop_converter(process: "subprocess.Popen[str]") -> None:
 
 
 def _converters(process: "subprocess.Popen[str]") -> list[int]:
-    """Return the processes that have limited their processor time, which is the last step of a converter's start."""
+    """Return the processes with a hard limit of processor time, which is the last step of a converter's start."""
     found = []
     for pid in session_of(process):
         with suppress(OSError):
-            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{pid}/limits").read_text()):
+            if not re.search(r"Max cpu time +\S+ +unlimited", Path(f"/proc/{pid}/limits").read_text()):
                 found.append(pid)
     return found
 
