@@ -29,6 +29,10 @@ class RubricError(GraderError):
         self.complaints = complaints
 
 
+class OutOfTime(BaseException):
+    """The processor time of a command is used up. Like Ctrl-C it passes the handlers of faults in files and checks."""
+
+
 class NotDecided(LookupError):
     """Something that cannot be determined statically, and needs manual grading. The message says why.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
-from grader.errors import InputError
+from grader.errors import InputError, OutOfTime
 from grader.text import enumerated
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ def _load(name: str, entry: "EntryPoint") -> Check:
     distribution = _package_of(entry)
     try:
         return replace(describe(entry.load(), distribution), name=name)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, OutOfTime):
         raise
     except BaseException as error:  # noqa: BLE001  a fault of another package, which may even exit
         reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"

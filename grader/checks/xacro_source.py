@@ -60,7 +60,7 @@ def xacro_uses(
     from grader.xacro.inventory import take_inventory  # late: few rubrics need it
 
     try:
-        found = take_inventory(source.documents.values())
+        found = take_inventory(source.documents.values(), submission.budget)
     except OutOfBudget as error:
         raise NotDecided(str(error), str(error)) from None
     paths = (

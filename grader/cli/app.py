@@ -121,7 +121,7 @@ def _discard_reports(words: Sequence[str]) -> None:
         with suppress(GraderError):
             saves += read_saves([text])
     with suppress(GraderError):
-        remove_reports(tuple(saves), given["rubric"] or DEFAULT_RUBRIC, given["path"] or "")
+        remove_reports(tuple(saves), given["rubric"] or DEFAULT_RUBRIC, *(word for word in words if word[:1] != "-"))
 
 
 def _run(arguments: Sequence[str]) -> int:

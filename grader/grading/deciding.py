@@ -7,7 +7,7 @@ from typing import Any
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check
 from grader.checks.tree import urdf_loads
-from grader.errors import MissingElement, NotDecided, RubricError
+from grader.errors import MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
 from grader.grading.explanation import explained
 from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
@@ -129,7 +129,7 @@ class _Grading:
         except (UnknownShape, NotDecided) as reason:
             cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
             return Result(criterion, pending(f"{reason}; needs manual grading", cause))
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, OutOfTime):
             raise
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
             from traceback import format_exc  # needed only for a fault of the grader
@@ -165,7 +165,7 @@ def _text_of(error: BaseException) -> str:
     """Return the type and text of an exception, or only its type where making the text fails."""
     try:
         return f"{type(error).__name__}: {error}"
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, OutOfTime):
         raise
     except BaseException:  # noqa: BLE001  another package's code
         return type(error).__name__

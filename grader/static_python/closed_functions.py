@@ -7,6 +7,7 @@ from typing import Any
 from grader.static_python.closed_values import (
     MAX_PARTS,
     Budget,
+    ExpressionFails,
     Function,
     Items,
     Undetermined,
@@ -29,7 +30,10 @@ def call(function: Value, args: list[Value], kwargs: dict[str, Value], budget: B
         return run(function, *args, **kwargs) if not callable(function) else _refuse("this call")
     if function is BUILTINS["map"] and args and not kwargs:
         mapped, *lists = args
-        return Items([call(mapped, list(items), {}, budget) for items in zip(*map(items_of, lists), strict=False)])
+        try:
+            return Items([call(mapped, list(items), {}, budget) for items in zip(*map(items_of, lists), strict=False)])
+        except ExpressionFails as error:  # only where a loop gets there
+            raise Undetermined(f"a map of items that fails is not supported: {error}") from None
     return budget.checked(run(function.run, *args, **kwargs))
 
 
@@ -63,8 +67,8 @@ def make_dict(*args: Value, **kwargs: Value) -> Value:
 
 def _sum(values: Value, start: Value = 0) -> Value:
     items = items_of(values)
-    if not all(isinstance(item, int | float) for item in (start, *items)):
-        _refuse("the sum of other values than numbers")
+    if any(isinstance(item, list | tuple) for item in (start, *items)):
+        _refuse("the sum of lists")
     return sum(items, start)
 
 

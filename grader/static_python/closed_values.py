@@ -53,7 +53,7 @@ class Budget:
         """Charge parts and characters. Raises OutOfBudget."""
         self.left -= parts + characters // CHARACTERS
         if self.left < 0:
-            raise OutOfBudget("reading this takes more work than is allowed for one submission")
+            raise OutOfBudget(f"reading this takes more work than one submission may use ({self.limit:,} parts)")
 
     def measure(self, value: Value) -> int:
         """Charge a value and return its size: the parts that it contains, each as often as it occurs. Raises Undetermined."""

@@ -9,6 +9,7 @@ from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
 from grader.files.tree import File, Tree
 from grader.package.package import MANIFEST
+from grader.static_python.closed_values import Budget
 from grader.submission.editing import overlaid
 from grader.submission.packages import read_packages
 from grader.submission.submission import Submission
@@ -51,7 +52,7 @@ def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Subm
     recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
     packages = read_packages(recorded, "")
     data = tree.files[path].read(tree.files[path].size)
-    around = replace(alone, tree=recorded, packages=packages, is_single=True)
+    around = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
     urdf = read_as_ros(data, path, around)
     besides = tuple(sorted(known.keys() - {path}))
     note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
@@ -61,7 +62,7 @@ def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Subm
         everything=overlaid(tree, known),
         notes=(note,) if besides else (),
         arguments=alone.arguments,
-        budget=alone.budget,
+        budget=around.budget,
         neighbours=packages,
         besides=besides,
     )

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
-_KEPT = (*ROBOT_FILES, ".toml")  # files that stay until a report replaces them
+_KEPT = (*ROBOT_FILES, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that stay until a report replaces them
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
@@ -149,7 +149,7 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     """Remove the files that `--save` names and return their permissions.
 
     They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its reports. Robot
-    descriptions and TOML files stay, because they may be what is read. Raises InputError if a report would overwrite a file of
+    descriptions and other files of a package stay, because they may be what is read. Raises InputError if a report would overwrite a file of
     the rubric or one of the submissions, or lead through a symlink of a submission.
     """
     if not saves:
@@ -174,7 +174,8 @@ def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
     graded = Path(request.path, result.report.submission.path or "")
     for _, file in request.saves:
-        refuse_inputs("--save", file, [graded] if graded.is_file() else ())
+        is_source = file.suffix.lower() in _KEPT
+        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *result.besides))
     for kind, file in request.saves:
         picture = picture_beside(file, request.saves)
         text = render(result.report, kind, result.base, verbose=request.verbose, picture=picture)

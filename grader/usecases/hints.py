@@ -4,14 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.errors import InputError, OutOfTime
 from grader.grading.hints.hinting import fixed, hinted
 from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.limits import OutOfTime
 from grader.usecases.writing import make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
 _MAX_NAMED = 6

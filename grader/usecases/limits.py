@@ -1,6 +1,6 @@
 """The outer limits of a command that reads one submission, where the system has them: processor time and memory.
 
-Everything that reads a student's files counts its own work. These limits are for what that misses.
+Everything that reads a student's files counts its own work. These limits are for work that is not counted.
 """
 
 import os
@@ -8,19 +8,16 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib.util import find_spec
+from math import ceil
 from pathlib import Path
 from threading import current_thread, main_thread
 from typing import Any
 
-from grader.errors import GraderError
+from grader.errors import GraderError, OutOfTime
 
 _SECONDS = 60  # of processor time, after which the command ends with a message
 _GRACE = 30  # more seconds, after which the process is ended, whatever it does
 _MEMORY = 2 * 1024**3  # bytes more than at the start
-
-
-class OutOfTime(BaseException):
-    """The processor time is used up. No handler of errors in student files or in checks may take it for one of these."""
 
 
 @contextmanager
@@ -38,7 +35,10 @@ def outer_limits() -> Iterator[None]:
 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each thread reserves memory
     used = resource.getrusage(resource.RUSAGE_SELF)
-    wanted = {resource.RLIMIT_CPU: int(used.ru_utime + used.ru_stime) + _SECONDS, resource.RLIMIT_AS: _size() + _MEMORY}
+    wanted = {
+        resource.RLIMIT_CPU: ceil(used.ru_utime + used.ru_stime) + _SECONDS,
+        resource.RLIMIT_AS: _size() + _MEMORY,
+    }
     before = {limit: resource.getrlimit(limit) for limit in wanted}
     handler = signal.signal(signal.SIGXCPU, stop)
     signal.setitimer(signal.ITIMER_PROF, _SECONDS + _GRACE)

@@ -19,6 +19,7 @@ _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expande
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
 _COMPARED = 16  # names that are compared for one part
 _MAX_LISTED = 100
+_TOO_DEEP = "elements and macros are nested too deeply"
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
 
@@ -87,8 +88,6 @@ class Expander:
             self.content(source, out, scopes)
         except OutOfBudget as error:
             out.open = self.report(error, self._stopped or source.place)
-        except RecursionError:
-            out.open = self.report(Undetermined("elements and macros are nested too deeply"), source.place)
         self._is_expanded = True
         return out
 
@@ -104,9 +103,10 @@ class Expander:
                     text = self.texts.text(child, scopes.symbols)
                     self._grow(text)
                     out.children.append(text)
-            except OutOfBudget:
-                self._stopped = self._stopped or place
-                raise
+            except (OutOfBudget, RecursionError) as error:  # every element around may have more content
+                stop = error if isinstance(error, OutOfBudget) else OutOfBudget(_TOO_DEEP)
+                self._stopped, out.open = self._stopped or place, out.open or str(stop)
+                raise stop from None
             except (ExpressionFails, Undetermined) as error:
                 reason = self.report(error, place)
                 out.open = out.open or reason

@@ -36,9 +36,9 @@ class Inventory:
             definitions.setdefault(name, []).append(place)
 
 
-def take_inventory(documents: Iterable[Node]) -> Inventory:
-    """Return what files define and use. A parameter of a macro is no use of a property of its name."""
-    found, roots, budget = Inventory(), [*documents], Budget()
+def take_inventory(documents: Iterable[Node], budget: Budget) -> Inventory:
+    """Return what files define and use. A parameter of a macro is no use of a property of its name. Raises OutOfBudget."""
+    found, roots = Inventory(), [*documents]
     spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:

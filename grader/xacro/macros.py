@@ -13,7 +13,7 @@ _WITH_DEFAULT = re.compile(
     r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++|)(?:\s+|$)(.*)""",
     re.ASCII,
 )
-_QUOTED = re.compile(r"""'[^'\n]*'|"[^"\n]*\"""")
+_QUOTED = re.compile(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
 
 
 class MacroError(XacroFails):

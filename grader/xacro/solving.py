@@ -29,7 +29,7 @@ class Ranked(NamedTuple):
 
 
 class Evaluator:
-    """What texts would be if others were written where names are defined; all within one budget of steps."""
+    """What texts would be if others were written where names are defined; all within one budget."""
 
     def __init__(self, texts: Texts) -> None:
         self._texts = texts
@@ -37,7 +37,7 @@ class Evaluator:
         self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
 
     def text(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
-        """Return what a text is in the expanded file; None if it has no value, or no steps are left."""
+        """Return what a text is in the expanded file; None if it has no value, or the budget is spent."""
         try:
             return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
         except (ExpressionFails, Undetermined, OutOfBudget, RecursionError):

@@ -16,8 +16,7 @@ PIECE = re.compile(
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_OF_PIECE = 2  # what a part of a text is charged
-_OF_NAME = 20  # what comparing a name with another one is charged
+_OF_PIECE, _OF_NAME = 2, 20  # what a part of a text, and comparing a name with another one, are charged
 _MAX_SHOWN = 60  # characters of a name
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
 
@@ -158,7 +157,7 @@ class Texts:
         if "$" in text or "(" in text:
             raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
-            raise ExpressionFails(f"$({text}): xacro knows find, arg and env with one name, optenv, eval and cwd")
+            raise ExpressionFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
         found = self._charged(self.share(args[0]) if command == "find" else self.argument(args[0]))
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 

@@ -69,6 +69,10 @@ class _Values:
             if event.anchor not in self._anchors:
                 raise Undetermined(f"the alias {event.anchor} has no value, or contains itself")
             return self._budget.checked(self._anchors[event.anchor])
+        if event.anchor in self._anchors or (event.tag in _UNITS and not isinstance(event, yaml.ScalarEvent)):
+            raise ExpressionFails(
+                f"the file is not YAML: {event.anchor or event.tag} is used twice, or not of a number"
+            )
         if event.tag not in (None, "!", *_UNITS):
             raise Undetermined(f"the YAML tag {event.tag} is not supported")
         if isinstance(event, yaml.MappingStartEvent):

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import grader.grading.hints.hinting
+import grader.grading.subjects
 import grader.submission.opening
 import grader.usecases.hints
 import grader.usecases.inspect
@@ -39,11 +40,19 @@ def fill_memory(*_: object, **__: object) -> bytes:
 @pytest.mark.parametrize("command", ["grade", "inspect"])
 def test_reading_ends(command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     """One line says which limit it was, and nothing was graded: exit code 2."""
-    monkeypatch.setattr(limits, "_SECONDS", 1)
+    monkeypatch.setattr(limits, "_SECONDS", 1 if what is hang else 60)
     monkeypatch.setattr(limits, "_MEMORY", 512 * 1024**2)
     monkeypatch.setattr(grader.submission.opening, "read_as_ros", what)
     done = run((command, URDF))
     assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
+
+
+def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit of time ends the command, not only the check."""
+    monkeypatch.setattr(limits, "_SECONDS", 1)
+    monkeypatch.setattr(grader.grading.subjects.Subjects, "of", hang)
+    done = run(("grade", URDF))
+    assert (done.returncode, done.stderr) == (2, b"grader: this takes more than 1 s of processor time\n")
 
 
 def test_a_search_for_hints_costs_no_report(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

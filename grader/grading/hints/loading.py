@@ -67,7 +67,7 @@ def _loose(robot: Robot | None) -> int:
 
 
 def repaired(trials: Trials, reference: Draft | None) -> Repair:
-    """Return the hints of the steps, each alone if it gains something alone, and all together. Raises OutOfBudget."""
+    """Return the hints of the steps, each alone if it gains something alone, and all together. Raises NoTrialsLeft."""
     start = final = trials.start
     taken: list[Proposal] = []
     for step in _steps(trials, reference):
@@ -94,7 +94,7 @@ def _proven(trials: Trials, proposal: Proposal) -> Hint | None:
 
 
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
-    """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises OutOfBudget."""
+    """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises NoTrialsLeft."""
     state, reserve = trials.start, trials.left // 2
     given_up: set[str] = set()
     for _ in range(_MAX_STEPS):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import REWRITTEN, Proposal
 from grader.grading.hints.choice import Choice, Option
 from grader.grading.hints.proposing import Proposing
-from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, costs_of, gained, joined
+from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, costs_of, gained, joined
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
@@ -57,7 +57,7 @@ class Search:
         """Search until nothing more is found, or the budget is spent."""
         if not self.trials.left:
             return self
-        with suppress(OutOfBudget):
+        with suppress(NoTrialsLeft):
             for phase in (self._load, self._rounds, self._combine):
                 with self.trials.isolated():
                     phase()

@@ -22,7 +22,7 @@ _MAX_STEPS = 600  # of one submission
 _PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
 
 
-class OutOfBudget(Exception):
+class NoTrialsLeft(Exception):
     """The budget for one submission is spent."""
 
 
@@ -59,13 +59,13 @@ class Trials:
         """Record a fault of the grader in one family of edits or one step: it must not cost the hints of the others."""
         try:
             yield
-        except OutOfBudget:
+        except NoTrialsLeft:
             raise
         except Exception as error:  # noqa: BLE001
             self.faults.append(type(error).__name__)
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
-        """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
+        """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises NoTrialsLeft."""
         edited = self.edited(state, edits)
         results = decide(self.rubric, edited, wanted) if edited is not None else ()
         return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
@@ -75,7 +75,7 @@ class Trials:
     ) -> State | None:
         """Return the state after edits of this one, None if they do not fit; `whole` reads the submission from scratch.
 
-        Raises OutOfBudget.
+        Raises NoTrialsLeft.
         """
         edited = self._from_scratch(state, edits) if whole else self.edited(state, edits)
         if edited is None:
@@ -91,7 +91,7 @@ class Trials:
         return State(edited, edits, results)
 
     def edited(self, state: State, edits: Edits) -> Submission | None:
-        """Return the submission with edits of a state, not graded; None where they do not fit. Raises OutOfBudget."""
+        """Return the submission with edits of a state, not graded; None where they do not fit. Raises NoTrialsLeft."""
         self._spend(state.submission)
         files = edited_files(state.submission, edits)
         if files is None:
@@ -114,7 +114,7 @@ class Trials:
     def _spend(self, submission: Submission) -> None:
         self.left -= 1 + submission.cost
         if self.left < 0:
-            raise OutOfBudget
+            raise NoTrialsLeft
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:

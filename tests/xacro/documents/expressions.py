@@ -70,6 +70,8 @@ _FUNCTIONS = (
     "sqrt(0.1 ** 2 + 0.2 ** 2)", "atan2(0.1, 0.2) * 180 / pi", "-pi / 2", "pi/2", "2*pi", "pi*2/360*90", "sin(radians(30))", "cos(radians(60))", "round(sin(radians(30)), 3)", "int(round(2.5))", "int('1_000')", "float('1_0')", "abs(1)", "isnan(1)",
 )  # fmt: skip
 _MORE = (
+    "len([map(int, ['a'])])",
+    "list(map(int, ['a']))",
     "'a'.center()",
     "'a'.split(1)",
     "'a'.replace('a')",
@@ -179,7 +181,7 @@ _BEYOND = {
     "dict(a=1).values()", "[1].append(2)", "[1, 2, 3].pop()", "['b', 'a'].sort()", "[1, 2].reverse()", "[1, 2].copy()", "dict(a=1).pop('a')", "dict(a=1).update(b=2)", "list(map(lambda x: x + 1, [1, 2]))",
     "max([1, 2], key=lambda v: -v)", "(lambda x: x + 1)(2)", "(lambda: 5)()", "(y := 5)", "math.pi.real", "math['pi']", "python.range(3)", "python.set([1])", "python.complex(1, 2)", "python.frozenset([1])",
     "python.slice(1)", "sin(*[0])", "max(*[1, 2])", "dict(**dict(a=1))", "python.isinstance(1, python.int)", "python.isinstance('a', python.str)", "str(1, 2)", "dict(a=1).a", "'abc'.nothing()",
-    "'abc'()", "python.repr('a')", "[*[1, 2], 3]", "list(x for x in [1])",
+    "'abc'()", "python.repr('a')", "[*[1, 2], 3]", "list(x for x in [1])", "len([map(int, ['a'])])", "list(map(int, ['a']))",
     "~5", "1 << 4", "256 >> 2", "6 & 3", "6 | 1", "6 ^ 3", "~1.5", "1 << -1", "5 & 2.0", "1 << 2.0", "'5'.zfill(3)", "'a'.rjust(3)",
     "'a'.ljust(3) + '|'", "'a'.center(3)", "'a'.center()", "'a'.zfill('a')", "'a-b'.partition('-')", "'abc'.swapcase()",
     "'abc'.isalpha()", "'abc'.removeprefix('a')", "'abc'.removesuffix('c')", "'a'.casefold()", "[1, 2].index(2)", "[1, 2].count(1)",

@@ -32,6 +32,8 @@ again: *c
 """
 _FILES: dict[str, str | bytes] = {
     "config/robot.yaml": _YAML,
+    "urdf/unit_of_list.yaml": "a: !degrees [1, 2]\n",
+    "urdf/anchor_twice.yaml": "a: &x 1\nb: &x 2\n",
     "urdf/date.yaml": "a: 2020-01-02\n",
     "urdf/octal.yaml": "a: 010\n",
     "urdf/merged.yaml": "a: &a {k: v}\nb: {<<: *a, l: w}\n",
@@ -131,6 +133,8 @@ _REFUSED = bodies(
     missing_file_unused=near("missing", "1"),
     folder=loaded("${y}", file="parts"),
     broken=near("broken", "${y}"),
+    unit_of_list=near("unit_of_list", "${y}"),
+    anchor_twice=near("anchor_twice", "${y}"),
     tabs=near("tabs", "${y}"),
     two_documents=near("two", "${y}"),
     without_name=shown("${xacro.load_yaml()}"),
