@@ -112,15 +112,14 @@ def _discard_reports(words: Sequence[str]) -> None:
     command = command.commands["grade"]
     command.ignore_unknown_options = True
     flags = {name for option in command.params if getattr(option, "is_flag", False) for name in option.opts}
-    known = [
-        name if (name := word.partition("=")[0]) in flags else word for word in words
-    ]  # --verbose=yes ends parsing
+    # --verbose=yes would end the parsing.
+    known = [name if (name := word.partition("=")[0]) in flags else word for word in words]
     given = command.make_context("grade", known, resilient_parsing=True).params
     saves: list[tuple[Any, Path]] = []
     for text in given["save"] or ():
-        with suppress(GraderError):
+        with suppress(GraderError, OSError):
             saves += read_saves([text])
-    with suppress(GraderError):
+    with suppress(GraderError, OSError):
         remove_reports(tuple(saves), given["rubric"] or DEFAULT_RUBRIC, *(word for word in words if word[:1] != "-"))
 
 
