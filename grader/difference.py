@@ -1,0 +1,139 @@
+"""The difference between two trees: elements of XML, values of YAML, calls of Python.
+
+Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the difference is independent of the
+others: a caller makes edits of the steps that it needs.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple
+
+from grader.names import closest
+
+
+class Node(NamedTuple):
+    """A node of a tree: its tag, what it is recognised by (the most reliable first), its values, and its children.
+
+    `of` is what the node is made from: an element, or a place in a file.
+    """
+
+    tag: str
+    keys: tuple[str, ...]
+    values: Mapping[str, str]
+    children: "Sequence[Node]"
+    of: Any = None
+
+    def walk(self) -> "Iterator[Node]":
+        """Yield the node and all nodes in it."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+class Step(NamedTuple):
+    """One step from a tree to another: what happens to `own`, a node of the first tree, as in `like`, a node of the other one.
+
+    set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`. retag: the node gets the tag of
+    `like`. add: `like` is added to `own`. remove: `own` goes. move: `own` becomes a child of `parent`.
+    """
+
+    verb: Literal["set", "unset", "rename", "retag", "add", "remove", "move"]
+    own: Node
+    like: Node | None = None
+    name: str = ""
+    other: str = ""
+    parent: Node | None = None
+
+
+class Pairs(NamedTuple):
+    """Two lists of nodes: those that belong together, those of the first one alone, and those of the second one alone."""
+
+    both: list[tuple[Node, Node]]
+    extra: list[Node]
+    missing: list[Node]
+
+
+def steps(own: Node, like: Node) -> list[Step]:
+    """Return the steps from a tree to another one: first the values, then what is to move, be added and removed."""
+    found = [*_steps(own, like)]
+    moved: list[Step] = []
+    left = [step for step in found if step.verb != "add"]
+    spare = [step.own for step in found if step.verb == "remove"]
+    for step in found:
+        if step.verb == "add" and step.like is not None:
+            same = next((node for node in spare if is_alike(node, step.like)), None)
+            if same is None:
+                left.append(step)
+            else:
+                moved.append(Step("move", same, step.like, parent=step.own))
+                moved += _steps(same, step.like)
+    return left[:0] + moved + sorted(left, key=lambda step: ("add", "remove").index(step.verb) + 1 if step.verb in ("add", "remove") else 0)
+
+
+def _steps(own: Node, like: Node) -> Iterator[Step]:
+    if own.tag != like.tag:
+        yield Step("retag", own, like)
+    yield from _values(own, like)
+    pairs = paired(own.children, like.children)
+    for pair in pairs.both:
+        yield from _steps(*pair)
+    yield from (Step("add", own, node) for node in pairs.missing)
+    yield from (Step("remove", node) for node in pairs.extra)
+
+
+def _values(own: Node, like: Node) -> Iterator[Step]:
+    missing = [name for name in like.values if name not in own.values]
+    for name, value in own.values.items():
+        if name in like.values:
+            if value != like.values[name]:
+                yield Step("set", own, like, name)
+            continue
+        meant = closest(name, missing)
+        if meant:
+            yield Step("rename", own, like, name, meant)
+        yield Step("unset", own, like, name)
+    yield from (Step("set", own, like, name) for name in missing)
+
+
+def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
+    """Pair nodes: by tag and by each of their keys, then by tag and likeness, then those whose tags differ by little."""
+    extra, missing = [*own], [*like]
+    both: list[tuple[Node, Node]] = []
+    depth = max((len(node.keys) for node in (*own, *like)), default=0)
+    for index in range(depth):
+        for other in [*missing]:
+            wanted = other.keys[index : index + 1]
+            found = next((node for node in extra if node.tag == other.tag and wanted and node.keys[index : index + 1] == wanted), None)
+            if found is not None:
+                _pair(found, other, extra, missing, both)
+    for other in [*missing]:
+        same = [node for node in extra if node.tag == other.tag]
+        if same:
+            _pair(max(same, key=lambda node: likeness(node, other)), other, extra, missing, both)
+    for other in [*missing]:
+        near = closest(other.tag, [node.tag for node in extra])
+        found = next((node for node in extra if node.tag == near), None)
+        if found is not None:
+            _pair(found, other, extra, missing, both)
+    both.sort(key=lambda pair: [*map(id, own)].index(id(pair[0])))
+    return Pairs(both, extra, missing)
+
+
+def _pair(node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]) -> None:
+    extra[:] = [one for one in extra if one is not node]
+    missing[:] = [one for one in missing if one is not other]
+    both.append((node, other))
+
+
+def likeness(one: Node, other: Node) -> float:
+    """Return how alike two nodes are: the share of their values and of the tags in them that both have."""
+    mine, its = _content(one), _content(other)
+    return len(mine & its) / max(len(mine | its), 1)
+
+
+def is_alike(one: Node, other: Node) -> bool:
+    """Return whether a node is another one in another place."""
+    return one.tag == other.tag and (likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""}))
+
+
+def _content(node: Node) -> set[tuple[str, ...]]:
+    return {item for inner in node.walk() for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))}
