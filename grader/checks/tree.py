@@ -9,11 +9,12 @@ from grader.errors import MissingElement
 from grader.names import did_you_mean
 from grader.problems import Problem, kinds_in
 from grader.robot.catalogue import RAW_XACRO
-from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
+from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.text import counted, enumerated
 from grader.xml import catalogue as xml_catalogue
+from grader.xml.urdf_format import JOINT_TYPES, JointType
 
 _OF_XML = kinds_in(vars(xml_catalogue).values())
 

@@ -5,10 +5,10 @@ from collections import Counter
 from random import Random
 
 from grader.mutation.elements import Element, elements
+from grader.xml.urdf_format import PARTS
 
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
-_OF_NUMBERS = ("xyz", "rpy", "size", "radius", "length", "rgba", "value", "lower", "upper")
 _MAX_PROPERTIES = 8
 _MAX_DIGITS = 12  # that survive the conversion to a float and back
 
@@ -20,7 +20,7 @@ def with_properties(random: Random, text: str) -> str | None:
         for element in elements(text)
         if not element.is_foreign
         for attribute in element.attributes
-        if attribute.name in _OF_NUMBERS
+        if PARTS.get(attribute.name)
         for found in _NUMBER.finditer(text[slice(*attribute.value)])
         if len(found[0]) <= _MAX_DIGITS
     ]

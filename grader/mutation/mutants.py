@@ -7,18 +7,14 @@ from math import degrees
 from typing import NamedTuple
 
 from grader.mutation.elements import Attribute, Element, elements, names, text_of
+from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
 _UNTOUCHED = ("version", "encoding")
-_TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar", "Fixed", "rotating")
+_TYPES = (*JOINT_TYPES, "Fixed", "rotating")
 _MAX_EXCHANGED = 12  # other names that a name becomes
 _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
-_COMPONENTS = {
-    **dict.fromkeys(("xyz", "size", "scale"), ("x", "y", "z")),
-    "rpy": ("roll", "pitch", "yaw"),
-    "rgba": ("red", "green", "blue", "alpha"),
-}
 
 
 class Mutant(NamedTuple):
@@ -166,7 +162,7 @@ def of_value(text: str, label: str, span: tuple[int, int], name: str, tags: tupl
 
 def _parts(name: str, count: int) -> list[str]:
     """Return what tells the numbers of a value apart: .x, .y and .z of an xyz."""
-    known = _COMPONENTS.get(name, ())
+    known = PARTS.get(name, ())
     return [""] if count == 1 else [f".{part}" for part in (known if len(known) == count else range(1, count + 1))]
 
 

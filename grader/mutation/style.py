@@ -9,30 +9,8 @@ from lxml import etree
 
 from grader.mutation.elements import FOREIGN
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import PARTS
 
-_VECTORS = frozenset({"xyz", "rpy", "size", "rgba", "scale"})
-_SCALARS = frozenset(
-    [
-        "radius",
-        "length",
-        "value",
-        "ixx",
-        "ixy",
-        "ixz",
-        "iyy",
-        "iyz",
-        "izz",
-        "effort",
-        "velocity",
-        "lower",
-        "upper",
-        "damping",
-        "friction",
-        "multiplier",
-        "offset",
-        "k_velocity",
-    ]
-)
 _COMMENTS = ("<!---->", "<!-- a robot -->", '<!-- <link name="ghost"/> -->', "<!--\n  0.6 / 4\n  -->", "<!-- $ & % -->")
 
 
@@ -79,11 +57,11 @@ class Style:
     def attribute(self, name: str, value: str) -> str:
         """Return an attribute as text."""
         quote = self.random.choice(self.quotes)
-        if self.numbers and name in _VECTORS:
+        if self.numbers and len(PARTS.get(name, ())) > 1:
             pieces = [self.number(piece) for piece in value.split(" ")]
             value = "".join(f"{' ' * self.random.randint(1, 3)}{piece}" for piece in pieces)
             value += " " * self.random.randint(0, 2)
-        elif self.numbers and name in _SCALARS:
+        elif self.numbers and PARTS.get(name):
             value = " " * self.random.randint(0, 2) + self.number(value)
         value = value.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
         if self.references and value and value[0].isalnum():

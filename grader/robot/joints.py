@@ -1,7 +1,6 @@
 """Joints as urdfdom reads them (`joint.cpp`), where every defect rejects the whole file, and the names that they refer to."""
 
 from itertools import islice
-from typing import Literal, get_args
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
@@ -10,9 +9,8 @@ from grader.robot.model import Joint, Robot
 from grader.robot.transforms import Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import JOINT_TYPES
 
-JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
-JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
 _REJECTED = "ROS 2 rejects the file"

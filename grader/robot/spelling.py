@@ -4,17 +4,13 @@ from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.text import quoted
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 
 # Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
     {"gazebo", "transmission", "hardwareInterface", "ros2_control", "sensor", "plugin"}
     | {"drake", "mujoco", "capsule", "verbose"}
 )
-_SINGLE = frozenset(
-    {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}
-)
-SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
 
 
 def check_spelling(root: Element, problems: Problems) -> None:
@@ -46,7 +42,7 @@ def _check_attributes(element: Element, problems: Problems) -> None:
     for name in given:
         if name in known or name.startswith("{"):
             continue
-        meant = SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
+        meant = TAGS[element.tag].aliases.get(name) or problems.closest(name, missing)
         if meant:
             message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
             problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
@@ -70,7 +66,7 @@ def _check_repeated(element: Element, tags: list[str], problems: Problems) -> No
     for child, tag in zip(element, tags, strict=True):
         if element.tag == "geometry" and seen:
             problems.add(catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child)
-        elif tag in seen and (tag in _SINGLE or (element.tag == "visual" and tag == "material")):
+        elif tag in seen and tag in TAGS[element.tag].children and tag not in TAGS[element.tag].repeated:
             message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
             problems.add(catalogue.REPEATED_ELEMENT, message, child)
         seen.add(tag)

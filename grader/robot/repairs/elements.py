@@ -7,9 +7,8 @@ from grader.names import closest
 from grader.robot.edits.draft import Edits, child_of
 from grader.robot.repairs.numbers import COUNTS, is_readable, readable, with_count
 from grader.robot.repairs.site import Robots, Site
-from grader.robot.spelling import SWAPPED
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 
 REQUIRED = {
     "robot": ("name",),
@@ -44,12 +43,6 @@ _DEFAULT_CHILDREN = {
     "mass": '<mass value="1"/>',
     "inertia": '<inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/>',
     "limit": '<limit lower="-1.57" upper="1.57" effort="10" velocity="1"/>',
-}
-_ALIASES = {
-    ("parent", "name"): "link",
-    ("child", "name"): "link",
-    ("parent", "joint"): "link",
-    ("child", "joint"): "link",
 }
 _SHAPES = CHILDREN["geometry"]
 
@@ -103,7 +96,7 @@ def attribute_repairs(site: Site) -> Iterator[Proposal]:
         return
     unknown = [name for name in map(str, element.keys()) if name not in ATTRIBUTES.get(tag, ())]
     for name in unknown:
-        meant = SWAPPED.get((tag, name)) or _ALIASES.get((tag, name)) or closest(name, missing)
+        meant = TAGS[tag].aliases.get(name) or closest(name, missing)
         for wanted in [meant] if meant in missing else missing:
             yield site.propose(site.draft.rename_attribute(element, name, wanted), *_misspelt(f"attribute {wanted}"))
     given = {name: _given(site, name) for name in missing}
@@ -187,7 +180,7 @@ def spelling_repairs(site: Site) -> Iterator[Proposal]:
     if attribute is not None:
         known = ATTRIBUTES.get(tag, ())
         missing = [name for name in known if element.get(name) is None]
-        meant = SWAPPED.get((tag, attribute)) or closest(attribute, missing)
+        meant = (TAGS[tag].aliases.get(attribute) if tag in TAGS else None) or closest(attribute, missing)
         if attribute not in known and meant:
             yield site.propose(site.draft.rename_attribute(element, attribute, meant), *_misspelt(f"attribute {meant}"))
         return

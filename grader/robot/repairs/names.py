@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from grader.edits import Proposal
 from grader.names import closest
-from grader.robot.joints import JOINT_TYPES
 from grader.robot.repairs.elements import child_repairs
 from grader.robot.repairs.site import Site
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import JOINT_TYPES
 
 _MAX_NAMES = 4
 _NEEDS_LIMIT = ("revolute", "prismatic")

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 from grader.xml.tinyxml2.values import decode, escape
+from grader.xml.urdf_format import TAGS
 
 Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its description and its offset
 
@@ -12,7 +13,6 @@ _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
 _PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
 _MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
-_MAIN_ATTRIBUTES = {"parent": "link", "child": "link", "origin": "xyz", "axis": "xyz", "box": "size", "color": "rgba"}
 
 # A bare & or an entity that XML does not define.
 REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
@@ -153,7 +153,8 @@ def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
         return MalformedTagError(f"the file ends inside the tag <{shown}>", start, at)
     match text[at]:
         case "=":
-            message = f'<{shown}= has no attribute name; write <{shown} {_MAIN_ATTRIBUTES.get(name, "name")}="...">'
+            main = next(iter(TAGS[name].attributes), "name") if name in TAGS else "name"
+            message = f'<{shown}= has no attribute name; write <{shown} {main}="...">'
             return MalformedTagError(message, start, resume_after(text, at))
         case "<":
             return MalformedTagError(f"<{shown}> is not closed with > before the next tag", start, at)
