@@ -113,9 +113,9 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
             if found is not None:
                 _pair(found, other, extra, missing, both)
     for other in [*missing]:
-        same = [node for node in extra if node.tag == other.tag]
-        if same:
-            _pair(max(same, key=lambda node: likeness(node, other)), other, extra, missing, both)
+        alike = [node for node in extra if node.tag == other.tag]
+        if alike:
+            _pair(max(alike, key=lambda node: likeness(node, other)), other, extra, missing, both)
     for other in [*missing]:
         near = closest(other.tag, [node.tag for node in extra])
         found = next((node for node in extra if node.tag == near), None)

@@ -13,47 +13,21 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll"), and what to do ("negate the roll{}").
+    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll of ..."), and what to do ("negate ...").
 
-    `of` is whose it is, without names that a student chose ("the joint of 'right_wheel'"); it takes the place of {} in both texts.
-    `link` is the link that is moved or changed. The `rank` orders proposals that gain the same: those to a known value come first.
+    `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first.
     """
 
     edits: tuple[Edit, ...]
     cause: str
     action: str
-    of: str = ""
     link: str = ""
-    rank: int = 1
+    rank: int = 0
 
     @property
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
-
-    @property
-    def is_expected(self) -> bool:
-        """Return whether it is made from the reference, and is no rewriting."""
-        return self.rank < TOGETHER and self.rank != TRIED
-
-    @property
-    def said(self) -> str:
-        """The change in words: "negate the roll of the joint of 'right_wheel'"."""
-        return self._completed(self.action)
-
-    @property
-    def named(self) -> str:
-        """What is wrong in words: "the sign of the roll of the joint of 'right_wheel'"."""
-        return self._completed(self.cause if "{}" in self.cause or not self.of else f"{self.cause}{{}}")
-
-    def _completed(self, text: str) -> str:
-        return text.replace("{}", f" of {self.of}" if self.of else "")
-
-
-# The ranks of proposals: what is misplaced goes where it belongs; a value that the reference has; one that puts the link where the
-# reference has it, and that a family of mistakes explains; one that is tried without knowing it; one that only fits; all values of
-# a link at once; whole elements of the reference.
-MOVED, KNOWN, SOLVED, TRIED, FITTED, TOGETHER, REWRITTEN = range(7)
 
 
 def _changed(old: str, new: str) -> int:

@@ -1,130 +1,297 @@
-"""Choose the edits of a submission for its failed criteria: single ones first, then two, then whole elements of the reference."""
+"""Choose the edit of a state that makes a failed criterion pass: a piece of the difference, a solved number, or few pieces together."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from decimal import Decimal
-from itertools import combinations
-from typing import NamedTuple
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
 
-from grader.edits import FITTED, Proposal
+from grader.edits import Proposal
+from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
-from grader.grading.hints.proposing import Proposing
-from grader.grading.hints.trials import Edits, Results, State, Trials, joined
+from grader.grading.hints.model import Model
+from grader.grading.hints.solving import SOLVED, Solver, slots
+from grader.grading.hints.targets import Targets, targets_of
+from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, joined
+from grader.grading.subjects import named_links
+from grader.robot.edits.conventions import conventions, other_frames
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.kinematics import Configuration
+from grader.submission.raw_xacro import raw_xacro_proposals
+from grader.submission.urdf import Read
+
+if TYPE_CHECKING:
+    from grader.package.package import Package
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
-_MAX_PAIRS = 60
-_MAX_REPAIRED = 3  # edits that make a criterion pass and others fail, which a second edit may repair
+_MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
+_WHOLE, _REPAIRED = 1, 5  # the numbers of the ways by a convention of the robot, and by two edits
+_MIN_WHOLE = 4  # criteria that fail where a convention of the robot may be wrong
+_MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
 
-class Option(NamedTuple):
-    """An edit, and the criteria that a quick look says pass with it."""
-
-    proposal: Proposal
-    passes: frozenset[str]
-
-
-class _Proven(NamedTuple):
+class Proven(NamedTuple):
     """An edit of a state that is proven, and the points that it gains."""
 
     proposal: Proposal
     gain: Decimal
 
 
+class Look:
+    """A state that is looked at: its pieces, and the lost criteria that pass with each."""
+
+    def __init__(self, trials: Trials, state: State, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
+        self.trials, self.state, self.reference = trials, state, reference
+        self._package = package
+        urdf = state.submission.urdf
+        self.draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
+        self._passing: dict[int, frozenset[str]] = {}
+
+    @cached_property
+    def model(self) -> Model:
+        """The robot, to ask what criteria measure."""
+        assert self.draft is not None
+        return Model(self.trials, self.state, self.draft)
+
+    @cached_property
+    def difference(self) -> Difference:
+        """The robot beside the reference's."""
+        assert self.draft is not None
+        return Difference(self.draft, self.reference or self.draft)
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The difference to the reference."""
+        if self.draft is None:
+            return []
+        with self.trials.isolated():
+            found = [Piece(it.cause, it.action, "", (), it.edits) for it in self.draft.source.corrections()]
+            return [*found, *self.difference.pieces()]
+        return []
+
+    def targets(self, criterion: Criterion) -> Targets:
+        """Return the links on which a criterion depends."""
+        if self.draft is None:
+            return Targets((), ())
+        named = criterion
+        if criterion.has_selectors:
+            with suppress(MissingElement, NotDecided):
+                named = replace(criterion, arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
+        return targets_of([named], self.draft.robot, (self.reference or self.draft).robot)
+
+    def relevant(self, criterion: Criterion) -> list[Piece]:
+        """Return the pieces that may decide a criterion, the most plausible first: those where its failure is."""
+        if criterion.check.subject in ("package", "submission"):
+            return []
+        place = self.state.results[criterion.id].outcome.location
+        links = {*(targets := self.targets(criterion)).shown, *targets.moved, ""}
+        is_all = criterion.check.subject == "urdf" or len(links) == 1
+        found = [piece for piece in self.pieces if is_all or piece.link in links]
+        at = {id(piece): self.draft.line(piece.element) for piece in found if piece.element is not None and self.draft}
+        near = [abs(at.get(id(piece), 0) - place.line) if place is not None else 0 for piece in found]
+        order = sorted(range(len(found)), key=lambda index: (found[index].rank, near[index] > 0, index))
+        return [found[index] for index in order]
+
+    def passing(self, piece: Piece, wanted: Sequence[str]) -> frozenset[str]:
+        """Return the wanted criteria that pass with a piece, as far as a quick look tells."""
+        if id(piece) not in self._passing:
+            if piece.sets:
+                results = self.model.results(piece.sets, wanted).values()
+                found = frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
+            else:
+                found = self.trials.passing(self.state, piece.edits, wanted)
+            self._passing[id(piece)] = found
+        return self._passing[id(piece)]
+
+    def proposals(self, piece: Piece) -> Iterator[Proposal]:
+        """Yield the edits of the text that a piece stands for."""
+        assert self.draft is not None
+        for edits in self.draft.ways(piece.sets) if piece.sets else [piece.edits]:
+            if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
+                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)
+
+    def of_package(self, criterion: Criterion) -> list[Proposal]:
+        """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""
+        found: list[Proposal] = []
+        if criterion.check.subject not in ("urdf", "robot"):
+            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
+
+            wanted = [(criterion.check.name, criterion.arguments)]
+            found += package_proposals(self.state.submission.package, self._package(), wanted, self.trials.isolated)
+        with self.trials.isolated():
+            found += raw_xacro_proposals(self.state.submission) if criterion.check.subject == "urdf" else ()
+        return found
+
+
 class Choice:
-    """The edits that may be chosen, and the trials that decide."""
+    """Chooses edits of states."""
 
-    def __init__(self, trials: Trials, proposing: Proposing, criteria: Mapping[str, Criterion]) -> None:
-        self._trials = trials
-        self._proposing = proposing
-        self._criteria = criteria
+    def __init__(self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
+        self._trials, self._reference, self._package = trials, reference, package
+        self._looks: tuple[State, Look] | None = None
 
-    def _options(self, state: State, wanted: Sequence[str], tried: Sequence[str]) -> Iterator[Option]:
-        """Yield the edits of a state for wanted criteria, each with those of the tried ones that it makes pass."""
-        for proposal in self._proposing.proposals(state, [self._criteria[name] for name in wanted]):
-            yield Option(proposal, self._trials.passing(state, proposal.edits, tried))
+    def _look(self, state: State) -> Look:
+        if self._looks is None or self._looks[0] is not state:
+            self._looks = state, Look(self._trials, state, self._reference, self._package)
+        return self._looks[1]
 
-    def tried(self, state: State, wanted: Sequence[str]) -> list[Option]:
-        """Return the edits of a state, up to one that makes all lost criteria pass: no other can gain more."""
-        options: list[Option] = []
-        lost = state.failed
-        for option in self._options(state, wanted, lost):
-            options.append(option)
-            is_enough = len(option.passes) == len(lost) and option.proposal.rank <= FITTED
-            if is_enough and self._proven(state, option.proposal, wanted[0]):
-                break
-        return options
+    def best(self, state: State, criterion: Criterion) -> Proposal | None:
+        """Return the edit with which a criterion passes, and which gains most; None if none is found."""
+        look, name, lost = self._look(state), criterion.id, state.failed
+        ways: Sequence[Callable[[], Iterable[Proposal]]] = (
+            lambda: self._passing(look, look.relevant(criterion), name, lost),
+            lambda: self._of_whole(look, criterion, conventions, lost),
+            lambda: self._package_edits(look, criterion),
+            lambda: self._solved(look, criterion, lost),
+            lambda: self._of_whole(look, criterion, other_frames, lost),
+            lambda: self._repaired(look, criterion, lost),
+            lambda: self._together(look, criterion),
+        )
+        best: Proven | None = None
+        for number, way in enumerate(ways):
+            if best is not None and number != _WHOLE and (number != _REPAIRED or not self._is_short(look, best, lost)):
+                continue
+            if number == _WHOLE and len(lost) < _MIN_WHOLE:
+                continue
+            with self._trials.isolated():
+                found = self._best(state, name, way())
+                if found is not None and (best is None or found.gain > best.gain):
+                    best = found
+        return best.proposal if best is not None else None
 
-    def best(self, state: State, name: str, options: Sequence[Option], ranks: range) -> Proposal | None:
-        """Return a single edit, or two where these gain more; else all values of a link, or whole elements of the reference."""
-        passing = [option for option in options if name in option.passes]
-        single = [option for option in passing if option.proposal.rank <= FITTED]
-        whole = [option for option in passing if FITTED < option.proposal.rank in ranks]
-        best = self._best(state, name, single)
-        more = [option for option in single if best is None or _promised(state.results, option) > best.gain]
-        two = self._repaired(state, name, more)
-        if two is not None and (best is None or two.gain > best.gain):
-            best = two
-        found = best or self._best(state, name, whole) or self._pair(state, name, options)
-        return found.proposal if found is not None else None
+    def _is_short(self, look: Look, best: Proven, lost: Sequence[str]) -> bool:
+        """Return whether an edit leaves another criterion of its link lost, which two edits may gain as well."""
+        after = self._trials.applied(look.state, best.proposal.edits)
+        left = [it for it in self._trials.rubric.criteria if it.id in lost and after is not None and after.results[it.id].is_lost]
+        return any(best.proposal.link in look.targets(it).moved[:1] for it in left if it.check.subject == "robot")
 
-    def _best(self, state: State, name: str, options: Iterable[Option]) -> "_Proven | None":
-        """Return the edit with which a criterion passes, nothing is lost, and most points are gained; of equals the smallest."""
-        found: list[_Proven] = []
-        for option in sorted(options, key=lambda option: _promise(state.results, option))[:_MAX_OPTIONS]:
-            proven = self._proven(state, option.proposal, name)
+    def _best(self, state: State, name: str, proposals: Iterable[Proposal]) -> Proven | None:
+        """Return the proven edit that gains most, of equals the smallest; one that gains all ends the search."""
+        found: list[Proven] = []
+        for proposal in proposals:
+            proven = self._proven(state, proposal, name)
             if proven is not None:
                 found.append(proven)
-        return min(found, key=lambda one: (-one.gain, one.proposal.rank, one.proposal.size), default=None)
+            if len(found) == _MAX_OPTIONS or (proven is not None and proven.gain >= _lost(state.results)):
+                break
+        return min(found, key=lambda one: (one.proposal.rank > SOLVED, -one.gain, one.proposal.rank, one.proposal.size), default=None)
 
-    def _proven(self, state: State, proposal: Proposal, name: str) -> "_Proven | None":
+    def _proven(self, state: State, proposal: Proposal, name: str) -> Proven | None:
         after = self._trials.applied(state, proposal.edits)
         if after is None or after.lost or after.results[name].outcome.status != "passed":
             return None
-        return _Proven(proposal, _score(after.results) - _score(state.results))
+        return Proven(proposal, _score(after.results) - _score(state.results))
 
-    def _repaired(self, state: State, name: str, options: Iterable[Option]) -> "_Proven | None":
-        """Return two edits: the first makes a criterion pass and others fail, which the second repairs."""
-        likely = [option for option in options if option.proposal.is_expected]
-        for option in sorted(likely, key=lambda option: _promise(state.results, option))[:_MAX_REPAIRED]:
-            first = option.proposal
-            middle = self._trials.applied(state, first.edits)
-            broken = [middle.lost] if middle is not None and middle.lost else []
-            for second in self._options(middle, broken, broken) if middle is not None and broken else ():
-                if second.passes and second.proposal.rank <= FITTED:
-                    edits = joined(state.submission, first.edits, second.proposal.edits)
-                    proven = self._proven(state, _pair_of(first, second.proposal, edits), name)
-                    if proven is not None:
-                        return proven
-        return None
+    def _passing(self, look: Look, pieces: Iterable[Piece], name: str, lost: Sequence[str]) -> Iterator[Proposal]:
+        """Yield the edits of pieces with which a criterion passes, those with which most pass first of a few."""
+        batch: list[Piece] = []
+        for piece in pieces:
+            passes = look.passing(piece, lost)
+            if name in passes:
+                batch.append(piece)
+            if len(passes) == len(lost) or len(batch) == 2 * _MAX_OPTIONS:
+                break
+        batch.sort(key=lambda piece: -len(look.passing(piece, lost)))
+        for piece in batch:
+            yield from islice(look.proposals(piece), 3)
 
-    def _pair(self, state: State, name: str, options: Sequence[Option]) -> "_Proven | None":
-        """Return two edits of one link that make a criterion pass together."""
-        links = self._proposing.targets(state, self._criteria[name])
-        plausible = [
-            option.proposal
-            for option in options
-            if option.proposal.is_expected and option.proposal.link in (*links.shown, *links.moved)
-        ]
-        pairs = (pair for pair in combinations(plausible, 2) if pair[0].link == pair[1].link)
-        for _, (first, second) in zip(range(_MAX_PAIRS), pairs, strict=False):
-            pair = _pair_of(first, second, (*first.edits, *second.edits))
-            proven = self._proven(state, pair, name) if self._trials.passing(state, pair.edits, (name,)) else None
-            if proven is not None:
-                return proven
-        return None
+    def _of_whole(self, look: Look, criterion: Criterion, make: Callable[[Difference], Iterable[Piece]], lost: Sequence[str]) -> Iterator[Proposal]:
+        if look.draft is not None and criterion.check.subject == "robot":
+            yield from self._passing(look, make(look.difference), criterion.id, lost)
+
+    def _package_edits(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
+        for proposal in look.of_package(criterion):
+            if self._trials.passing(look.state, proposal.edits, (criterion.id,)):
+                yield proposal
+
+    def _solved(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
+        if look.draft is None or criterion.check.subject != "robot":
+            return
+        shown, moved = look.targets(criterion)
+        solver = Solver(look.model, look.difference, criterion.id, look.state.results[criterion.id].outcome)
+        yield from self._passing(look, solver.pieces(slots(look.draft, shown, moved)), criterion.id, lost)
+
+    def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
+        """Yield two edits: the first makes a criterion pass and others fail, which the second repairs."""
+        name = criterion.id
+        firsts = [piece for piece in look.relevant(criterion) if name in look.passing(piece, lost)]
+        for first in islice((it for piece in firsts for it in islice(look.proposals(piece), 1)), _MAX_FIRST):
+            middle = self._trials.applied(look.state, first.edits)
+            if middle is None or not middle.lost:
+                continue
+            broken = middle.lost
+            other = Look(self._trials, middle, self._reference, self._package)
+            target = next(it for it in self._trials.rubric.criteria if it.id == broken)
+            for piece in other.relevant(target):
+                if broken in other.passing(piece, (broken,)):
+                    for second in islice(other.proposals(piece), 1):
+                        edits = joined(look.state.submission, first.edits, second.edits)
+                        yield _together(first, second, edits)
+
+    def _together(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
+        """Yield the fewest pieces of the difference with which a criterion passes, if they are few."""
+        pieces = [piece for piece in look.relevant(criterion) if piece.sets or piece.edits]
+        kept = self._fewest(look, _compatible(pieces), criterion.id)
+        if 1 < len(kept) <= _MAX_PLACES:
+            proposals = [next(look.proposals(piece), None) for piece in kept]
+            if all(proposals):
+                first, *others = [it for it in proposals if it is not None]
+                for other in others:
+                    first = _together(first, other, (*first.edits, *other.edits))
+                yield first
+
+    def _fewest(self, look: Look, pieces: list[Piece], name: str) -> list[Piece]:
+        """Return the pieces that a criterion needs to pass, of those that make it pass all together; none if these do not."""
+        if not pieces or not self._is_passing(look, pieces, name):
+            return []
+        size = max(1, len(pieces) // 2)
+        while True:
+            for start in range(0, len(pieces), size):
+                fewer = pieces[:start] + pieces[start + size :]
+                if fewer and self._is_passing(look, fewer, name):
+                    pieces = fewer
+                    break
+            else:
+                if size == 1:
+                    return pieces
+                size = max(1, size // 2)
+            size = min(size, max(1, len(pieces) // 2))
+
+    def _is_passing(self, look: Look, pieces: Sequence[Piece], name: str) -> bool:
+        if all(piece.sets for piece in pieces):
+            sets = [one for piece in pieces for one in piece.sets]
+            return look.model.results(sets, (name,))[name].outcome.status == "passed"
+        proposals = [next(look.proposals(piece), None) for piece in pieces]
+        edits: Edits = tuple(dict.fromkeys(edit for it in proposals if it is not None for edit in it.edits))
+        return name in self._trials.passing(look.state, edits, (name,))
 
 
-def _promised(results: Results, option: Option) -> Decimal:
-    return sum((results[name].criterion.points for name in option.passes), Decimal(0))
+def _compatible(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return pieces that do not change the same thing twice."""
+    found: list[Piece] = []
+    seen: set[object] = set()
+    for piece in pieces:
+        keys = {one[:3] for one in piece.sets} or {(edit.path, edit.line, edit.column) for edit in piece.edits}
+        if seen.isdisjoint(keys) and piece.rank <= 1:
+            found.append(piece)
+            seen |= keys
+    return found
 
 
-def _promise(results: Results, option: Option) -> tuple[Decimal, int, int]:
-    return -_promised(results, option), option.proposal.rank, option.proposal.size
+def _together(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
+    leading = tuple(sorted(dict.fromkeys(edits), key=lambda edit: edit not in first.edits))
+    return Proposal(leading, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}", first.link, SOLVED)
 
 
 def _score(results: Results) -> Decimal:
     return sum((result.points for result in results.values()), Decimal(0))
 
 
-def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
-    leading = tuple(sorted(edits, key=lambda edit: edit not in first.edits))
-    return Proposal(leading, f"{first.named} and {second.named}", f"{first.said} and {second.said}", "", first.link)
+def _lost(results: Results) -> Decimal:
+    return sum((result.criterion.points for result in results.values() if result.is_lost), Decimal(0))
+
+
+__all__ = ["Choice", "NoTrialsLeft"]

@@ -65,7 +65,7 @@ def _hint(
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
     edits = found.edits if keep_edits or level == "edit" else ()
-    return Hint(message(found, level, submission, costs), at, found.gains, edits, found.proposal.said)
+    return Hint(message(found, level, submission, costs), at, found.gains, edits, found.proposal.action)
 
 
 def _draft(reference: Reference | None) -> Draft | None:

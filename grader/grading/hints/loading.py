@@ -9,12 +9,11 @@ from grader.edits import Proposal
 from grader.grading.hints.trials import Edits, State, Trials, gained, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.misplaced import misplaced
+from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
 from grader.robot.repairs.pieces import remaining
-from grader.robot.repairs.repairs import repairable, repairs_of
-from grader.robot.repairs.site import Robots
 from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
 from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
@@ -133,12 +132,20 @@ def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, It
     yield f"text {at}", text_proposals(reading, reference)
     draft = Draft.of(reading)
     if draft is not None:
-        yield "misplaced", misplaced(draft)
-        robots = Robots(draft, reference or draft, reading.problems)
+        difference = Difference(draft, reference or draft)
+        corrections = [Proposal(*correction) for correction in draft.source.corrections()]
+        yield f"corrections {len(corrections)}", corrections
+        yield "misplaced", _proposals(draft, misplaced(difference))
         for problem in repairable(reading.problems):
-            yield f"{problem.code} {problem.message}", repairs_of(robots, problem)
+            yield f"{problem.code} {problem.message}", _proposals(draft, pieces_for(difference, problem))
     elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
         yield f"token {at}", islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
+
+
+def _proposals(draft: Draft, pieces: Iterable[Piece]) -> Iterator[Proposal]:
+    for piece in pieces:
+        for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
+            yield Proposal(edits, piece.cause, piece.action, piece.link)
 
 
 def _best(trials: Trials, state: State, proposals: Iterable[Proposal]) -> Step | None:
@@ -173,27 +180,22 @@ def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
     """Return steps with those that correct the same mistake as one; what is added for one link stays apart."""
     groups: dict[tuple[str, str, str], list[Proposal]] = {}
     for proposal in proposals:
-        added_for = proposal.of or proposal.link if not any(edit.old for edit in proposal.edits) else ""
+        added_for = proposal.link if not any(edit.old for edit in proposal.edits) else ""
         groups.setdefault((proposal.cause, proposal.action, added_for), []).append(proposal)
     return [_together(group) for group in groups.values()]
 
 
 def _together(group: list[Proposal]) -> Proposal:
-    owners, links = {proposal.of for proposal in group}, {proposal.link for proposal in group}
+    links = {proposal.link for proposal in group}
     edits = tuple(edit for proposal in group for edit in proposal.edits) if all(p.edits for p in group) else ()
-    return group[0]._replace(
-        edits=edits,
-        of=owners.pop() if len(owners) == 1 else "",
-        link=links.pop() if len(links) == 1 else "",
-    )
+    return group[0]._replace(edits=edits, link=links.pop() if len(links) == 1 else "")
 
 
 def _chained(proposals: list[Proposal], edits: Edits) -> Proposal:
     """Return several steps as one proposal."""
     causes = dict.fromkeys(proposal.cause for proposal in proposals)
-    actions = dict.fromkeys(proposal.said for proposal in proposals)
-    links = {proposal.link for proposal in proposals}
-    return Proposal(edits, " and ".join(causes), " and ".join(actions), "", links.pop() if len(links) == 1 else "")
+    actions = dict.fromkeys(proposal.action for proposal in proposals)
+    return Proposal(edits, " and ".join(causes), " and ".join(actions))
 
 
 def _alone(together: Edits, before: Edits) -> Edits:

@@ -6,9 +6,8 @@ from decimal import Decimal
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.edits import REWRITTEN, Proposal
-from grader.grading.hints.choice import Choice, Option
-from grader.grading.hints.proposing import Proposing
+from grader.edits import Proposal
+from grader.grading.hints.choice import Choice
 from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, costs_of, gained, joined
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
@@ -43,7 +42,7 @@ class Search:
         """`reference` and `package` are the robot and the package of the rubric's reference solution."""
         self.trials = trials
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        self._choice = Choice(trials, Proposing(reference, package, trials), self._criteria)
+        self._choice = Choice(trials, reference, package)
         self._reference = reference
         robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
         # One with as many links may be the lab's, with other names.
@@ -51,7 +50,7 @@ class Search:
         self._is_another_robot = is_small and is_another_robot(rubric, robot)
         self.found: list[Found] = []
         self.final = trials.start
-        self._known: dict[Edits, list[Option]] = {}
+        self._given_up: set[tuple[Edits, str]] = set()
 
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
@@ -64,26 +63,22 @@ class Search:
         return self
 
     def _rounds(self) -> None:
-        for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):
-            while self._round(self.final, ranks):
-                pass
+        while self._round(self.final):
+            pass
 
-    def _round(self, state: State, ranks: range) -> bool:
+    def _round(self, state: State) -> bool:
         """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
         wanted = self._by_cost(state.results)
         if self._is_another_robot:  # no edit of a mistake makes it the lab's
             wanted = [name for name in wanted if self._criteria[name].check.subject != "robot"]
-        if not wanted:
-            return False
-        options = self._known.get(state.edits) or self._choice.tried(state, wanted)
-        self._known = {state.edits: options}
         taken: Edits = ()
         current = state
         for name in wanted:
-            if current.results[name].outcome.status == "passed":
+            if current.results[name].outcome.status == "passed" or (state.edits, name) in self._given_up:
                 continue
-            best = self._choice.best(state, name, options, ranks)
+            best = self._choice.best(state, self._criteria[name])
             if best is None or not self._prove(state, best, name):
+                self._given_up.add((state.edits, name))
                 continue
             together = self.trials.applied(state, (*taken, *best.edits), current.results)
             if together is not None and not together.lost:

@@ -30,7 +30,7 @@ def message(found: Found, level: Level, submission: Submission, costs: Mapping[s
         return f"With {earlier}, {passes}."
     if level != "edit":
         where = _places(own, submission) if level == "cause" else _marked(own, submission)
-        cause = f": {found.proposal.named}" if level == "cause" else ""
+        cause = f": {found.proposal.cause}" if level == "cause" else ""
         first = f"After {earlier}, check" if earlier else "Check"
         return f"{first} {where}{cause}. Fixing this makes {_outcome(more or found.gains, costs, verb='pass')}."
     changes = _moves(own, submission.path) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]

@@ -1,7 +1,9 @@
 """The elements of a robot, each with its place in the text, and the edits of them."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import NamedTuple
 
 from grader import markup
 from grader.edits import merged, text_of, with_attribute, with_child, with_element, with_sibling, without_element
@@ -9,11 +11,26 @@ from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
 from grader.source import Edit, Location, Source
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, make_element
 
 Edits = tuple[Edit, ...]
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
+_MAX_WAYS = 6
+
+
+class Set(NamedTuple):
+    """A new value of an attribute: of an element, or, with a tag, of its child of this tag, which may be missing."""
+
+    owner: Element
+    tag: str
+    attribute: str
+    value: str
+
+    @property
+    def element(self) -> Element | None:
+        """The element whose attribute it is; None where it is missing."""
+        return child_of(self.owner, self.tag) if self.tag else self.owner
 
 
 class Draft:
@@ -58,6 +75,71 @@ class Draft:
         own = [found for found in self.root.iterchildren("material") if found.get("name") == name]
         inside = (found for found in self.root.iter("material") if found.get("name") == name and len(found))
         return next((found for found in own if len(found)), next(inside, next(iter(own), None)))
+
+    def owner(self, element: Element) -> Element:
+        """Return the child of the root that an element is or is in; the root itself for the root."""
+        while (parent := element.getparent()) is not None and parent is not self.root:
+            element = parent
+        return element
+
+    def link_of(self, element: Element) -> str:
+        """Return the link that an element belongs to: of a joint its child; empty for a material."""
+        owner = self.owner(element)
+        return end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
+
+    def described(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
+        """Return what an element, or its child with a tag, is called: the visual origin of 'lidar'. Only known names are given."""
+        owner, path = self.owner(element), [tag] if tag else []
+        inner = element
+        while inner is not owner and inner is not self.root:
+            path.insert(0, str(inner.tag))
+            inner = inner.getparent()  # type: ignore[assignment]
+        path = [name for index, name in enumerate(path) if name != "geometry" or index == len(path) - 1]
+        if owner.tag != "link" or not path:
+            path.insert(0, str(owner.tag))
+        name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
+        what = " ".join(path[:1] + path[1:][-1:])
+        return f"the {what} of {name!r}" if name in known and what != "link" else f"the link {name!r}" if name in known else f"the {what}"
+
+    def ways(self, sets: Iterable[Set]) -> list[Edits]:
+        """Return the ways to set values; attributes and elements that are missing are added."""
+        found: list[Edits] = [()]
+        attributes: dict[Element, dict[str, str]] = {}
+        children: dict[tuple[Element, str], dict[str, str]] = {}
+        for one in dict.fromkeys(sets):
+            element = one.element
+            if element is None:
+                children.setdefault((one.owner, one.tag), {})[one.attribute] = one.value
+            elif one.attribute in element.attrib:
+                found = [(*before, *more) for before in found for more in self.set(element, one.attribute, one.value)]
+            else:
+                attributes.setdefault(element, {})[one.attribute] = one.value
+        added = [self.add_attributes(element, values) for element, values in attributes.items()]
+        added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
+        rest = tuple(edit for edits in added for edit in edits)
+        return [tuple(dict.fromkeys((*edits, *rest))) for edits in found[:_MAX_WAYS]]
+
+    @contextmanager
+    def supposing(self, sets: Iterable[Set]) -> Iterator[None]:
+        """Give the elements themselves other values for a while, not their text."""
+        before: list[tuple[Element, str, str | None]] = []
+        added: list[Element] = []
+        for one in sets:
+            element = one.element
+            if element is None:
+                element = make_element(one.tag, {}, one.owner)
+                added.append(element)
+            before.append((element, one.attribute, element.get(one.attribute)))
+            element.set(one.attribute, one.value)
+        try:
+            yield
+        finally:
+            for element, attribute, value in reversed(before):
+                element.attrib.pop(attribute)
+                if value is not None:
+                    element.set(attribute, value)
+            for element in added:
+                element.getparent().remove(element)  # type: ignore[union-attr]
 
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
@@ -175,6 +257,12 @@ def end_of(joint: Element, role: str) -> str:
 def child_of(element: Element, tag: str) -> Element | None:
     """Return the first child with this tag, which alone counts."""
     return next(element.iterchildren(tag), None)
+
+
+def empty_element(tag: str, values: Mapping[str, str]) -> str:
+    """Return the text of an element without content."""
+    attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+    return f"<{tag}{attributes}/>"
 
 
 def escaped(value: str) -> str:

@@ -1,0 +1,215 @@
+"""Solve for numbers: which number of a robot, with which value, brings what a criterion measures to what it expects."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
+from math import hypot, isfinite, pi
+from typing import NamedTuple
+
+from grader.checks.outcome import Outcome
+from grader.grading.hints.model import Model
+from grader.robot.edits.draft import Draft, Set, child_of
+from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
+from grader.robot.edits.pieces import Difference, Piece
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import TAGS
+
+SOLVED = 4  # the rank of a piece
+_EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
+_STEP = 1e-4
+_ROUNDS = 6
+_DIGITS = range(2, 7)
+_MAX_SLOTS = 60
+_OF_JOINT = (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz"), ("limit", ""), ("mimic", ""), ("dynamics", ""))
+
+
+class Slot(NamedTuple):
+    """Numbers of one element: an attribute, or all attributes with one number each."""
+
+    owner: Element
+    tag: str
+    attributes: tuple[str, ...]
+    values: Values
+    unit: str
+
+    def sets(self, values: Values, text: Callable[[Values], str] = written) -> tuple[Set, ...]:
+        """Return what is set to give the numbers these values."""
+        if len(self.attributes) == 1:
+            return (Set(self.owner, self.tag, self.attributes[0], text(values)),) if values != self.values else ()
+        pairs = zip(self.attributes, values, self.values, strict=True)
+        return tuple(Set(self.owner, self.tag, name, text((value,))) for name, value, old in pairs if value != old)
+
+
+def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[Slot]:
+    """Yield the numbers of what links show, and of the joints that move links."""
+    for link in moved:
+        joint = draft.joint_of(link)
+        for tag, attribute in _OF_JOINT if joint is not None else ():
+            assert joint is not None
+            if tag != "axis" or joint.get("type") not in ("fixed", "floating"):
+                yield from _slot(joint, tag, attribute)
+    for link in shown:
+        own = draft.link(link)
+        for part in own if own is not None else ():
+            if part.tag in ("visual", "inertial"):
+                yield from _slot(part, "origin", "xyz")
+                yield from _slot(part, "origin", "rpy")
+                for inner in part.iter("box", "cylinder", "sphere", "mesh", "mass", "inertia"):
+                    yield from _slot(inner, "", "size" if inner.tag == "box" else "scale" if inner.tag == "mesh" else "")
+            for used in part.iter("material"):
+                defined = draft.material(used.get("name") or "")
+                for colour in defined.iter("color") if defined is not None else ():
+                    yield from _slot(colour, "", "rgba")
+
+
+def _slot(owner: Element, tag: str, attribute: str) -> Iterator[Slot]:
+    element = child_of(owner, tag) if tag else owner
+    if element is None and tag not in ("origin", "axis"):
+        return
+    known = TAGS[tag or str(owner.tag)].attributes
+    names = (attribute,) if attribute else tuple(name for name, one in known.items() if len(one.parts) == 1)
+    texts = [element.get(name) if element is not None else None for name in names]
+    given = [values_of(text if text is not None else known[name].default) for name, text in zip(names, texts, strict=True)]
+    if element is None and tag == "axis":
+        given = [(1.0, 0.0, 0.0)]
+    parts = [len(known[name].parts) for name in names]
+    kept = [index for index, values in enumerate(given) if len(values) == parts[index]]
+    if kept and len(kept) == len(names) or (not attribute and kept):
+        values = tuple(value for index in kept for value in given[index])
+        yield Slot(owner, tag, tuple(names[index] for index in kept), values, known[names[kept[0]]].unit)
+
+
+class Solver:
+    """Searches the values with which one criterion measures what it expects."""
+
+    def __init__(self, model: Model, difference: Difference, name: str, outcome: Outcome) -> None:
+        self._model, self._difference, self._name = model, difference, name
+        self._outcome = outcome
+        measured, expected = _vector(outcome.measured), _vector(outcome.expected)
+        is_each = measured is not None and expected is not None and len(expected) == 1
+        self._expected = expected * len(measured) if is_each and measured and expected else expected
+        self._is_direction = outcome.unit == "deg" and len(self._expected or ()) == 3
+        scale = pi / 180 if self._is_direction else 1.0
+        self._start = self._difference_of(outcome)
+        self._exact = _EXACT * scale * (outcome.tolerance or 1e-4) + 1e-9
+
+    def pieces(self, found: Iterator[Slot]) -> Iterator[Piece]:
+        """Yield the pieces that set one slot; none for a criterion that measures no number."""
+        if self._expected is None:
+            return
+        for slot in islice(found, _MAX_SLOTS):
+            for values in dict.fromkeys(self._values(slot)):
+                if slot.sets(values):
+                    yield self._difference.of_sets(slot.sets(values), SOLVED)
+
+    def _values(self, slot: Slot) -> Iterator[Values]:
+        known_residuals: dict[Values, Values | None] = {slot.values: self._start}
+
+        def ask(values: Values) -> Values | None:
+            if values not in known_residuals:
+                known_residuals[values] = self._residual(slot, values)
+            return known_residuals[values]
+
+        columns = [self._column(ask, slot.values, index) for index in range(len(slot.values))]
+        touched = [index for index, column in enumerate(columns) if column is None or any(column)]
+        if not touched:
+            return
+        if _is_turned(slot):
+            for values in plausible(slot.unit, slot.values):
+                if self._is_exact(ask(values)):
+                    yield values
+        start = ask(slot.values)
+        if start is None:
+            return
+        known = {index: column for index in touched if (column := columns[index]) is not None}
+        subsets = [(index,) for index in known] + ([tuple(known)] if len(known) > 1 else [])
+        for subset in subsets:
+            values = self._solved(ask, slot.values, start, {index: known[index] for index in subset})
+            if values is not None:
+                yield values
+
+    def _solved(self, ask: Callable[[Values], Values | None], old: Values, start: Values, columns: Mapping[int, Values]) -> Values | None:
+        """Return values with which nothing remains of the residual: by Newton's method, then with as few digits as possible."""
+        values, residual = old, start
+        for _ in range(_ROUNDS):
+            step = least_squares([columns[index] for index in columns], residual)
+            if step is None:
+                return None
+            values = tuple(value - dict(zip(columns, step, strict=True)).get(index, 0.0) for index, value in enumerate(values))
+            if not all(map(isfinite, values)):
+                return None
+            after = ask(values)
+            if after is None or hypot(*after) > 0.9 * hypot(*residual):
+                return self._short(ask, old, values) if self._is_exact(after) else None
+            residual = after
+            if self._is_exact(after) and hypot(*after) < 1e-9:
+                break
+            columns = {index: column for index in columns if (column := self._column(ask, values, index)) is not None}
+            if not columns:
+                return None
+        return self._short(ask, old, values) if self._is_exact(residual) else None
+
+    def _short(self, ask: Callable[[Values], Values | None], old: Values, values: Values) -> Values | None:
+        for digits in _DIGITS:
+            short = tuple(before if abs(before - value) < _STEP / 10 else value for before, value in zip(old, rounded(values, digits), strict=True))
+            if self._is_exact(ask(short)):
+                return short
+        return values if max(map(abs, values)) < 0.01 and self._is_exact(ask(values)) else None
+
+    def _column(self, ask: Callable[[Values], Values | None], values: Values, index: int) -> Values | None:
+        """Return how what is measured changes with one of the values; None where it cannot be told."""
+        step = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
+        changed = tuple(value + step if other == index else value for other, value in enumerate(values))
+        before, after = ask(values), ask(changed)
+        if before is None or after is None:
+            return None
+        column = tuple((b - a) / step for a, b in zip(before, after, strict=True))
+        return column if any(abs(value) > 1e-6 for value in column) else tuple(0.0 for _ in column)
+
+    def _residual(self, slot: Slot, values: Values) -> Values | None:
+        sets = self._difference.with_twins(slot.sets(values, _precisely))
+        return self._difference_of(self._model.results(sets, (self._name,))[self._name].outcome)
+
+    def _difference_of(self, outcome: Outcome) -> Values | None:
+        actual, expected = _vector(outcome.measured), self._expected
+        if actual is None or expected is None or len(actual) != len(expected) or outcome.unit != self._outcome.unit:
+            return None
+        return tuple(a - b for a, b in zip(actual, expected, strict=True))
+
+    def _is_exact(self, residual: Values | None) -> bool:
+        return residual is not None and all(abs(value) <= self._exact for value in residual)
+
+
+def _precisely(values: Values) -> str:
+    return " ".join(map(repr, values))
+
+
+def _is_turned(slot: Slot) -> bool:
+    """Return whether numbers do not change what is measured in proportion: angles, and the directions of axes."""
+    return slot.unit in ("rad", "1")
+
+
+def _vector(value: object) -> Values | None:
+    """Return numbers that a check measured or expects."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float):
+        return (float(value),)
+    if isinstance(value, tuple) and value and all(isinstance(one, int | float) for one in value):
+        return tuple(map(float, value))
+    return None
+
+
+def least_squares(columns: Sequence[Values], residual: Values) -> Values | None:
+    """Return the numbers with which the sum of columns is nearest to the residual; None where they are not determined."""
+    count = len(columns)
+    rows = [[sum(a * b for a, b in zip(one, other, strict=True)) for other in columns] + [sum(a * b for a, b in zip(one, residual, strict=True))] for one in columns]
+    for index in range(count):
+        pivot = max(range(index, count), key=lambda row: abs(rows[row][index]))
+        if abs(rows[pivot][index]) < 1e-12:
+            return None
+        rows[index], rows[pivot] = rows[pivot], rows[index]
+        for row in range(count):
+            if row != index:
+                factor = rows[row][index] / rows[index][index]
+                rows[row] = [a - factor * b for a, b in zip(rows[row], rows[index], strict=True)]
+    return tuple(rows[index][count] / rows[index][index] for index in range(count))

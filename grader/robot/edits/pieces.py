@@ -1,0 +1,350 @@
+"""The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from grader.difference import Node, Step, likeness, paired, steps
+from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
+from grader.robot.edits.numbers import Values, named, number, values_of, written
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import CHILDREN, TAGS
+
+_MAX_LINKS = 400  # of a robot: more are not compared
+_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
+_ENDS = ("parent", "child")
+
+
+class Piece(NamedTuple):
+    """An edit that may undo a mistake: values that are set, or edits of the text; what is wrong, what to do, and the link concerned.
+
+    The `rank` orders pieces: the reference's own values come first, what fits comes later. `tags` are those of the elements that
+    change.
+    """
+
+    cause: str
+    action: str
+    link: str
+    sets: tuple[Set, ...] = ()
+    edits: Edits = ()
+    rank: int = 0
+    tags: frozenset[str] = frozenset()
+    element: Element | None = None  # that it changes
+
+
+class Difference:
+    """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
+
+    def __init__(self, draft: Draft, reference: Draft) -> None:
+        self.draft, self.reference = draft, reference
+        self.known = {name for robot in (reference.robot,) for name in (*(link.name for link in robot.links), *(one.name for one in robot.materials))}
+        self._names = self._translation()
+
+    def _translation(self) -> dict[str, dict[str, str]]:
+        """Return what the joints and materials of the reference are called in the robot."""
+        names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
+        known = {joint.name for joint in self.reference.robot.joints}
+        for joint in self.reference.joints():
+            own = self.draft.joint_of(end_of(joint, "child"))
+            if own is not None and own.get("name") and own.get("name") not in known:
+                names["joint"][joint.get("name") or ""] = own.get("name") or ""
+        mine = [_node(found) for found in self.draft.root.iterchildren("material")]
+        pairs = paired(mine, [_node(found) for found in self.reference.root.iterchildren("material")])
+        for own_node, like in pairs.both:
+            if own_node.values.get("name") and (own_node.keys == like.keys or likeness(own_node, like) > 0.5):
+                names["material"][like.values.get("name", "")] = own_node.values["name"]
+        return names
+
+    def pieces(self) -> list[Piece]:
+        """Return the pieces, each once: values first, then what moves, is added and is removed."""
+        own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
+        found = [*self._pieces(steps(own, like)), *self._joint_names(), *self._ends()]
+        unique: dict[object, Piece] = {}
+        for piece in found:
+            if piece.sets or piece.edits:
+                unique.setdefault(piece.sets or piece.edits, piece)
+        return list(unique.values())
+
+    def _joint_names(self) -> Iterator[Piece]:
+        """Rename joints as in the reference, also where they are mimicked."""
+        for new, old in self._names["joint"].items():
+            joint = next((it for it in self.draft.joints() if it.get("name") == old), None) if old != new else None
+            if joint is not None:
+                mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
+                sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=1)
+
+    def _ends(self) -> Iterator[Piece]:
+        """Exchange the parent and the child of a joint."""
+        for joint in self.draft.joints():
+            ends = [child_of(joint, role) for role in _ENDS]
+            names = [end_of(joint, role) for role in _ENDS]
+            likes = [self.reference.joint_of(name) for name in names]
+            if any(like is not None and [end_of(like, role) for role in _ENDS] == names[::-1] for like in likes):
+                edits = self.draft.exchange(*ends, "link")  # type: ignore[arg-type]
+                yield self.piece(joint, "parent and child of {} are swapped", "swap parent and child of {}", edits=edits)
+
+    def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
+        children = [child for child in draft.root if isinstance(child.tag, str)]
+        nodes = [_node(child, names) for child in children[: 3 * _MAX_LINKS]]
+        return Node("robot", (), {}, nodes, draft.root)
+
+    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
+        added = {id(step.like): step for step in found if step.verb == "add" and step.own.tag == "robot"}
+        is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
+        for _, group in groupby(found, key=is_set):
+            those = [*group]
+            if those[0].verb in ("set", "unset"):
+                yield from self._of_values(those)
+        for step in found:
+            match step.verb:
+                case "rename":
+                    edits = self.draft.rename_attribute(step.own.of, step.name, step.other)
+                    yield self.piece(step.own.of, f"the name of the attribute {step.other} of {{}}", f"rename {step.name} of {{}} to {step.other}", edits=edits)
+                case "retag" if step.like is not None:
+                    edits = self.draft.rename_tag(step.own.of, step.like.tag)
+                    yield self.piece(step.own.of, f"the name of the tag <{step.like.tag}>", f"rename the tag to <{step.like.tag}>", edits=edits)
+                case "move" if step.parent is not None and step.like is not None:
+                    yield self.moved(step.own.of, step.parent.of)
+                case "add" if step.like is not None:
+                    yield from self._added(step, added)
+                case "remove":
+                    yield from self._removed(step.own)
+
+    def piece(self, element: Element, cause: str, action: str, *, tag: str = "", sets: tuple[Set, ...] = (), edits: Edits = (), rank: int = 0, link: str = "") -> Piece:
+        place = self.draft.described(element, tag, self.known)
+        tags = frozenset(map(str, (element.tag, tag, *(one.tag for one in element.iter()), *(one.attribute for one in sets))))
+        return Piece(cause.replace("{}", place), action.replace("{}", place), link or self.draft.link_of(element), sets, edits, rank, tags, element)
+
+    def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
+        """Yield the values of one element: each alone, and all together."""
+        element: Element = found[0].own.of
+        wanted = {step.name: _wanted(step) for step in found}
+        values = {name: value for name, value in wanted.items() if value is not None}
+        if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
+            yield from self._renamed(element, values.pop("name"))
+        if "" in values:
+            text = values.pop("")
+            yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits=self.draft.write_text(element, text))
+        groups = [(name,) for name in values] + ([tuple(values)] if len(values) > 1 else [])
+        for names in groups:
+            yield self.of_sets([Set(element, "", name, values[name]) for name in names])
+
+    def of_sets(self, sets: Sequence[Set], rank: int = 0) -> Piece:
+        """Return the piece that sets values of one element, named by what is wrong with them."""
+        first = sets[0]
+        tag = first.tag or str(first.owner.tag)
+        old, new, parts, unit = [], [], [], ""
+        is_numeric = True
+        missing = [one.attribute for one in sets if one.element is None or one.attribute not in one.element.attrib]
+        for one in sets:
+            known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
+            before = _read(one, known.default if known else None)
+            is_numeric = is_numeric and known is not None and bool(known.parts)
+            if known is not None and known.parts:
+                unit = known.unit
+                old += before or [0.0] * len(known.parts) if len(before) != len(known.parts) and len(sets) > 1 else before
+                new += values_of(one.value)
+                parts += [part or one.attribute for part in known.parts]
+        names = " and ".join(one.attribute for one in sets)
+        if first.element is None:
+            cause, action = "{} is missing", f"add <{tag}>"
+        elif missing and len(missing) == len(sets):
+            cause, action = f"the {names} of {{}} is missing", f"add the {names} of {{}}"
+        elif is_numeric:
+            cause, action = named("{} of [place]", parts, unit, tuple(old), tuple(new))
+            cause, action = (text.replace("[place]", "{}") for text in (cause, action))
+        else:
+            cause, action = f"the {names} of {{}}", f"set the {names} of {{}} to {' and '.join(one.value for one in sets)}"
+        return self.piece(first.owner, cause, action, tag=first.tag, sets=self.with_twins(sets), rank=rank)
+
+    def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
+        """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
+        found = [*sets]
+        for one in sets:
+            owner, tag = (one.owner, one.tag) if one.tag else (one.owner.getparent(), str(one.owner.tag))
+            if owner is None or (tag != "origin" and owner.tag != "geometry"):
+                continue
+            visual = owner if tag == "origin" else owner.getparent()
+            link = visual.getparent() if visual is not None and visual.tag == "visual" else None
+            if link is None:
+                continue
+            index = [*link.iterchildren("visual")].index(visual)
+            twins = [*link.iterchildren("collision")][index : index + 1]
+            for twin in (*twins, *(link.iterchildren("inertial") if tag == "origin" and index == 0 else ())):
+                inner = twin if tag == "origin" else child_of(twin, "geometry")
+                if inner is not None and (tag == "origin" or child_of(inner, tag) is not None) and self._is_twin(owner, inner, tag, one):
+                    found.append(Set(inner, tag, one.attribute, one.value))
+        return tuple(found)
+
+    def _is_twin(self, owner: Element, inner: Element, tag: str, one: Set) -> bool:
+        """Return whether another element has the value that a visual has, and the reference does not say otherwise."""
+        mine, its = (_normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) for found in (child_of(owner, tag), child_of(inner, tag)))
+        if mine != its or (inner.tag == "inertial" and not mine.strip("0 ")):
+            return False
+        like = self.reference.link(self.draft.link_of(owner))
+        part = inner if tag == "origin" else inner.getparent()
+        other = child_of(like, str(part.tag)) if like is not None and part is not None else None
+        if other is None:
+            return True
+        place = child_of(other, "geometry") if tag != "origin" else other
+        found = child_of(place, tag) if place is not None else None
+        return _normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) == _normal(tag, one.attribute, one.value)
+
+    def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
+        """Rename a link with all that names it, or alone; a joint; a material where it is used, or where it is defined."""
+        tag, old = str(element.tag), element.get("name") or ""
+        cause, action = f"the name of a {tag}", f"correct the name of a {tag}"
+        if tag == "link":
+            if self.draft.link(name) is None or [*self.draft.links()].count(element):
+                edits = renamed(self.draft, old, name)
+                yield self.piece(element, cause, action, edits=edits, link=name)
+        yield from (self.piece(element, cause, action, edits=edits, link=name if tag == "link" else "") for edits in self.draft.write(element, "name", name))
+
+    def moved(self, element: Element, parent: Element) -> Piece:
+        text = self.draft.text(element)
+        there = self.draft.append(text) if parent is self.draft.root else self.draft.insert(parent, text)
+        was = element.getparent()
+        cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
+        return self.piece(element, cause, f"move <{element.tag}> into <{parent.tag}>", edits=(*self.draft.remove(element), *there))
+
+    def text(self, element: Element) -> str:
+        """Return an element of the reference as it is written, with the robot's names."""
+        text = self.reference.text(element)
+        for tag, attribute in (("joint", "joint"), ("material", "name")):
+            for old, new in self._names[tag].items():
+                pattern = rf'(<(?:{tag}|mimic)\b[^>]*\b{attribute}=")({re.escape(old)})(")'
+                text = re.sub(pattern, lambda found, new=new: f"{found[1]}{new}{found[3]}", text) if old != new else text
+        return text
+
+    def _added(self, step: Step, added: Mapping[int, Step]) -> Iterator[Piece]:
+        """Add an element: a link with its joint and its materials where these are missing, too."""
+        like, parent = step.like, step.own.of
+        assert like is not None
+        element, tag = like.of, like.tag
+        if parent is not self.draft.root:
+            yield from self._inner(parent, element)
+            return
+        if tag in ("joint", "link"):
+            name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
+            texts = [self.text(element)]
+            joint = self.reference.joint_of(name)
+            if tag == "link" and any(other.like is not None and other.like.of is joint for other in added.values()):
+                texts.append(self.text(joint))  # type: ignore[arg-type]
+            edits = (*self.draft.append("\n\n".join(texts)), *self._materials(element))
+            what = f"the {tag} {name!r}" if tag == "link" else f"the joint of {name!r}"
+            yield Piece(f"{what} is missing", f"add {what}", name, (), edits, 0, frozenset(map(str, (one.tag for one in element.iter()))))
+            return
+        where = self.draft.insert(self.draft.root, self.text(element)) if tag == "material" else self.draft.append(self.text(element))
+        yield self.piece(self.draft.root, f"<{tag}> is missing", f"add <{tag}>", edits=where)._replace(tags=frozenset(map(str, (one.tag for one in element.iter()))))
+
+    def _materials(self, element: Element) -> Edits:
+        """Return the edits that define the materials of an element of the reference that the robot does not define."""
+        names = dict.fromkeys(found.get("name") or "" for found in element.iter("material"))
+        texts = [self.text(found) for name in names if self._names["material"].get(name) is None and self.draft.material(name) is None for found in [self.reference.material(name)] if found is not None]
+        return self.draft.insert(self.draft.root, "\n".join(texts)) if texts else ()
+
+    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+        tag = str(element.tag)
+        own = child_of(parent, tag)
+        values = {str(key): str(value) for key, value in element.attrib.items()}
+        if own is not None:  # one with default values only, which does not count
+            sets = [Set(own, "", name, value) for name, value in values.items() if _normal(tag, name, own.get(name)) != _normal(tag, name, value)]
+            yield from (self.of_sets([one]) for one in sets)
+            if len(sets) > 1:
+                yield self.of_sets(sets)
+            return
+        if tag in ("origin", "axis") and not len(element):
+            yield self.of_sets([Set(parent, tag, name, value) for name, value in values.items()])
+            if len(values) > 1:
+                yield from (self.of_sets([Set(parent, tag, name, value)]) for name, value in values.items() if _normal(tag, name, value) != _normal(tag, name, None))
+            return
+        others = [child for child in parent if parent.tag == "geometry" and child.tag in CHILDREN["geometry"]]
+        cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
+        if others:
+            cause, action, edits = "the shape of {}", f"make the shape of {{}} a {tag}", self.draft.replace(others[0], self.text(element))
+        else:
+            edits = (*self.draft.insert(parent, self.text(element)), *self._materials_in(element))
+        piece = self.piece(parent, cause, action, edits=edits)
+        yield piece._replace(tags=piece.tags | {str(one.tag) for one in element.iter()})
+
+    def _materials_in(self, element: Element) -> Edits:
+        return self._materials(element.getparent()) if element.tag == "material" and element.getparent() is not None and not len(element) else self._materials(element)  # type: ignore[arg-type]
+
+    def _removed(self, node: Node) -> Iterator[Piece]:
+        """Remove what the reference does not have; an origin or axis gets its default."""
+        element, tag = node.of, node.tag
+        if tag in ("origin", "axis"):
+            defaults = {name: "1 0 0" if tag == "axis" else "0 0 0" for name in node.values}
+            yield from (self.of_sets([Set(element, "", name, value)], 1) for name, value in defaults.items())
+            return
+        if element.getparent() is not None and (element.getparent().tag != "geometry"):  # there the shape is replaced
+            yield self.piece(element, f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}", f"remove the extra <{tag}>", edits=self.draft.remove(element), rank=1)
+
+
+def renamed(draft: Draft, old: str, new: str) -> Edits:
+    """Return the edits that give a link another name, also where joints name it."""
+    own = draft.link(old)
+    ways = draft.write(own, "name", new) if own is not None else []
+    edits = ways[0] if ways else ()
+    for found in draft.joints():
+        for role in _ENDS:
+            end = child_of(found, role)
+            if end is not None and end.get("link") == old:
+                edits += draft.write(end, "link", new)[0]
+    return tuple(dict.fromkeys(edits))  # a parameter of xacro can be both names
+
+
+def _read(one: Set, default: str | None) -> list[float]:
+    element = one.element
+    text = element.get(one.attribute) if element is not None else None
+    return [*values_of(default if text is None else text)]
+
+
+def _wanted(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def _node(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = _normal(tag, str(name), str(value))
+        if tag in TAGS and str(name) in TAGS[tag].attributes and text == _normal(tag, str(name), None):
+            continue
+        kind = "joint" if (tag, name) == ("mimic", "joint") else "material" if tag == "material" and name == "name" else "joint" if tag == "joint" and name == "name" else ""
+        values[str(name)] = (names or {}).get(kind, {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [_node(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
+
+
+def _normal(tag: str, attribute: str, text: str | None) -> str:
+    """Return a value as it is compared: numbers without needless digits, the default where there is none."""
+    known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
+    if text is None:
+        text = known.default or "" if known is not None else ""
+    values: Values = values_of(text) if known is not None and known.parts else ()
+    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
