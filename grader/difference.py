@@ -99,17 +99,14 @@ def _values(own: Node, like: Node) -> Iterator[Step]:
 
 
 def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
-    """Pair nodes: by tag and by each of their keys, then by tag and likeness, then those whose tags differ by little."""
+    """Pair nodes: by tag and all keys, then each of them, then by tag and likeness, then those whose tags differ by little."""
     extra, missing = [*own], [*like]
     both: list[tuple[Node, Node]] = []
     depth = max((len(node.keys) for node in (*own, *like)), default=0)
-    for index in range(depth):
+    for part in (slice(0, depth), *(slice(index, index + 1) for index in range(depth))):
         for other in [*missing]:
-            wanted = other.keys[index : index + 1]
-            found = next(
-                (node for node in extra if node.tag == other.tag and wanted and node.keys[index : index + 1] == wanted),
-                None,
-            )
+            alike = [node for node in extra if node.tag == other.tag and node.keys[part] == other.keys[part]]
+            found = next(iter(alike), None) if any(other.keys[part]) else None
             if found is not None:
                 _pair(found, other, extra, missing, both)
     for other in [*missing]:

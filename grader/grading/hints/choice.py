@@ -16,8 +16,9 @@ from grader.grading.hints.solving import SOLVED, Solver, slots
 from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, joined
 from grader.grading.subjects import named_links
-from grader.robot.edits.conventions import conventions, other_frames
-from grader.robot.edits.draft import Draft
+from grader.robot.edits.conventions import CONVENTION, conventions, other_frames
+from grader.robot.edits.draft import Draft, Set
+from grader.robot.edits.numbers import values_of, written
 from grader.robot.edits.pieces import Difference, Piece
 from grader.robot.kinematics import Configuration
 from grader.submission.raw_xacro import raw_xacro_proposals
@@ -49,6 +50,7 @@ class Look:
         urdf = state.submission.urdf
         self.draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         self._passing: dict[int, frozenset[str]] = {}
+        self._kept: list[Piece] = []  # whose ids are known
 
     @cached_property
     def model(self) -> Model:
@@ -69,7 +71,7 @@ class Look:
             return []
         with self.trials.isolated():
             found = [Piece(it.cause, it.action, "", (), it.edits) for it in self.draft.source.corrections()]
-            return [*found, *self.difference.pieces()]
+            return [*found, *self.difference.pieces]
         return []
 
     def targets(self, criterion: Criterion) -> Targets:
@@ -98,6 +100,7 @@ class Look:
     def passing(self, piece: Piece, wanted: Sequence[str]) -> frozenset[str]:
         """Return the wanted criteria that pass with a piece, as far as a quick look tells."""
         if id(piece) not in self._passing:
+            self._kept.append(piece)
             if piece.sets:
                 results = self.model.results(piece.sets, wanted).values()
                 found = frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
@@ -105,6 +108,30 @@ class Look:
                 found = self.trials.passing(self.state, piece.edits, wanted)
             self._passing[id(piece)] = found
         return self._passing[id(piece)]
+
+    def shrunk(self, piece: Piece, passes: frozenset[str]) -> Piece:
+        """Return a piece without changes of numbers that nothing needs."""
+        if not piece.sets or piece.rank == CONVENTION or piece.is_mistake:
+            return piece
+        first = piece.sets[0]
+        element = first.element
+        old, new = values_of(element.get(first.attribute) if element is not None else None), values_of(first.value)
+        off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
+        if len(old) != len(new) or len(off) < 2:
+            return piece
+        for index in off:
+            fewer = tuple(old[index] if other == index else value for other, value in enumerate(new))
+            if fewer == old:
+                continue
+            smaller = self.difference.of_sets([first._replace(value=written(fewer)), *self._others(piece)], piece.rank)
+            if passes <= self.passing(smaller, [*passes]):
+                piece, new = smaller, fewer
+                self._passing[id(piece)] = passes
+        return piece
+
+    def _others(self, piece: Piece) -> list[Set]:
+        first = piece.sets[0]
+        return [one for one in piece.sets[1:] if one.owner is first.owner and one.tag == first.tag]
 
     def proposals(self, piece: Piece) -> Iterator[Proposal]:
         """Yield the edits of the text that a piece stands for."""
@@ -191,7 +218,7 @@ class Choice:
         for piece in pieces:
             passes = look.passing(piece, lost)
             if name in passes:
-                batch.append(piece)
+                batch.append(look.shrunk(piece, passes))
             if len(passes) == len(lost) or len(batch) == 2 * _MAX_OPTIONS:
                 break
         batch.sort(key=lambda piece: -len(look.passing(piece, lost)))

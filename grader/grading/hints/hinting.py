@@ -23,11 +23,15 @@ if TYPE_CHECKING:
 
 
 class Hinted(NamedTuple):
-    """A report with hints, the edits of all hints that fit together, and the types of exceptions that cost other hints."""
+    """A report with hints, the edits of all hints that fit together, and the types of exceptions that cost other hints.
+
+    `is_complete` says whether the search ended before its budget did.
+    """
 
     report: Report
     edits: Edits
     faults: list[str]
+    is_complete: bool = True
 
 
 def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
@@ -46,7 +50,7 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
         result._replace(hints=(hints[result.criterion.id],)) if result.criterion.id in hints else result
         for result in report.results
     ]
-    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits, trials.faults)
+    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits, trials.faults, search.is_complete)
 
 
 def fixed(found: Hinted, submission: Submission) -> Fix:

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
-from itertools import islice
+from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
 from grader.grading.hints.trials import Edits, State, Trials, gained, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.edits.pieces import Difference
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
@@ -21,6 +21,8 @@ from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # edits of one step that are graded, to choose the best
 _MAX_FALLBACKS = 60
+_MAX_CANDIDATES = 150  # edits of one step that are read
+_STRUCTURE = {"parent", "child"}
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
@@ -95,21 +97,11 @@ def _proven(trials: Trials, proposal: Proposal) -> Hint | None:
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
     """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises NoTrialsLeft."""
     state, reserve = trials.start, trials.left // 2
-    given_up: set[str] = set()
     for _ in range(_MAX_STEPS):
         reading = _reading(state)
-        if reading is None or not state.failed or (reading.verdict == "clean" and not defects(reading)[-1]):
+        if reading is None or not state.failed or (reading.verdict == "clean" and not defects(reading)[-1]) or trials.left < reserve:
             return
-        step = None
-        for cause, proposals in _groups(reading, reference):
-            if cause in given_up:
-                continue
-            if trials.left < reserve:
-                return
-            step = _best(trials, state, proposals)
-            if step is not None:
-                break
-            given_up.add(cause)
+        step = _best(trials, state, reading, islice(_candidates(reading, reference), _MAX_CANDIDATES))
         if step is None:
             return
         yield step
@@ -126,47 +118,45 @@ def _reading(state: State) -> Reading | None:
     return urdf.loaded
 
 
-def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, Iterable[Proposal]]]:
-    """Yield edits that may be the next step, one group for each problem, with what they are to undo."""
-    at = str(remaining(reading.source.text))
-    yield f"text {at}", text_proposals(reading, reference)
+def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
+    """Yield the edits that may be the next step, the most plausible first: of the text, then of its elements."""
+    yield from text_proposals(reading, reference)
     draft = Draft.of(reading)
     if draft is not None:
         difference = Difference(draft, reference or draft)
-        corrections = [Proposal(*correction) for correction in draft.source.corrections()]
-        yield f"corrections {len(corrections)}", corrections
-        yield "misplaced", _proposals(draft, misplaced(difference))
-        for problem in repairable(reading.problems):
-            yield f"{problem.code} {problem.message}", _proposals(draft, pieces_for(difference, problem))
+        yield from (Proposal(*correction) for correction in draft.source.corrections())
+        problems = repairable(reading.problems)
+        own = (pieces_for(difference, problem) for problem in problems)
+        lines = {problem.location.line for problem in problems}
+        near = [piece for piece in difference.pieces if _STRUCTURE & piece.tags or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)]
+        for piece in chain(misplaced(difference), chain.from_iterable(own), near):
+            for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
+                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)
     elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
-        yield f"token {at}", islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
+        yield from islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
 
 
-def _proposals(draft: Draft, pieces: Iterable[Piece]) -> Iterator[Proposal]:
-    for piece in pieces:
-        for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
-            yield Proposal(edits, piece.cause, piece.action, piece.link)
-
-
-def _best(trials: Trials, state: State, proposals: Iterable[Proposal]) -> Step | None:
+def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> Step | None:
     """Return the edit that brings ROS 2 furthest; of several that make it load the file, the one with the best score."""
-    before = _reading(state)
-    assert before is not None
-    now = defects(before)
+    now = defects(reading)
     better: list[tuple[Defects, int, Proposal]] = []
+    complete = 0
     for order, proposal in enumerate(proposals):
         edited = trials.edited(state, proposal.edits)
         urdf = edited.urdf if edited is not None else None
         left = defects(urdf.loaded) if isinstance(urdf, Read) else now
         if left < now:
             better.append((left, order, proposal))
-    best: tuple[tuple[bool, Decimal, Defects], Step] | None = None
-    better.sort(key=lambda found: (found[0][0], found[1]))
+            complete += not any(left[1:])
+        if complete == _MAX_GRADED:
+            break
+    best: tuple[tuple[bool, Decimal, Defects, int], Step] | None = None
+    better.sort(key=lambda found: (found[0], found[1]))
     is_read = bool(better) and better[0][0][0] < 0
     for left, _, proposal in better[: _MAX_GRADED if is_read else 1]:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
-            rank = (left[0] < 0, _score(after), tuple(-count for count in left))
+            rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.size)
             if best is None or rank > best[0]:
                 best = rank, Step(proposal, state, after)
     return best[1] if best is not None else None

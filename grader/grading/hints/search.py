@@ -50,16 +50,17 @@ class Search:
         self._is_another_robot = is_small and is_another_robot(rubric, robot)
         self.found: list[Found] = []
         self.final = trials.start
+        self.is_complete = True  # whether all was searched that may help
         self._given_up: set[tuple[Edits, str]] = set()
 
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
-        if not self.trials.left:
-            return self
+        self.is_complete = False
         with suppress(NoTrialsLeft):
-            for phase in (self._load, self._rounds, self._combine):
+            for phase in (self._load, self._rounds, self._combine) if self.trials.left else ():
                 with self.trials.isolated():
                     phase()
+            self.is_complete = bool(self.trials.left)
         return self
 
     def _rounds(self) -> None:

@@ -38,19 +38,27 @@ _MISTAKES = (
 )
 
 
-def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> tuple[str, str]:
+class Named(NamedTuple):
+    """What is wrong with numbers, what to do, and whether it is a mistake that people make."""
+
+    cause: str
+    action: str
+    is_mistake: bool = False
+
+
+def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
     """Return the mistake in numbers, and what to do; `what` has {} where the names of the wrong parts go."""
     if len(old) != len(new):
-        return what.format("the numbers"), f"set {what.format('the numbers')} to {written(new)}"
+        return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {written(new)}")
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
     wrong = what.format(enumerated([_with_article(parts[index]) for index in off])) if len(off) < 4 else what.format("the numbers")
     for mistake in _MISTAKES:
         fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
         if (not mistake.units or unit in mistake.units) and off and all(fits):
-            return mistake.cause.format(wrong), mistake.action.format(wrong)
+            return Named(mistake.cause.format(wrong), mistake.action.format(wrong), is_mistake=True)
     if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
-        return f"{wrong} are swapped", f"swap {wrong}"
-    return wrong, f"set {wrong} to {enumerated(list(dict.fromkeys(number(new[index]) for index in off)))}"
+        return Named(f"{wrong} are swapped", f"swap {wrong}", is_mistake=True)
+    return Named(wrong, f"set {wrong} to {enumerated(list(dict.fromkeys(number(new[index]) for index in off)))}")
 
 
 def _with_article(part: str) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
@@ -31,6 +32,7 @@ class Piece(NamedTuple):
     rank: int = 0
     tags: frozenset[str] = frozenset()
     element: Element | None = None  # that it changes
+    is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
 
 
 class Difference:
@@ -56,8 +58,9 @@ class Difference:
                 names["material"][like.values.get("name", "")] = own_node.values["name"]
         return names
 
+    @cached_property
     def pieces(self) -> list[Piece]:
-        """Return the pieces, each once: values first, then what moves, is added and is removed."""
+        """The pieces, each once: values first, then what moves, is added and is removed."""
         own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
         found = [*self._pieces(steps(own, like)), *self._joint_names(), *self._ends()]
         unique: dict[object, Piece] = {}
@@ -136,7 +139,7 @@ class Difference:
         first = sets[0]
         tag = first.tag or str(first.owner.tag)
         old, new, parts, unit = [], [], [], ""
-        is_numeric = True
+        is_numeric, is_mistake = True, False
         missing = [one.attribute for one in sets if one.element is None or one.attribute not in one.element.attrib]
         for one in sets:
             known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
@@ -153,11 +156,12 @@ class Difference:
         elif missing and len(missing) == len(sets):
             cause, action = f"the {names} of {{}} is missing", f"add the {names} of {{}}"
         elif is_numeric:
-            cause, action = named("{} of [place]", parts, unit, tuple(old), tuple(new))
-            cause, action = (text.replace("[place]", "{}") for text in (cause, action))
+            mistake = named("{} of [place]", parts, unit, tuple(old), tuple(new))
+            cause, action = (text.replace("[place]", "{}") for text in mistake[:2])
+            is_mistake = mistake.is_mistake
         else:
             cause, action = f"the {names} of {{}}", f"set the {names} of {{}} to {' and '.join(one.value for one in sets)}"
-        return self.piece(first.owner, cause, action, tag=first.tag, sets=self.with_twins(sets), rank=rank)
+        return self.piece(first.owner, cause, action, tag=first.tag, sets=self.with_twins(sets), rank=rank)._replace(is_mistake=is_mistake)
 
     def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
@@ -197,9 +201,8 @@ class Difference:
         tag, old = str(element.tag), element.get("name") or ""
         cause, action = f"the name of a {tag}", f"correct the name of a {tag}"
         if tag == "link":
-            if self.draft.link(name) is None or [*self.draft.links()].count(element):
-                edits = renamed(self.draft, old, name)
-                yield self.piece(element, cause, action, edits=edits, link=name)
+            if sum(link.get("name") == old for link in self.draft.links()) == 1:
+                yield self.piece(element, cause, action, edits=renamed(self.draft, old, name), link=name)
         yield from (self.piece(element, cause, action, edits=edits, link=name if tag == "link" else "") for edits in self.draft.write(element, "name", name))
 
     def moved(self, element: Element, parent: Element) -> Piece:

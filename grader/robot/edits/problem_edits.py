@@ -70,8 +70,7 @@ def _pieces(difference: Difference, element: Element, attribute: str | None) -> 
     for inner in (element, *element):
         yield from _shapes(difference, inner)
     owner = draft.owner(element)
-    own = [piece for piece in difference.pieces() if piece.element is not None and draft.owner(piece.element) is owner]
-    yield from sorted(own, key=lambda piece: piece.rank)
+    yield from _as_in_reference(difference, owner)
     yield from _missing(difference, element)
     yield from _names(difference, element, attribute)
     if tag in ("joint", *_ENDS) or (tag == "link" and attribute is None):
@@ -81,6 +80,12 @@ def _pieces(difference: Difference, element: Element, attribute: str | None) -> 
         if removable.tag in _REMOVABLE:
             yield difference.piece(removable, f"an error in <{removable.tag}>", f"remove the <{removable.tag}>", edits=draft.remove(removable))
         removable = removable.getparent()
+
+
+def _as_in_reference(difference: Difference, owner: Element) -> Iterator[Piece]:
+    for piece in difference.pieces:
+        if piece.element is not None and difference.draft.owner(piece.element) is owner:
+            yield piece
 
 
 def _of_value(difference: Difference, element: Element, attribute: str) -> Iterator[Piece]:
