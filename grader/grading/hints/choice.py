@@ -12,14 +12,14 @@ from grader.edits import Proposal
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.hints.model import Model
-from grader.grading.hints.solving import SOLVED, Solver, slots
+from grader.grading.hints.solving import Solver, slots
 from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, joined
 from grader.grading.subjects import named_links
-from grader.robot.edits.conventions import CONVENTION, conventions, other_frames
+from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft, Set
 from grader.robot.edits.numbers import values_of, written
-from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.edits.pieces import CONVENTION, FITTED, SOLVED, STRUCTURE, Difference, Piece
 from grader.robot.kinematics import Configuration
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
@@ -179,14 +179,14 @@ class Choice:
         )
         best: Proven | None = None
         for number, way in enumerate(ways):
-            if best is not None and number != _WHOLE and (number != _REPAIRED or not self._is_short(look, best, lost)):
+            is_good = best is not None and best.proposal.rank < STRUCTURE
+            if best is not None and is_good and number != _WHOLE and (number != _REPAIRED or not self._is_short(look, best, lost)):
                 continue
             if number == _WHOLE and len(lost) < _MIN_WHOLE:
                 continue
             with self._trials.isolated():
                 found = self._best(state, name, way())
-                if found is not None and (best is None or found.gain > best.gain):
-                    best = found
+                best = min(filter(None, (best, found)), key=_order, default=None)
         return best.proposal if best is not None else None
 
     def _is_short(self, look: Look, best: Proven, lost: Sequence[str]) -> bool:
@@ -204,7 +204,7 @@ class Choice:
                 found.append(proven)
             if len(found) == _MAX_OPTIONS or (proven is not None and proven.gain >= _lost(state.results)):
                 break
-        return min(found, key=lambda one: (one.proposal.rank > SOLVED, -one.gain, one.proposal.rank, one.proposal.size), default=None)
+        return min(found, key=_order, default=None)
 
     def _proven(self, state: State, proposal: Proposal, name: str) -> Proven | None:
         after = self._trials.applied(state, proposal.edits)
@@ -296,13 +296,17 @@ class Choice:
         return name in self._trials.passing(look.state, edits, (name,))
 
 
+def _order(one: Proven) -> tuple[Decimal, int, int]:
+    return -one.gain, one.proposal.rank, one.proposal.size
+
+
 def _compatible(pieces: Iterable[Piece]) -> list[Piece]:
     """Return pieces that do not change the same thing twice."""
     found: list[Piece] = []
     seen: set[object] = set()
     for piece in pieces:
         keys = {one[:3] for one in piece.sets} or {(edit.path, edit.line, edit.column) for edit in piece.edits}
-        if seen.isdisjoint(keys) and piece.rank <= 1:
+        if seen.isdisjoint(keys) and piece.rank <= STRUCTURE:
             found.append(piece)
             seen |= keys
     return found

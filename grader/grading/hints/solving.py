@@ -9,15 +9,15 @@ from grader.checks.outcome import Outcome
 from grader.grading.hints.model import Model
 from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
-from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.edits.pieces import FITTED, SOLVED, Difference, Piece
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
-SOLVED = 4  # the rank of a piece
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
 _STEP = 1e-4
 _ROUNDS = 6
 _DIGITS = range(2, 7)
+_SHORT = 3  # decimals of a number that a person would write
 _MAX_SLOTS = 60
 _OF_JOINT = (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz"), ("limit", ""), ("mimic", ""), ("dynamics", ""))
 
@@ -99,7 +99,8 @@ class Solver:
         for slot in islice(found, _MAX_SLOTS):
             for values in dict.fromkeys(self._values(slot)):
                 if slot.sets(values):
-                    yield self._difference.of_sets(slot.sets(values), SOLVED)
+                    is_short = slot.unit == "rad" or all(rounded((new,), _SHORT)[0] == new for old, new in zip(slot.values, values, strict=True) if old != new)
+                    yield self._difference.of_sets(slot.sets(values), SOLVED if is_short else FITTED)
 
     def _values(self, slot: Slot) -> Iterator[Values]:
         known_residuals: dict[Values, Values | None] = {slot.values: self._start}

@@ -5,7 +5,7 @@ from math import pi
 
 from grader.robot.edits.draft import Draft, Set, child_of, end_of
 from grader.robot.edits.numbers import Values, values_of, written
-from grader.robot.edits.pieces import Difference, Piece
+from grader.robot.edits.pieces import CONVENTION, Difference, Piece
 from grader.robot.frames import placed_by
 from grader.robot.model import Box, Origin
 from grader.robot.transforms import Transform, rotation_from_rpy
@@ -13,7 +13,6 @@ from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
-CONVENTION = 2  # the rank of a piece
 
 
 def conventions(difference: Difference) -> Iterator[Piece]:

@@ -16,6 +16,10 @@ _MAX_LINKS = 400  # of a robot: more are not compared
 _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
 _ENDS = ("parent", "child")
 
+# The ranks of pieces: values of the reference; numbers that are solved for; another structure; numbers that no person would write;
+# conventions of a whole robot.
+KNOWN, SOLVED, STRUCTURE, FITTED, CONVENTION = range(5)
+
 
 class Piece(NamedTuple):
     """An edit that may undo a mistake: values that are set, or edits of the text; what is wrong, what to do, and the link concerned.
@@ -76,7 +80,7 @@ class Difference:
             if joint is not None:
                 mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
                 sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
-                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=1)
+                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
 
     def _ends(self) -> Iterator[Piece]:
         """Exchange the parent and the child of a joint."""
@@ -161,6 +165,8 @@ class Difference:
             is_mistake = mistake.is_mistake
         else:
             cause, action = f"the {names} of {{}}", f"set the {names} of {{}} to {' and '.join(one.value for one in sets)}"
+        is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
+        rank = STRUCTURE if tag in _ENDS else FITTED if is_turned and not is_mistake else rank
         return self.piece(first.owner, cause, action, tag=first.tag, sets=self.with_twins(sets), rank=rank)._replace(is_mistake=is_mistake)
 
     def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
@@ -280,10 +286,10 @@ class Difference:
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):
             defaults = {name: "1 0 0" if tag == "axis" else "0 0 0" for name in node.values}
-            yield from (self.of_sets([Set(element, "", name, value)], 1) for name, value in defaults.items())
+            yield from (self.of_sets([Set(element, "", name, value)], SOLVED) for name, value in defaults.items())
             return
         if element.getparent() is not None and (element.getparent().tag != "geometry"):  # there the shape is replaced
-            yield self.piece(element, f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}", f"remove the extra <{tag}>", edits=self.draft.remove(element), rank=1)
+            yield self.piece(element, f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}", f"remove the extra <{tag}>", edits=self.draft.remove(element), rank=STRUCTURE)
 
 
 def renamed(draft: Draft, old: str, new: str) -> Edits:
