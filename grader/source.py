@@ -2,6 +2,7 @@
 
 import re
 from bisect import bisect_right
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -113,13 +114,17 @@ class Source:
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
 
-    def rewrites(self, tag: int, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
-        """Return the ways to give an attribute of an expanded element another value; None where its text is what is read.
+    def rewrites(self, attribute: str, wanted: "Mapping[int, tuple[str, str]]") -> "list[tuple[Edit, ...]] | None":
+        """Return the ways to give an attribute of expanded elements other values; None where the text is what is read.
 
-        `old` and `new` are the values that the reader sees.
+        `wanted` has the values that the reader sees and should see, by the indices of the elements.
         """
-        del tag, attribute, old, new
+        del attribute, wanted
         return None
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the elements that come from the same text as this one."""
+        return [tag]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
         """Return the calls of the macro of xacro that an edit is in, each with the macro's name; nothing outside of macros."""

@@ -1,171 +1,281 @@
-"""The ways to give an attribute of an expanded element another value: edits of the xacro that it comes from."""
+"""The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
-import re
+A text in a macro is used by each call, in its own scope, and one change of it must give each use what it should be. The texts are
+the attribute itself, and those that define the names in it. Their changes are tried, not derived: small variants of an expression,
+and other numbers, which are solved for.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice, product
+from math import isclose
 from typing import NamedTuple
 
 from grader import markup
 from grader.edits import merged, with_attribute
-from grader.names import closest
 from grader.source import Edit
-from grader.xacro.scopes import Place, Scope, literal
-from grader.xacro.solving import ComputedNumber, Evaluator, Ranked, as_number, definitions
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
+from grader.xacro.scopes import Definition, Key, Place, Scope, literal
 from grader.xacro.texts import PIECE, Texts
-from grader.xacro.variants import EXPRESSION, NAME, variants
+from grader.xacro.variants import ARGUMENT, EXPRESSION, NAME, NUMBER, TOKEN, Slot, numbers, variants, with_number
 from grader.xacro.written import Change, Written, defined, edits_of, written
 
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
-_SINGLE = re.compile(r"\s*\$(?:\{\s*(?:[^\W\d]\w*)\s*\}|\(arg\s+[^\s()]+\s*\))\s*")
-_MAX_WAYS = 6
-_MAX_DEPTH = 6  # names that stand for each other
+_WORK = 300_000  # parts that all evaluations for one document may look at
+_MAX_WAYS = 8
+_MAX_SITES = 10  # texts that one value is computed from
+_MAX_NAMES = 24  # that are tried in place of another one
 _MAX_CHOICES = 3  # for each number, where several change
+_MAX_USES = 12
+_MAX_DIGITS = 6
+_NICE_DIGITS = 3  # more are no number that a student would write into an expression
+_ROUNDS = 4  # of the secant method
+_TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
+_LITERAL = 20  # the rank of a text in place of an expression
 
 Way = tuple[Change, ...]
-_LAST = (9, 0)  # the rank of a number in place of an expression
 
 
-class Token(NamedTuple):
-    """A part of a text without spaces, and the words that it is in the expanded file."""
+class Use(NamedTuple):
+    """A use of a text: the scope in which it is evaluated, what it is, what it should be, and the calls of macros around it."""
+
+    scope: Scope
+    old: str
+    new: str
+    calls: tuple[tuple[str, Place], ...] = ()
+
+
+class Site(NamedTuple):
+    """A text that a value is computed from; `key` is None for the text of the attribute itself."""
 
     written: Written
-    words: list[str]
+    key: Key | None
+    rank: int
 
 
 class Rewriter:
     """Makes the edits of one expanded document."""
 
     def __init__(self, texts: Texts) -> None:
-        self._evaluator = Evaluator(texts)
-        self._numbers: dict[tuple[str, int, int, int, int], ComputedNumber] = {}
+        self._texts = texts
+        self._budget = Budget(_WORK)
+        self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
 
-    def ways(self, place: Place, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
-        """Return the ways to change an attribute at a place that the reader sees as `old`, the most plausible first."""
-        text = written(place, attribute, place.scope or Scope())
-        ways = islice(self._ways(text, old, new, 0), _MAX_WAYS) if text is not None else ()
-        found = [edits for edits in map(edits_of, ways) if edits is not None]
-        if found and text is not None and self._evaluator.text(text.text, text.scope) is None:
-            return found  # a name is misspelt
-        source, start = place.source.element(place.tag)
-        current = markup.attribute(source.text, start, attribute)
-        raw = source.text[current.value_start : current.value_end] if current is not None else ""
-        found.append((with_attribute(source, start, attribute, merged(raw, new)),))
-        return list(dict.fromkeys(found))
+    def ways(self, place: Place, attribute: str, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
+        """Return the ways to change an attribute (or, without a name, the text) at a place for its uses, the most plausible first.
 
-    def _ways(self, text: Written, old: str, new: str, depth: int) -> "list[Way]":
-        """Return the ways to make a text another one after expansion."""
-        if depth > _MAX_DEPTH:
-            return []
-        value = self._evaluator.text(text.text, text.scope)
-        if value is None:
-            return [*self._respelled(text), *self._repaired(text, new)]
-        if not _same(value, old):
-            return []  # a name has another value by now
-        are_numbers = all(as_number(word) is not None for word in (*old.split(), *new.split()))
-        if are_numbers and len(old.split()) == len(new.split()):
-            return self._of_numbers(text, old.split(), new.split(), depth)
-        return self._of_text(text, old, new, depth)
+        Those with which all uses get what they should be come first, then those for the changed ones.
+        """
+        text = written(place, attribute, uses[0].scope)
+        changed = [use for use in uses if not _same(use.old, use.new)]
+        found: list[tuple[Edit, ...]] = []
+        for several in (uses, changed) if len(changed) < len(uses) else (uses,):
+            ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0]) if text is not None else []
+            found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
+            found += [] if found else self._at_calls(text, several) if text is not None else []
+            if found:
+                break
+        values = {use.new for use in changed}
+        if attribute and len(values) == 1:
+            source, start = place.source.element(place.tag)
+            current = markup.attribute(source.text, start, attribute)
+            raw = source.text[current.value_start : current.value_end] if current is not None else ""
+            found.insert(_MAX_WAYS - 1, (with_attribute(source, start, attribute, merged(raw, changed[0].new)),))
+        return list(dict.fromkeys(found))[:_MAX_WAYS]
 
-    def _respelled(self, text: Written) -> list[Way]:
-        """Return the ways to correct a name that is not defined."""
-        ways: list[Way] = []
-        for expression in EXPRESSION.finditer(text.text):
-            for name in NAME.finditer(expression[1]):
-                near = closest(name[0], text.scope.names()) if text.scope.holder(name[0]) is None else None
-                if near is not None:
-                    start = expression.start(1) + name.start()
-                    ways.append((Change(text.part(start, start + len(name[0])), near),))
-        return ways
+    def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+        """Yield the changes with which a text is what its uses need, each with its rank."""
+        values = [self._value(text.text, use.scope) for use in uses]
+        if any(value is not None and not _same(value, use.old) for value, use in zip(values, uses, strict=True)):
+            return  # a name has another value by now
+        yield from self._changes(text, text, uses, 0)
+        if None not in values:
+            yield from self._of_tokens(text, uses)
+            yield from self._of_pieces(text, uses)
 
-    def _repaired(self, text: Written, new: str) -> list[Way]:
-        """Return the changes of an expression that fails which give the wanted value, as ${side} for ${-side}."""
-        names, signs = self._evaluator.names(text.scope)
-        values = ((other, self._evaluator.text(other, text.scope)) for _, other in variants(text.text, names, signs))
-        return [(Change(text, other),) for other, value in values if value is not None and _same(value, new)]
+    def _of_tokens(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+        """Yield changes of a list of numbers: those of each that is wrong."""
+        tokens = [text.part(*match.span()) for match in TOKEN.finditer(text.text)]
+        words = [[(self._value(token.text, use.scope) or "").split() for token in tokens] for use in uses]
+        choices: list[list[tuple[int, Way]]] = []
+        for index, token in enumerate(tokens if len(tokens) > 1 else ()):
+            own: list[Use] = []
+            for use, found in zip(uses, words, strict=True):
+                start, end = (sum(map(len, found[:stop])) for stop in (index, index + 1))
+                if sum(map(len, found)) != len(use.new.split()) or [word for those in found for word in those] != use.old.split():
+                    return
+                own.append(use._replace(old=" ".join(found[index]), new=" ".join(use.new.split()[start:end])))
+            if not all(_same(use.old, use.new) for use in own):
+                ways = sorted(islice(self._changes(token, token, own, 0), 40), key=lambda way: way[0])
+                choices.append([*ways[: _MAX_WAYS if not choices else _MAX_CHOICES]])
+        for parts in islice(product(*choices), 4 * _MAX_WAYS) if choices else ():
+            yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
 
-    def _of_numbers(self, text: Written, old: list[str], new: list[str], depth: int) -> list[Way]:
-        choices: list[list[Way]] = []
-        for token, wanted in self._tokens(text, old, new):
-            if not _same(" ".join(token.words), " ".join(wanted)):
-                choices.append(self._of_token(token, wanted, depth)[: _MAX_WAYS if not choices else _MAX_CHOICES])
-        if len(choices) > 1:
-            choices = [ways[:_MAX_CHOICES] for ways in choices]
-        ways = [sum(parts, ()) for parts in islice(product(*choices), 4 * _MAX_WAYS)] if choices else []
-        return [way for way in ways if edits_of(way) is not None]
-
-    def _tokens(self, text: Written, old: list[str], new: list[str]) -> list[tuple[Token, list[str]]]:
-        """Return the parts of a text, each with the words that it should be; none where they cannot be told apart."""
-        found: list[tuple[Token, list[str]]] = []
-        position = 0
-        for match in _TOKEN.finditer(text.text):
-            part = text.part(*match.span())
-            words = (self._evaluator.text(part.text, part.scope) or "").split()
-            end = position + len(words)
-            found.append((Token(part, words), new[position:end]))
-            position = end
-        return found if [word for token, _ in found for word in token.words] == old else []
-
-    def _of_token(self, token: Token, wanted: list[str], depth: int) -> list[Way]:
-        part, words = token
-        plain: Way = (Change(part, " ".join(wanted)),)
-        if len(words) != 1:
-            inner = self._of_name(part, " ".join(words), " ".join(wanted), depth)
-            return [*(inner or self._in_list(token, wanted)), plain]
-        kept = Change(part, merged(part.text, wanted[0]))
-        if "$" not in part.text:
-            signed = [ranked for ranked in self._number(part).changes(float(wanted[0])) if "$" in ranked.change.new]
-            return [(kept,), *((ranked.change,) for ranked in signed[:1])]
-        changes = [*self._number(part).changes(float(wanted[0]))[: _MAX_WAYS - 1], Ranked(_LAST, kept)]
-        return [(ranked.change,) for ranked in changes]
-
-    def _in_list(self, token: Token, wanted: list[str]) -> list[Way]:
-        """Return the ways to change one of the numbers that an expression gives, as ${colours['green']}."""
-        off = [index for index, pair in enumerate(zip(token.words, wanted, strict=True)) if not _same(*pair)]
-        changes = self._number(token.written, off[0]).changes(float(wanted[off[0]])) if len(off) == 1 else []
-        return [(ranked.change,) for ranked in changes]
-
-    def _number(self, part: Written, index: int = 0) -> ComputedNumber:
-        key = part.source.path, part.start, part.end, id(part.scope), index
-        if key not in self._numbers:
-            self._numbers[key] = ComputedNumber(self._evaluator, part, index)
-        return self._numbers[key]
-
-    def _of_name(self, text: Written, old: str, new: str, depth: int) -> list[Way]:
-        """Return the ways to change what a name stands for."""
-        if not _SINGLE.fullmatch(text.text):
-            return []
-        ways: list[Way] = []
-        for definition in definitions(text, self._evaluator):
-            inner = defined(definition)
-            if inner is not None and inner.text != literal(inner.text) == old:
-                inner = inner.part(1, len(inner.text) - 1)  # in quotes
-            ways += self._ways(inner, old, new, depth + 1) if inner is not None else []
-        return ways
-
-    def _of_text(self, text: Written, old: str, new: str, depth: int) -> list[Way]:
-        """Return the ways to change one part of a text: one that is written out, or what a name stands for."""
+    def _of_pieces(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+        """Yield changes of one part of a text: one that is written out, or what a name stands for."""
         pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
-        values = [self._evaluator.text(piece.text, piece.scope) or "" for piece in pieces]
-        if "".join(values) != old:
-            return []
-        literals: list[Way] = []
-        named: list[Way] = []
-        for index, piece in enumerate(pieces):
-            before, after = "".join(values[:index]), "".join(values[index + 1 :])
-            if len(new) < len(before) + len(after) or not (new.startswith(before) and new.endswith(after)):
-                continue
-            middle = new[len(before) : len(new) - len(after)]
-            if "$" not in piece.text:
-                literals.append((Change(piece, middle),))
-            else:
-                named += self._of_name(piece, values[index], middle, depth)
-        return [*literals, *named]
+        values = [[self._value(piece.text, use.scope) or "" for piece in pieces] for use in uses]
+        for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
+            own = [*filter(None, (_middle(use, found, index) for use, found in zip(uses, values, strict=True)))]
+            if len(own) == len(uses):
+                yield from ((rank + 1, way) for rank, way in self._changes(piece, piece, own, 0))
+
+    def _changes(self, root: Written, text: Written, uses: Sequence[Use], depth: int) -> Iterator[tuple[int, Way]]:
+        """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
+        for site in self._sites(root, uses[0].scope):
+            for rank, other in self._candidates(site, root, uses):
+                yield rank + 2 * site.rank, (Change(site.written, other),)
+        new = {use.new for use in uses}
+        if len(new) == 1 and "$" not in root.text:
+            yield 0, (Change(root, merged(root.text, new.pop()) if as_number(root.text) is not None else new.pop()),)
+        elif len(new) == 1:
+            yield _LITERAL, (Change(root, new.pop()),)
+
+    def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+        text = site.written.text
+
+        def fits(other: str) -> bool:
+            return all(_near(self._with(site, root, other, use), use.new) for use in uses)
+
+        kinds: set[int] = set()
+        for kind, other in variants(text, *self._names(site.written.scope)):
+            if kind not in kinds and fits(other):
+                kinds.add(kind)
+                yield kind, other
+        new = {use.new for use in uses}
+        if site.key is not None and len(new) == 1:
+            plain = new.pop()
+            quoted = f"'{plain}'" if text != literal(text) and as_number(text) is None else plain
+            if fits(quoted):
+                yield (NUMBER if "$" not in text else _LITERAL), merged(text, quoted) if as_number(text) is not None else quoted
+        for slot in numbers(text):
+            solution = self._solution(site, root, slot, uses)
+            is_plain = slot.end - slot.start == len(text.strip())
+            if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
+                yield NUMBER + (not is_plain), solution[0]
+
+    def _solution(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> tuple[str, int] | None:
+        """Return the text with the number in a slot that gives what the uses need, and how many digits it has."""
+        wanted, first = as_number(uses[0].new), next((use for use in uses if not _same(use.old, use.new)), uses[0])
+        wanted = as_number(first.new)
+        if wanted is None:
+            return None
+
+        def of(value: float) -> float | None:
+            return as_number(self._with(site, root, with_number(site.written.text, slot, repr(value)), first))
+
+        found = secant(of, slot.value, wanted)
+        if found is None and wanted:  # a divisor: 1/f is linear
+            found = secant(lambda value: 1.0 / (of(value) or 0.0), slot.value, 1.0 / wanted)
+        for digits in range(1, _MAX_DIGITS + 1) if found is not None else ():
+            text = with_number(site.written.text, slot, decimal(found or 0.0, digits))
+            if all(_near(self._with(site, root, text, use), use.new) for use in uses):
+                return text, digits
+        return None
+
+    def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
+        """Return the edits that give calls of a macro a value of their own, where they have the default."""
+        defaults = [it for it in self._definitions(text, uses[0].scope) if it.attribute == "params"]
+        edits: list[Edit] = []
+        for use in uses:
+            if not _same(use.old, use.new) and use.calls:
+                for definition in defaults:
+                    for value in (use.new, f"'{use.new}'"):
+                        if _near(self._value(text.text, use.scope, {definition.key: value}), use.new):
+                            source, start = use.calls[-1][1].source.element(use.calls[-1][1].tag)
+                            edits.append(with_attribute(source, start, definition.name, value))
+                            break
+        return [tuple(dict.fromkeys(edits))] if edits else []
+
+    def _sites(self, root: Written, scope: Scope) -> list[Site]:
+        sites: dict[Key | None, Site] = {None: Site(root._replace(scope=scope), None, 0)}
+        pending = [root._replace(scope=scope)]
+        while pending and len(sites) < _MAX_SITES:
+            for definition in self._definitions(pending[0], pending.pop(0).scope):
+                text = defined(definition)
+                if text is not None and definition.key not in sites:
+                    is_given = definition.attribute not in ("params", "value", "default")
+                    sites[definition.key] = Site(text, definition.key, 0 if is_given else 1)
+                    pending.append(text)
+        return list(sites.values())
+
+    def _definitions(self, text: Written, scope: Scope) -> Iterator[Definition]:
+        """Yield where the names in the expressions of a text are defined."""
+        for expression in EXPRESSION.findall(text.text):
+            for name in NAME.findall(expression):
+                holder = scope.holder(name)
+                definition = holder.properties[name].definition if holder is not None else None
+                if definition is not None:
+                    yield definition
+        defaults = self._texts.defaults
+        yield from (defaults[name] for name in ARGUMENT.findall(text.text) if name in defaults)
+
+    def _with(self, site: Site, root: Written, text: str, use: Use) -> str | None:
+        return self._value(text, use.scope) if site.key is None else self._value(root.text, use.scope, {site.key: text})
+
+    def _value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
+        """Return what a text is in the expanded file; None if it has no value, or the budget is spent."""
+        try:
+            return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
+        except (ExpressionFails, Undetermined, OutOfBudget, RecursionError):
+            return None
+
+    def _names(self, scope: Scope) -> tuple[list[str], list[str]]:
+        """Return the names that have values in a scope, and those of the innermost macro."""
+        if id(scope) not in self._known:
+            found = [name for name in dict.fromkeys(scope.names()[:_MAX_NAMES]) if self._value(f"${{{name}}}", scope) is not None]
+            own = scope.properties if scope.parent is not None else {}
+            self._known[id(scope)] = scope, (found, [name for name in found if name in own])
+        return self._known[id(scope)][1]
+
+
+def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:
+    """Return what one part of a text is and should be, if the others stay."""
+    before, after = "".join(values[:index]), "".join(values[index + 1 :])
+    if "".join(values) != use.old or len(use.new) < len(before) + len(after) or not (use.new.startswith(before) and use.new.endswith(after)):
+        return None
+    return use._replace(old=values[index], new=use.new[len(before) : len(use.new) - len(after)])
+
+
+def as_number(text: str | None) -> float | None:
+    """Return a text as a number; None if it is none."""
+    try:
+        return float(text) if text is not None and "_" not in text else None
+    except ValueError:
+        return None
+
+
+def _near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
+    """Return whether a text, or each number in it, is as good as the wanted one."""
+    if text is None or text == wanted:
+        return text == wanted
+    pairs = [(as_number(a), as_number(b)) for a, b in zip(text.split(), wanted.split(), strict=False)]
+    is_alike = len(text.split()) == len(wanted.split()) and bool(pairs)
+    return is_alike and all(a is not None and b is not None and isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs)
 
 
 def _same(one: str, other: str) -> bool:
-    """Return whether two texts, or two lists of numbers, are the same."""
-    if one == other:
-        return True
-    pairs = [(as_number(a), as_number(b)) for a, b in zip(one.split(), other.split(), strict=False)]
-    return len(one.split()) == len(other.split()) and all(
-        a is not None and b is not None and abs(a - b) < 1e-9 for a, b in pairs
-    )
+    return _near(one, other, 1e-9)
+
+
+def secant(of: Callable[[float], float | None], start: float, wanted: float) -> float | None:
+    """Return where a function has the wanted value; None if a few steps of the secant method do not find it."""
+    before, x = start, start + 1e-3 + abs(start) / 64
+    try:
+        value, now = of(before), of(x)
+        for _ in range(_ROUNDS):
+            if value is None or now is None or now == value:
+                return None
+            before, x = x, x + (wanted - now) * (x - before) / (now - value)
+            value, now = now, of(x)
+            if now is not None and abs(wanted - now) <= 1e-9 * (1 + abs(wanted)):
+                return x
+    except (ZeroDivisionError, OverflowError):
+        pass
+    return None
+
+
+def decimal(value: float, digits: int) -> str:
+    """Return a number with so many significant digits, without an exponent where it can be."""
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-9 < abs(value) < 1e9:
+        text = f"{float(text):.9f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text

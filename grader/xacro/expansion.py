@@ -98,13 +98,34 @@ class ExpandedSource(Source):
         place = self._nodes[tag].place
         return place.source.element(place.tag)
 
-    def rewrites(self, tag: int, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
-        """Return the ways to give an attribute of an expanded element another value, the most plausible first."""
-        node = self._nodes[tag]
-        moved = node.moved.get(attribute)
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[tuple[Edit, ...]]:
+        """Return the ways to give an attribute, or without a name the text, of expanded elements of one place other values."""
+        first = self._nodes[next(iter(wanted))]
+        moved = first.moved.get(attribute)
+        from grader.xacro.edits import Use
+
         if moved is not None:
-            return self._rewriter.ways(moved, "value", old, new)
-        return self._rewriter.ways(node.place, attribute, old, new)
+            old, new = next(iter(wanted.values()))
+            return self._rewriter.ways(moved, "value", [Use(moved.scope or Scope(), old, new)])
+        uses = []
+        for tag in self.siblings(next(iter(wanted))):
+            node = self._nodes[tag]
+            text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
+            old, new = wanted.get(tag, (text, text))
+            uses.append(Use(node.place.scope or Scope(), old, new, node.place.calls or ()))
+        return self._rewriter.ways(first.place, attribute, uses)
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the expanded elements that come from the same place of the source."""
+        place = self._nodes[tag].place
+        return self._by_place[place.source.path, place.tag]
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, int], list[int]]:
+        found: dict[tuple[str, int], list[int]] = {}
+        for index, node in enumerate(self._nodes):
+            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return found
 
     def corrections(self) -> list[Correction]:
         """Return the edits that may correct XML that is not well-formed, or names which are not defined."""

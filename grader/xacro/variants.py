@@ -12,8 +12,12 @@ _OPERATOR = re.compile(r"(?<=[\w.)\s])(?<!\*)[-+*/](?![*/])")
 _OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
 _DIVIDED = re.compile(r"/\s*[\d.]+\Z")
 _TERM = re.compile(r"[\w.]+")
-_MAX_VARIANTS = 60  # of one text
-SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(6)  # kinds of changes, the most plausible first
+TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
+_LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
+_WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
+_MAX_VARIANTS = 80  # of one text
+SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(7)  # kinds of changes, the most plausible first
 
 
 class Slot(NamedTuple):
@@ -41,23 +45,29 @@ def with_number(text: str, slot: Slot, number: str) -> str:
     return f"{text[: slot.start]}{shown}{text[slot.end :]}"
 
 
-def variants(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
+def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tuple[int, str]]:
     """Yield texts with one change of an expression, each with its rank: the smaller, the more plausible.
 
-    `names` are known at this place; those in `signs` have the value 1 or -1.
+    `names` are known at this place; `own` are the parameters of the macro around it.
     """
+    if _LOOSE.search(text):  # {side}, $(side) and $side
+        yield SPELLING, _LOOSE.sub(lambda found: f"${{{found[1] or found[2] or found[3]}}}", text)
+    if text.count("${") > text.count("}"):
+        yield from ((SPELLING, f"{text[:end]}}}{text[end:]}") for end in (found.end() for found in re.finditer(r"[\w)](?=\s|\Z)", text)))
+    for found in _WORD.finditer(text) if "${" not in text else ():  # the name of a parameter, not its value
+        yield from ((SPELLING, f"{text[: found.start()]}${{{name}}}{text[found.end() :]}") for name in own if name == found[0])
     for found in EXPRESSION.finditer(text):
         start, end = found.span(1)
-        for _, (rank, inner) in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, signs), strict=False):
+        for _, (rank, inner) in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, own), strict=False):
             yield rank, f"{text[:start]}{inner}{text[end:]}"
     if _PLAIN.fullmatch(text):
         number = text.strip()
-        for sign in signs:
+        for sign in own:
             for magnitude in (number.lstrip("+-"), number):
                 yield FACTOR, f"${{{sign}*{magnitude}}}"
 
 
-def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
+def _of_expression(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tuple[int, str]]:
     stripped = text.strip()
     whole = stripped if _TERM.fullmatch(stripped) else f"({stripped})"
     if stripped.startswith("-"):
@@ -66,9 +76,13 @@ def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Ite
     yield SIGN, f"-{whole}"
     for found in _OPERATOR.finditer(text):
         yield OPERATOR, f"{text[: found.start()]}{_OTHER[found[0]]}{text[found.end() :]}"
-    for sign in signs:
-        yield FACTOR, f"{sign}*{whole}"
-        yield from ((FACTOR, without) for without in _without(rf"\b{sign}\s*\*\s*", text))
+    for inner in re.finditer(r"(?<!\w)\(([^()]*)\)", text):
+        yield OPERATOR, f"{text[: inner.start()]}{inner[1]}{text[inner.end() :]}"
+    for gap in re.finditer(r"(?<=[\w)])\s+(?=[\w(])", text):
+        yield from ((OPERATOR, f"{text[: gap.start()]} {sign} {text[gap.end() :]}") for sign in "+-*/")
+    for factor in (*own, "radians"):
+        yield FACTOR, f"radians({stripped})" if factor == "radians" else f"{factor}*{whole}"
+        yield from ((FACTOR, without) for without in _without(rf"\b{factor}\s*\*\s*", text))
     if not _DIVIDED.search(stripped):
         yield HALF, f"{stripped}/2"
         yield HALF, f"{whole}/2"

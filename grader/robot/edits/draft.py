@@ -101,17 +101,33 @@ class Draft:
         what = " ".join(path[:1] + path[1:][-1:])
         return f"the {what} of {name!r}" if name in known and what != "link" else f"the link {name!r}" if name in known else f"the {what}"
 
-    def ways(self, sets: Iterable[Set]) -> list[Edits]:
+    def siblings(self, element: Element) -> list[Element]:
+        """Return the elements that come from the same text of xacro, with this one."""
+        return [self._elements[tag] for tag in self.source.siblings(self._tags[element])]
+
+    def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
+        """Return the values that are set for the elements that come from the same text as one."""
+        same = [it for it in self.siblings(element) if it is not element]
+        return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
+
+    def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
         found: list[Edits] = [()]
         attributes: dict[Element, dict[str, str]] = {}
         children: dict[tuple[Element, str], dict[str, str]] = {}
+        done: set[tuple[Element, str]] = set()
         for one in dict.fromkeys(sets):
             element = one.element
+            if element is not None and (element, one.attribute) in done:
+                continue
             if element is None:
                 children.setdefault((one.owner, one.tag), {})[one.attribute] = one.value
             elif one.attribute in element.attrib:
-                found = [(*before, *more) for before in found for more in self.set(element, one.attribute, one.value)]
+                others = self._siblings(element, one.attribute, sets)
+                done |= {(it, one.attribute) for it in others}
+                value = merged(element.get(one.attribute) or "", one.value)
+                ways = self._written(element, one.attribute, value, others)
+                found = [(*before, *more) for before in found for more in ways]
             else:
                 attributes.setdefault(element, {})[one.attribute] = one.value
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
@@ -156,8 +172,14 @@ class Draft:
 
     def write(self, element: Element, attribute: str, value: str) -> list[Edits]:
         """Return the ways to give an attribute another text."""
-        old, tag = element.get(attribute) or "", self._tags[element]
-        ways = self.source.rewrites(tag, attribute, old, escaped(value))
+        return self._written(element, attribute, value, {})
+
+    def _written(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
+        """Return the ways to give an attribute another text, and elements that come from the same text others."""
+        tag = self._tags[element]
+        wanted = {tag: (element.get(attribute) or "", escaped(value))}
+        wanted |= {self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()}
+        ways = self.source.rewrites(attribute, wanted)
         if ways is not None:
             return ways
         source, start = self.source.element(tag)
@@ -165,7 +187,11 @@ class Draft:
 
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
-        source, start = self.source.element(self._tags[element])
+        tag = self._tags[element]
+        ways = self.source.rewrites("", {tag: ((element.text or "").strip(), escaped(text))})
+        if ways:
+            return ways[0]
+        source, start = self.source.element(tag)
         head, is_empty = markup.head_end(source.text, start)
         end = source.text.rfind("</", head, markup.element_end(source.text, start))
         if is_empty or end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
@@ -202,6 +228,7 @@ class Draft:
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+        added = self.source.adapted(self._tags[element], added)
         return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
 
     def places(self) -> dict[Location, tuple[Element, str | None]]:

@@ -46,6 +46,7 @@ class Difference:
         self.draft, self.reference = draft, reference
         self.known = {name for robot in (reference.robot,) for name in (*(link.name for link in robot.links), *(one.name for one in robot.materials))}
         self._names = self._translation()
+        self._wanted: dict[tuple[Element, str], str] = {}
 
     def _translation(self) -> dict[str, dict[str, str]]:
         """Return what the joints and materials of the reference are called in the robot."""
@@ -66,7 +67,9 @@ class Difference:
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
         own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
-        found = [*self._pieces(steps(own, like)), *self._joint_names(), *self._ends()]
+        found_steps = steps(own, like)
+        self._wanted = {(step.own.of, step.name): value for step in found_steps if step.verb in ("set", "unset") and (value := _wanted(step))}
+        found = [*self._pieces(found_steps), *self._joint_names(), *self._ends()]
         unique: dict[object, Piece] = {}
         for piece in found:
             if piece.sets or piece.edits:
@@ -173,6 +176,11 @@ class Difference:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
         found = [*sets]
         for one in sets:
+            element = one.element
+            for sibling in self.draft.siblings(element) if element is not None else ():
+                if sibling is not element and (sibling, one.attribute) in self._wanted:
+                    found.append(Set(sibling, "", one.attribute, self._wanted[sibling, one.attribute]))
+        for one in [*found]:
             owner, tag = (one.owner, one.tag) if one.tag else (one.owner.getparent(), str(one.owner.tag))
             if owner is None or (tag != "origin" and owner.tag != "geometry"):
                 continue
