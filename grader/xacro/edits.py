@@ -16,7 +16,7 @@ from grader.source import Edit
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.scopes import Definition, Key, Place, Scope, literal
 from grader.xacro.texts import PIECE, Texts
-from grader.xacro.variants import ARGUMENT, EXPRESSION, NAME, NUMBER, TOKEN, Slot, numbers, variants, with_number
+from grader.xacro.variants import ARGUMENT, EXPRESSION, NAME, NUMBER, OTHER_NUMBER, TOKEN, Slot, numbers, variants, with_number
 from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
@@ -120,7 +120,9 @@ class Rewriter:
 
     def _changes(self, root: Written, text: Written, uses: Sequence[Use], depth: int) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
-        for site in self._sites(root, uses[0].scope):
+        changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
+        sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
+        for site in sites.values():
             for rank, other in self._candidates(site, root, uses):
                 yield rank + 2 * site.rank, (Change(site.written, other),)
         new = {use.new for use in uses}
@@ -150,11 +152,11 @@ class Rewriter:
             solution = self._solution(site, root, slot, uses)
             is_plain = slot.end - slot.start == len(text.strip())
             if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
-                yield NUMBER + (not is_plain), solution[0]
+                yield NUMBER if is_plain or solution[1] == 1 else OTHER_NUMBER, solution[0]
 
     def _solution(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> tuple[str, int] | None:
         """Return the text with the number in a slot that gives what the uses need, and how many digits it has."""
-        wanted, first = as_number(uses[0].new), next((use for use in uses if not _same(use.old, use.new)), uses[0])
+        first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
         wanted = as_number(first.new)
         if wanted is None:
             return None

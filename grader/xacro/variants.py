@@ -17,7 +17,7 @@ ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
 _WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
 _MAX_VARIANTS = 80  # of one text
-SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(7)  # kinds of changes, the most plausible first
+SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NUMBER, OTHER_NAME = range(8)  # kinds of changes, the most plausible first
 
 
 class Slot(NamedTuple):
@@ -81,8 +81,8 @@ def _of_expression(text: str, names: Sequence[str], own: Sequence[str]) -> Itera
     for gap in re.finditer(r"(?<=[\w)])\s+(?=[\w(])", text):
         yield from ((OPERATOR, f"{text[: gap.start()]} {sign} {text[gap.end() :]}") for sign in "+-*/")
     for factor in (*own, "radians"):
-        yield FACTOR, f"radians({stripped})" if factor == "radians" else f"{factor}*{whole}"
         yield from ((FACTOR, without) for without in _without(rf"\b{factor}\s*\*\s*", text))
+        yield FACTOR, f"radians({stripped})" if factor == "radians" else f"{factor}*{whole}"
     if not _DIVIDED.search(stripped):
         yield HALF, f"{stripped}/2"
         yield HALF, f"{whole}/2"

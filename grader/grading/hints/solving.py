@@ -99,8 +99,9 @@ class Solver:
         for slot in islice(found, _MAX_SLOTS):
             for values in dict.fromkeys(self._values(slot)):
                 if slot.sets(values):
+                    is_one = sum(old != new for old, new in zip(slot.values, values, strict=True)) == 1
                     is_short = slot.unit == "rad" or all(rounded((new,), _SHORT)[0] == new for old, new in zip(slot.values, values, strict=True) if old != new)
-                    yield self._difference.of_sets(slot.sets(values), SOLVED if is_short else FITTED)
+                    yield self._difference.of_sets(slot.sets(values), SOLVED if is_short and is_one else FITTED)
 
     def _values(self, slot: Slot) -> Iterator[Values]:
         known_residuals: dict[Values, Values | None] = {slot.values: self._start}

@@ -169,15 +169,16 @@ class Difference:
         else:
             cause, action = f"the {names} of {{}}", f"set the {names} of {{}} to {' and '.join(one.value for one in sets)}"
         is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
+        all_sets = self.with_twins(sets, is_known=rank == KNOWN)
         rank = STRUCTURE if tag in _ENDS else FITTED if is_turned and not is_mistake else rank
-        return self.piece(first.owner, cause, action, tag=first.tag, sets=self.with_twins(sets), rank=rank)._replace(is_mistake=is_mistake)
+        return self.piece(first.owner, cause, action, tag=first.tag, sets=all_sets, rank=rank)._replace(is_mistake=is_mistake)
 
-    def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
+    def with_twins(self, sets: Sequence[Set], *, is_known: bool = False) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
         found = [*sets]
         for one in sets:
             element = one.element
-            for sibling in self.draft.siblings(element) if element is not None else ():
+            for sibling in self.draft.siblings(element) if element is not None and is_known else ():
                 if sibling is not element and (sibling, one.attribute) in self._wanted:
                     found.append(Set(sibling, "", one.attribute, self._wanted[sibling, one.attribute]))
         for one in [*found]:
