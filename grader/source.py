@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -136,8 +136,9 @@ class Source:
         del tag
         return xml
 
-    def corrections(self) -> list[Correction]:
-        """Return the edits that may correct what xacro refuses: its XML, or names which are not defined."""
+    def corrections(self, names: Sequence[str] = (), numbers: Sequence[str] = ()) -> list[Correction]:
+        """Return the edits that may correct what xacro refuses; `names` and `numbers` are those that a reference has."""
+        del names, numbers
         return []
 
 

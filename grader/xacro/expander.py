@@ -11,7 +11,7 @@ from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
+from grader.xacro.scopes import Place, Reported, Scope, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
@@ -69,7 +69,7 @@ class Expander:
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
-        self.unknown: list[tuple[UnknownName, Place, str | None]] = []  # names that are not defined, and their uses
+        self.refused: list[tuple[XacroFails, Place, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, Place], ...] = ()
         self.uses: dict[tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]] = {}  # of macros, with calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
@@ -158,8 +158,8 @@ class Expander:
         joint = " " if message.endswith("?") else "; "
         kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
-        if isinstance(error, XacroFails) and error.unknown is not None:
-            self.unknown.append((error.unknown, place, attribute))
+        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
+            self.refused.append((error, place, attribute))
         return ""
 
     def use(self, name: str, body: Place, call: Place) -> None:

@@ -4,7 +4,7 @@ xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes 
 same, so that one defect does not hide another.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from itertools import groupby
@@ -127,12 +127,13 @@ class ExpandedSource(Source):
             found.setdefault((node.place.source.path, node.place.tag), []).append(index)
         return found
 
-    def corrections(self) -> list[Correction]:
-        """Return the edits that may correct XML that is not well-formed, or names which are not defined."""
-        from grader.xacro.spelling import respelled
-        from grader.xacro.well_formed import well_formed
+    def corrections(self, names: Sequence[str] = (), numbers: Sequence[str] = ()) -> list[Correction]:
+        """Return the edits that may correct XML that is not well-formed, names which are not defined, and calls of macros."""
+        from grader.xacro.corrections import Corrector, Refusal, well_formed
 
-        return [*well_formed(Source(self.path, self.text)), *respelled(self._expander.unknown)]
+        refusals = [Refusal(*refused) for refused in self._expander.refused]
+        corrector = Corrector(self.documents, self._expander.uses, self._expander.files.others)
+        return [*well_formed(Source(self.path, self.text)), *corrector.corrections(refusals, names, numbers)]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
         """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""

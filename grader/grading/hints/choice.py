@@ -70,7 +70,7 @@ class Look:
         if self.draft is None:
             return []
         with self.trials.isolated():
-            found = [Piece(it.cause, it.action, "", (), it.edits) for it in self.draft.source.corrections()]
+            found = [Piece(it.cause, it.action, "", (), it.edits) for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)]
             return [*found, *self.difference.pieces]
         return []
 

@@ -10,7 +10,7 @@ from grader.difference import Node, Step, likeness, paired, steps
 from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
 from grader.robot.edits.numbers import Values, named, number, values_of, written
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, TAGS
+from grader.xml.urdf_format import CHILDREN, PARTS, TAGS
 
 _MAX_LINKS = 400  # of a robot: more are not compared
 _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
@@ -47,6 +47,17 @@ class Difference:
         self.known = {name for robot in (reference.robot,) for name in (*(link.name for link in robot.links), *(one.name for one in robot.materials))}
         self._names = self._translation()
         self._wanted: dict[tuple[Element, str], str] = {}
+
+    @cached_property
+    def names(self) -> list[str]:
+        """The links of the reference."""
+        return [link.name for link in self.reference.robot.links]
+
+    @cached_property
+    def numbers(self) -> list[str]:
+        """The numbers of the reference, each once."""
+        values = (values_of(text) for element in self.reference.root.iter() for name, text in element.attrib.items() if PARTS.get(str(name)))
+        return list(dict.fromkeys(number(abs(value)) for found in values for value in found if value))
 
     def _translation(self) -> dict[str, dict[str, str]]:
         """Return what the joints and materials of the reference are called in the robot."""
