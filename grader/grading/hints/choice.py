@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
-_WHOLE, _REPAIRED = 1, 5  # the numbers of the ways by a convention of the robot, and by two edits
-_MIN_WHOLE = 4  # criteria that fail where a convention of the robot may be wrong
+_REPAIRED = 4  # the number of the way by two edits
+_MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
 
@@ -170,7 +170,6 @@ class Choice:
         look, name, lost = self._look(state), criterion.id, state.failed
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(look, look.relevant(criterion), name, lost),
-            lambda: self._of_whole(look, criterion, conventions, lost),
             lambda: self._package_edits(look, criterion),
             lambda: self._solved(look, criterion, lost),
             lambda: self._of_whole(look, criterion, other_frames, lost),
@@ -180,14 +179,25 @@ class Choice:
         best: Proven | None = None
         for number, way in enumerate(ways):
             is_good = best is not None and best.proposal.rank < STRUCTURE
-            if best is not None and is_good and number != _WHOLE and (number != _REPAIRED or not self._is_short(look, best, lost)):
-                continue
-            if number == _WHOLE and len(lost) < _MIN_WHOLE:
+            if best is not None and is_good and (number != _REPAIRED or not self._is_short(look, best, lost)):
                 continue
             with self._trials.isolated():
                 found = self._best(state, name, way())
                 best = min(filter(None, (best, found)), key=_order, default=None)
         return best.proposal if best is not None else None
+
+    def convention(self, state: State) -> Proposal | None:
+        """Return the edit that changes a convention of the whole robot, if many criteria pass with it."""
+        look, lost = self._look(state), state.failed
+        if look.draft is None or len(lost) < _MIN_WHOLE:
+            return None
+        pieces = [piece for piece in conventions(look.difference) if len(look.passing(piece, lost)) >= _MIN_WHOLE - 1]
+        for piece in sorted(pieces, key=lambda piece: -len(look.passing(piece, lost))):
+            for proposal in islice(look.proposals(piece), 1):
+                after = self._trials.applied(state, proposal.edits)
+                if after is not None and not after.lost:
+                    return proposal
+        return None
 
     def _is_short(self, look: Look, best: Proven, lost: Sequence[str]) -> bool:
         """Return whether an edit leaves another criterion of its link lost, which two edits may gain as well."""

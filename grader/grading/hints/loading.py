@@ -19,7 +19,8 @@ from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
 
 _MAX_STEPS = 20  # of one chain
-_MAX_GRADED = 4  # edits of one step that are graded, to choose the best
+_MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
+_MAX_VALUES = 40  # edits of one step that are graded
 _MAX_FALLBACKS = 60
 _MAX_CANDIDATES = 150  # edits of one step that are read
 _STRUCTURE = {"parent", "child"}
@@ -140,20 +141,21 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     """Return the edit that brings ROS 2 furthest; of several that make it load the file, the one with the best score."""
     now = defects(reading)
     better: list[tuple[Defects, int, Proposal]] = []
-    complete = 0
+    complete: list[str] = []
     for order, proposal in enumerate(proposals):
         edited = trials.edited(state, proposal.edits)
         urdf = edited.urdf if edited is not None else None
         left = defects(urdf.loaded) if isinstance(urdf, Read) else now
         if left < now:
             better.append((left, order, proposal))
-            complete += not any(left[1:])
-        if complete == _MAX_GRADED:
+            complete += [proposal.cause] if not any(left[1:]) else []
+        if len(set(complete)) == _MAX_GRADED or len(complete) == _MAX_VALUES:
             break
     best: tuple[tuple[bool, Decimal, Defects, int], Step] | None = None
     better.sort(key=lambda found: (found[0], found[1]))
     is_read = bool(better) and better[0][0][0] < 0
-    for left, _, proposal in better[: _MAX_GRADED if is_read else 1]:
+    causes = list(dict.fromkeys(proposal.cause for _, _, proposal in better))[: _MAX_GRADED if is_read else 1]
+    for left, _, proposal in [it for it in better if it[2].cause in causes][: _MAX_VALUES if is_read else 1]:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
             rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.size)

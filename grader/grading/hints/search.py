@@ -57,11 +57,20 @@ class Search:
         """Search until nothing more is found, or the budget is spent."""
         self.is_complete = False
         with suppress(NoTrialsLeft):
-            for phase in (self._load, self._rounds, self._combine) if self.trials.left else ():
+            for phase in (self._load, self._convention, self._rounds, self._combine) if self.trials.left else ():
                 with self.trials.isolated():
                     phase()
             self.is_complete = bool(self.trials.left)
         return self
+
+    def _convention(self) -> None:
+        """Correct a convention of the whole robot first: one hint instead of one for each consequence."""
+        best = None if self._is_another_robot else self._choice.convention(self.final)
+        after = self.trials.applied(self.final, best.edits) if best is not None else None
+        if best is not None and after is not None:
+            name = next(iter(gained(self.final.results, after.results)))
+            if self._prove(self.final, best, name):
+                self.final = after._replace(edits=joined(self.trials.start.submission, self.final.edits, best.edits))
 
     def _rounds(self) -> None:
         while self._round(self.final):

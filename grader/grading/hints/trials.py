@@ -81,6 +81,8 @@ class Trials:
         if edited is None:
             return None
         self._spend(edited)
+        if _new_problems(state.submission, edited):
+            return None
         before = state.results if against is None else against
         results: dict[str, Result] = {}
         for result in decide(self.rubric, edited, before):
@@ -119,6 +121,14 @@ class Trials:
         self.left -= steps
         if self.left < 0:
             raise NoTrialsLeft
+
+
+def _new_problems(before: Submission, after: Submission) -> bool:
+    """Return whether ROS 2 loads the URDF, and finds a kind of problem that it had not before: no edit may make a robot worse."""
+    if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read) or before.urdf.loaded.verdict == "rejected":
+        return False
+    known = {problem.kind for problem in before.urdf.loaded.problems}
+    return any(problem.kind not in known for problem in after.urdf.loaded.problems)
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
