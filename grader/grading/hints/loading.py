@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
-from itertools import islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
@@ -12,16 +11,15 @@ from grader.robot.edits.draft import Draft
 from grader.robot.edits.misplaced import misplaced
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
-from grader.robot.repairs.pieces import remaining
 from grader.robot.repairs.repairs import repairable, repairs_of
 from grader.robot.repairs.site import Robots
-from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
 from grader.submission.urdf import Read
-from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
+from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
+from grader.xml.pieces import remaining
+from grader.xml.syntax import proposals as syntax_proposals
 
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # edits of one step that are graded, to choose the best
-_MAX_FALLBACKS = 60
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
@@ -56,7 +54,7 @@ def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
     unread = remaining(reading.source.text) if reading.root is None else -1
-    silent = sum(problem.kind in _SILENT for problem in reading.problems) + len(lost_brackets(reading.source.text))
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + (remaining(reading.source.text, is_wary=True) >= 0)
     rejected = effects.count("rejects") or int(reading.verdict == "rejected")
     return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
 
@@ -129,16 +127,14 @@ def _reading(state: State) -> Reading | None:
 
 def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, Iterable[Proposal]]]:
     """Yield edits that may be the next step, one group for each problem, with what they are to undo."""
-    at = str(remaining(reading.source.text))
-    yield f"text {at}", text_proposals(reading, reference)
+    is_strict = any(problem.kind.is_before_ros for problem in reading.problems)  # xacro, which reads XML only
+    yield f"text {remaining(reading.source.text)}", syntax_proposals(reading.source, is_urdf=True, is_strict=is_strict)
     draft = Draft.of(reading)
     if draft is not None:
         yield "misplaced", misplaced(draft)
         robots = Robots(draft, reference or draft, reading.problems)
         for problem in repairable(reading.problems):
             yield f"{problem.code} {problem.message}", repairs_of(robots, problem)
-    elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
-        yield f"token {at}", islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
 
 
 def _best(trials: Trials, state: State, proposals: Iterable[Proposal]) -> Step | None:
