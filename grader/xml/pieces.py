@@ -77,7 +77,8 @@ def scan(text: str, rules: Rules, mark: Mark | None = None, limit: int | None = 
         found = _piece(text, mark.position, rules)
         end = found.start if found is not None else len(text)
         why, wrong = _gap(text, mark, end, rules, is_last=found is None)
-        faults += bool(mark.opened) and text[mark.position : end].strip() != "" and mark.opened.piece.name in CHILDREN
+        is_text = mark.opened is not None and mark.opened.piece.name in CHILDREN and text[mark.position : end].strip()
+        faults += bool(is_text and rules.is_urdf)
         if why or found is None:
             break
         pieces.append(found)

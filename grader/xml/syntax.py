@@ -22,11 +22,12 @@ _MAX_TRIES = 400  # at one error
 _MAX_WAYS = 4  # at one error that grading decides among
 _MAX_FOUND = 8
 _MAX_READ = 3_000_000  # characters
-_WINDOW = 1500  # characters after an error that must be read
+_WINDOW = 400  # characters after an error that must be read
 _QUOTES = "\"'\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`"
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)(.*?)([\s?\\/>]*)\Z", re.DOTALL)
 _DASHES = re.compile(r"<[-\u2013\u2014!]+(.*?)[-\u2013\u2014]*>", re.DOTALL)
+_BLANK = {ord(character): None for character in " \t\r\n<>/=\"'"}
 _PLACE = re.compile(r"\b|(?<=\W)(?=\W)")
 _XML = '<?xml version="1.0"?>'
 _XACRO = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -37,10 +38,10 @@ _BY_CHARACTER = (
     ("-,;", "a comma between attributes", "separate the attributes with spaces"),
     ("+>", "a tag without its >", "end the tag with >"),
     ("+<", "the < of a tag is missing", "begin the tag with <"),
+    ("+abcdefghijklmnopqrstuvwxyz", "the name of an attribute is missing", "name the attribute"),
     ("+=", "the equals sign is missing", "write = before the value"),
     ("+\"'", "a quote is missing", "add the quote"),
     ("+/", "the / of a tag without content is missing", "end the tag with />"),
-    ("+abcdefghijklmnopqrstuvwxyz", "the name of an attribute is missing", "name the attribute"),
     ("-<>/=\"' ", "an extra character in a tag", "remove the character"),
     ("+ ", "the space after the name of a tag is missing", "add the space"),
 )  # fmt: skip
@@ -59,6 +60,7 @@ _WAYS = {
     "bracket": ("the < of a tag is missing", "begin the tag with <"),
     "text": ("text that is no XML", "remove the text"),
     "<!--": ("the end of a comment is missing", "write --> at the end of a comment"),
+    "comment": ("-- inside a comment", "write - for --"),
     "<?": ("the end of the XML declaration is missing", "write ?> at the end of the XML declaration"),
     "version": ("the XML declaration", f"write {_XML}"),
     "declaration": ("an XML declaration that is not at the top", "remove the XML declaration"),
@@ -157,7 +159,7 @@ class _Search:
         rest = len(new) - after.at
         if rest >= len(text) - stop.at:
             return None
-        return rest if after.at < limit else -1, after.faults, len(re.findall(r"\w", new)) < len(re.findall(r"\w", text))
+        return rest if after.at < limit else -1, after.faults, _words(new) < _words(text) - 2
 
 
 class _Ways:
@@ -217,7 +219,7 @@ class _Ways:
     def characters(self) -> Iterator[Way]:
         """Yield the insertion or deletion of one character near the error, and the removal of what is wrong."""
         wrong = self.stop.wrong
-        if wrong is None:
+        if wrong is None or wrong.form == "other":
             return
         start = self.stop.marks[-1].position if wrong.form == "close" and self.stop.marks else wrong.start
         end = min(wrong.end + 1, start + 300)
@@ -268,16 +270,19 @@ class _Ways:
         if top is not None:
             if closing is not None and not is_outer:
                 renamed = self._way("name", (closing.start, closing.end, f"</{top.name}>"))
-                if not self.rules.is_urdf or closing.name not in ATTRIBUTES or top.name not in ATTRIBUTES:
-                    start = markup.name_end(text, top.start)
-                    tag = self._way("tag", (start - len(top.name), start, closing.name))
-                    yield from (tag, renamed) if closing.name in ATTRIBUTES and top.name not in ATTRIBUTES else (renamed, tag)
+                start = markup.name_end(text, top.start)
+                tag = self._way("tag", (start - len(top.name), start, closing.name))
+                if not self.rules.is_urdf or closing.name not in ATTRIBUTES:
+                    yield renamed
+                if not self.rules.is_urdf or top.name not in ATTRIBUTES:
+                    yield tag
             if top.name in ATTRIBUTES and top.name not in CHILDREN and is_outer:
                 yield self._way("empty", self._self_closed(top))
             for piece in [piece for piece in self.open[:-1] if not piece.has_attributes][:3]:
                 yield self._way("slash", (piece.start, piece.end, f"</{piece.name}>"))
             if is_outer:
-                yield from self._places(pieces, end, top)
+                depth = outer.index(closing.name) + 1 if closing else len(self.open)
+                yield from self._places(pieces, end, self.open[:depth])
                 if closing is None and len(self.open) > 1:
                     yield self._way("end", self._closed(end, *self.open))
                 yield self._way("empty", self._self_closed(top))
@@ -298,7 +303,9 @@ class _Ways:
                 yield self._way("early", self._removed(before))
             allowed = CHILDREN.get(closing.name, ())
             inner = [piece for piece in pieces if not top or piece.start >= top.end]
-            first = next((p for p in inner if p.name in allowed and not any(o.form != "other" and o.start > p.start and o.name in CHILDREN.get("robot", ()) and closing.name != "robot" for o in inner)), None)
+            below = _descendants(closing.name)
+            after = [p for p in inner if p.form == "other" or p.name not in below]
+            first = next((p for p in inner if p.name in allowed and (not after or p.start > after[-1].start)), None)
             if first is not None:
                 yield self._way("open", (first.start, first.start, f"<{closing.name}>"))
         if top is not None and not is_outer:
@@ -307,28 +314,35 @@ class _Ways:
         if top is not None and is_outer:
             yield self._way("name", (closing.start, closing.end, f"</{top.name}>"))
 
-    def _places(self, pieces: list[Piece], end: int, top: Piece) -> Iterator[Way]:
+    def _places(self, pieces: list[Piece], end: int, inside: list[Piece]) -> Iterator[Way]:
         """Yield where an open tag may be closed: before a tag that may not be in it, at the end of its line, before the end."""
-        for piece, mark in zip(pieces, self.stop.marks, strict=False):
-            if not self.rules.is_urdf or piece.form not in ("open", "empty") or mark.opened is None:
-                continue
-            inner: list[Piece] = []
-            opened: Open | None = mark.opened
-            while opened is not None and piece.name not in CHILDREN.get(opened.piece.name, ()):
-                inner.append(opened.piece)
-                opened = opened.outer
-            if opened is not None and any(one in self.open for one in inner):
-                yield self._way("close", self._closed(piece.start, *inner))
-                break
+        changes: list[tuple[int, int, str]] = []
+        stack: list[Piece] = []
+        for piece in pieces if self.rules.is_urdf else ():
+            fits = [index for index, one in enumerate(stack) if piece.name in CHILDREN.get(one.name, ())]
+            inner = stack[fits[-1] + 1 :] if fits and piece.form in ("open", "empty") else []
+            if inner and all(one in self.open for one in inner):
+                changes.append(self._closed(piece.start, *reversed(inner)))
+                del stack[fits[-1] + 1 :]
+            if piece.form == "open":
+                stack.append(piece)
+            elif piece.form == "close" and stack:
+                stack.pop()
+        left = [piece for piece in reversed(stack) if piece in inside]
+        if changes:
+            yield self._way("close", *changes, *([self._closed(end, *left)] if left else []))
+        top, *rest = inside
+        last = [self._closed(end, *rest)] if rest else []
         indent = len(markup.indentation(self.text, top.start))
         line = re.compile(r"[^<\n]*\S[^<\n]*$", re.MULTILINE).match(self.text, top.end)
         if line:
-            yield self._way("close", self._closed(line.end(), top))
+            yield self._way("close", self._closed(line.end(), top), *last)
         after = (piece for piece in pieces if piece.start > top.end and "\n" in self.text[top.end : piece.start])
         less = next((piece for piece in after if len(markup.indentation(self.text, piece.start)) <= indent), None)
         if less is not None and not self.rules.is_urdf:
-            yield self._way("close", self._closed(less.start, top))
-        yield self._way("close", self._closed(end, top))
+            yield self._way("close", self._closed(less.start, top), *last)
+        if not last or self.stop.why != "end":
+            yield self._way("close", self._closed(end, *inside))
 
     def _after_root(self, wrong: Piece) -> Iterator[Way]:
         """Yield what may be wrong with something after the root: the root ends early, or this is no part of the robot."""
@@ -350,6 +364,10 @@ class _Ways:
         text, name = self.text, piece.name
         limit = text.find("<", piece.start + len(name))
         limit = limit if limit >= 0 else len(text)
+        if dashes := [match.span() for match in re.finditer("--+", text[piece.start + 4 : piece.end - 3])]:
+            if piece.error is None and "<!--" not in text[piece.start + 4 : piece.end]:
+                at = piece.start + 4
+                yield self._way("comment", *((at + start, at + end, "-") for start, end in dashes))
         near = r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)" if name == "<!--" else r"\s*[/?]?>"
         said = name if name in _WAYS else "<!--"
         found = re.compile(near).search(text, piece.start + len(name), limit)
@@ -385,11 +403,20 @@ class _Ways:
             yield Way(((piece.start, end, form),), *(("a comment inside a tag", "remove the comment from the tag") if plain != body else said))
 
 
+def _words(text: str) -> int:
+    return len(text.translate(_BLANK))
+
+
+def _descendants(tag: str) -> set[str]:
+    children = CHILDREN.get(tag, ())
+    return set(children).union(*map(_descendants, children))
+
+
 def _said(old: str, new: str) -> tuple[str, str]:
     """Return what was wrong with a text, and what to do, as the characters that change tell."""
     added, removed = Counter(new) - Counter(old), Counter(old) - Counter(new)
-    for (sign, *characters), cause, action in _BY_CHARACTER:
-        if any(character in (added if sign == "+" else removed) for character in characters):
+    for characters, cause, action in _BY_CHARACTER:
+        if any(character in (added if characters[0] == "+" else removed) for character in characters[1:]):
             return cause, action
     return "a malformed tag", "correct the tag"
 
@@ -401,9 +428,10 @@ def _attributes(tag: str, rest: str) -> Iterator[list[tuple[str, str]]]:
     words = "|".join(map(re.escape, known)) or "(?!)"
     key = re.compile(rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<![\w:.\-{_QUOTES}])({words})\s*:?\s*(?=[{_QUOTES}])")
     keys = list(key.finditer(rest)) or list(re.finditer(rf"\b({words})()\s+", rest))
-    starts = [*(found.start() for found in keys[1:]), len(rest)]
-    pairs = [(found[1] or found[2] or "", _value(rest[found.end() : end])) for found, end in zip(keys, starts, strict=True)]
-    pairs = pairs or ([("", _value(rest))] if _value(rest) else [])
+    spans = [(found[1] or found[2] or "", found.start(), found.end()) for found in keys] or [("", 0, 0)]
+    ends = [*(start for _, start, _ in spans[1:]), len(rest)]
+    pairs = [(key, _value(rest[start:end])) for (key, _, start), end in zip(spans, ends, strict=True)]
+    pairs = pairs if keys or pairs[0][1] else []
     given = [name for name, _ in pairs]
     renamed: list[tuple[str, str]] = []
     for name, value in pairs:
