@@ -121,8 +121,9 @@ def _why(text: str, piece: Piece, mark: Mark, rules: Rules, pieces: list[Piece])
         case _ if piece.error is not None:
             return piece.name if piece.form == "other" else "tag"
         case "other" if piece.name == "<?":
-            before = text[: piece.start].lstrip("\ufeff") if rules.is_strict else ""
-            is_first = not before and all(other.name == "<?" for other in pieces)
+            before = text[: piece.start].lstrip("\ufeff" if rules.is_strict else "\ufeff \t\r\n")
+            is_first = all(other.name == "<?" for other in pieces) and (not before or before.startswith("<?"))
+            is_first = is_first and not (before and rules.is_strict)
             is_correct = not rules.is_strict or _DECLARATION.fullmatch(text, piece.start, piece.end)
             return "declaration" if not is_first else "" if is_correct else "version"
         case "other":
@@ -175,8 +176,12 @@ def _wrong_attributes(name: str, attributes: dict[str, str]) -> int:
         return 0
     known = ATTRIBUTES[name]
     unknown = sum(key not in known and ":" not in key for key in attributes)
-    unread = (PARTS.get(key) and "$" not in value and _NO_NUMBERS.search(value) for key, value in attributes.items())
-    return unknown + sum(key not in attributes for key in REQUIRED[name]) + sum(map(bool, unread))
+    unread = (not _is_read(PARTS.get(key, ()), value) for key, value in attributes.items())
+    return unknown + sum(key not in attributes for key in REQUIRED[name]) + sum(unread)
+
+
+def _is_read(parts: tuple[str, ...], value: str) -> bool:
+    return not parts or "$" in value or (len(value.split()) == len(parts) and not _NO_NUMBERS.search(value))
 
 
 def remaining(text: str, *, is_wary: bool = False) -> int:

@@ -27,7 +27,6 @@ _QUOTES = "\"'\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)(.*?)([\s?\\/>]*)\Z", re.DOTALL)
 _DASHES = re.compile(r"<[-\u2013\u2014!]+(.*?)[-\u2013\u2014]*>", re.DOTALL)
-_BLANK = {ord(character): None for character in " \t\r\n<>/=\"'"}
 _PLACE = re.compile(r"\b|(?<=\W)(?=\W)")
 _XML = '<?xml version="1.0"?>'
 _XACRO = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -69,6 +68,7 @@ _WAYS = {
     "prefix": ("the namespace of xacro is missing", "declare xmlns:xacro"),
     "dashes": ("the start of a comment", "begin the comment with <!--"),
 }
+_LOSSY = (_WAYS["drop"][1], _WAYS["text"][1])
 
 
 class Way(NamedTuple):
@@ -135,20 +135,21 @@ class _Search:
 
     def _ways(self, text: str, stop: Scan, rules: Rules) -> list[Way]:
         """Return the ways which bring the parser further, the best first."""
-        found: list[tuple[tuple[int, int, bool], Way]] = []
+        found: list[tuple[tuple[int, bool, int], Way]] = []
         tries = _Ways(text, stop, rules)
         for stage in (tries.likely(), tries.characters()):
             for way in islice(stage, _MAX_TRIES):
                 rank = self._rank(text, stop, rules, way)
                 if rank is not None and self.left > 0:
                     found.append((rank, way))
-            if any(faults == 0 for (_, faults, _), _ in found):
+            if any(faults == 0 for (_, _, faults), _ in found):
                 break
         found.sort(key=lambda pair: pair[0])
         unique = {_applied(text, way): way for _, way in reversed(found)}
-        return list(reversed(unique.values()))[:_MAX_WAYS]
+        best = list(reversed(unique.values()))
+        return best[:_MAX_WAYS] + [way for way in best[_MAX_WAYS:] if way.action in _LOSSY][:1]
 
-    def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, int, bool] | None:
+    def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, bool, int] | None:
         """Return how far the parser comes from its end, with how many faults; None if no further, or what is lost is too much."""
         start = way.changes[0][0]
         mark = next((mark for mark in reversed(stop.marks) if mark.position <= start), None)
@@ -159,7 +160,7 @@ class _Search:
         rest = len(new) - after.at
         if rest >= len(text) - stop.at:
             return None
-        return rest if after.at < limit else -1, after.faults, _words(new) < _words(text) - 2
+        return rest if after.at < limit else -1, way.action in _LOSSY, after.faults
 
 
 class _Ways:
@@ -401,10 +402,6 @@ class _Ways:
         for form in forms:
             said = ("a duplicate attribute", "rename or remove one of the two attributes") if False else _said(body, form)
             yield Way(((piece.start, end, form),), *(("a comment inside a tag", "remove the comment from the tag") if plain != body else said))
-
-
-def _words(text: str) -> int:
-    return len(text.translate(_BLANK))
 
 
 def _descendants(tag: str) -> set[str]:
