@@ -120,7 +120,7 @@ def _why(text: str, piece: Piece, mark: Mark, rules: Rules, pieces: list[Piece])
     match piece.form:
         case _ if piece.error is not None:
             return piece.name if piece.form == "other" else "tag"
-        case "other" if piece.name == "<?":
+        case "other" if piece.name == "<?" and not (rules.is_strict and text.startswith("<?xml-", piece.start)):
             before = text[: piece.start].lstrip("\ufeff" if rules.is_strict else "\ufeff \t\r\n")
             is_first = all(other.name == "<?" for other in pieces) and (not before or before.startswith("<?"))
             is_first = is_first and not (before and rules.is_strict)
@@ -187,4 +187,3 @@ def _is_read(parts: tuple[str, ...], value: str) -> bool:
 def remaining(text: str, *, is_wary: bool = False) -> int:
     """Return how many characters of a text TinyXML2 does not read because of an error; -1 if there is none."""
     return len(text) - scan(text, Rules(is_urdf=is_wary, is_strict=False, is_wary=is_wary)).at
-

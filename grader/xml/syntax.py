@@ -193,7 +193,7 @@ class _Ways:
         elif why == "reference":
             yield self._way("reference", (wrong.start, wrong.start + 1, "&amp;"))
         elif why == "version":
-            yield self._way("version", (wrong.start, wrong.end, _XML))
+            yield self._way("version", (wrong.start, text.index(">", wrong.start) + 1, _XML))
         elif why == "prefix":
             root = next(piece for piece in self.stop.pieces if piece.form != "other")
             end = markup.name_end(text, root.start)
@@ -211,9 +211,15 @@ class _Ways:
             last = text.rfind(f"</{wrong.name}", 0)
             renamed = (name_end - len(wrong.name), name_end, "robot")
             if wrong.name not in ATTRIBUTES:
-                yield self._way("tag", renamed, *([(last + 2, last + 2 + len(wrong.name), "robot")] if last > wrong.start else []))
+                yield self._way(
+                    "tag", renamed, *([(last + 2, last + 2 + len(wrong.name), "robot")] if last > wrong.start else [])
+                )
                 yield self._way("tag", renamed)
-            yield self._way("open", (wrong.start, wrong.start, f"<robot>{self.newline}"), *([] if "</robot" in text else [(end, end, f"{self.newline}</robot>")]))
+            yield self._way(
+                "open",
+                (wrong.start, wrong.start, f"<robot>{self.newline}"),
+                *([] if "</robot" in text else [(end, end, f"{self.newline}</robot>")]),
+            )
         elif why in ("second", "text"):
             yield from self._after_root(wrong)
 
@@ -268,6 +274,10 @@ class _Ways:
         text, pieces = self.text, self.stop.pieces[: -1 if closing else None]
         top, outer = (self.open[0] if self.open else None), [piece.name for piece in self.open[1:]]
         is_outer = closing is None or closing.name in outer
+        names = "|".join(re.escape(piece.name) for piece in (top, closing) if piece)
+        lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{names})\b(?=[^<>]*>)").finditer(text, top.end if top else 0, end)
+        for found in islice(lost, 3):
+            yield self._way("bracket", (found.start(), found.start(), "<"))
         if top is not None:
             if closing is not None and not is_outer:
                 renamed = self._way("name", (closing.start, closing.end, f"</{top.name}>"))
@@ -288,18 +298,24 @@ class _Ways:
                     yield self._way("end", self._closed(end, *self.open))
                 yield self._way("empty", self._self_closed(top))
                 yield self._way("drop", self._removed(top))
-                for piece in [piece for piece in self.open[:-1] if piece.name in {*outer[self.open.index(piece):]}][:3]:
+                for piece in [piece for piece in self.open[:-1] if piece.name in {*outer[self.open.index(piece) :]}][
+                    :3
+                ]:
                     yield self._way("drop", self._removed(piece))
             else:
                 yield from ()
         if closing is None:
             return
         if not is_outer or top is None:
-            same = next((piece for piece in reversed(pieces) if piece.form == "empty" and piece.name == closing.name), None)
+            same = next(
+                (piece for piece in reversed(pieces) if piece.form == "empty" and piece.name == closing.name), None
+            )
             if same is not None:
                 slash = text.rindex("/", same.start, same.end)
                 yield self._way("begin", (len(text[:slash].rstrip()), same.end, ">"))
-            before = next((piece for piece in reversed(pieces) if piece.form == "close" and piece.name == closing.name), None)
+            before = next(
+                (piece for piece in reversed(pieces) if piece.form == "close" and piece.name == closing.name), None
+            )
             if top is None and before is not None:
                 yield self._way("early", self._removed(before))
             allowed = CHILDREN.get(closing.name, ())
@@ -353,7 +369,9 @@ class _Ways:
         if wrong.form != "text" and root.form == "empty":
             slash = text.rindex("/", root.start, root.end)
             yield self._way("begin", (len(text[:slash].rstrip()), root.end, ">"))
-            yield self._way("begin", (len(text[:slash].rstrip()), root.end, ">"), (end, end, f"{self.newline}</{root.name}>"))
+            yield self._way(
+                "begin", (len(text[:slash].rstrip()), root.end, ">"), (end, end, f"{self.newline}</{root.name}>")
+            )
         elif wrong.form != "text":
             closed = f"{self.newline}</{root.name}>"
             yield self._way("early", self._removed(last))
@@ -393,15 +411,22 @@ class _Ways:
         if name.lower() == "xml" and not head[1]:
             yield self._way("version", (piece.start, end, _XML))
         forms = [f"</{name}>"] if head[1] else []
-        is_empty = bool({"/", "\\"} & set(tail)) or (not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN)
+        is_empty = bool({"/", "\\"} & set(tail)) or (
+            not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
+        )
         blank = " " if tail[:1] in (" ", "\t") else ""
         quote = "'" if text.count("='") > text.count('="') else '"'
         for attributes in () if head[1] else _attributes(name, rest):
             values = "".join(f" {key}={quote}{value}{quote}" for key, value in attributes)
             forms += [f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty)]
         for form in forms:
-            said = ("a duplicate attribute", "rename or remove one of the two attributes") if False else _said(body, form)
-            yield Way(((piece.start, end, form),), *(("a comment inside a tag", "remove the comment from the tag") if plain != body else said))
+            said = (
+                ("a duplicate attribute", "rename or remove one of the two attributes") if False else _said(body, form)
+            )
+            yield Way(
+                ((piece.start, end, form),),
+                *(("a comment inside a tag", "remove the comment from the tag") if plain != body else said),
+            )
 
 
 def _descendants(tag: str) -> set[str]:
@@ -422,9 +447,11 @@ def _attributes(tag: str, rest: str) -> Iterator[list[tuple[str, str]]]:
     """Yield the attributes that the text after the name of a tag may stand for."""
     name = tag if tag in TAGS else closest(tag, TAGS) or ""
     known = list(TAGS[name].attributes) if name else []
-    words = "|".join(map(re.escape, known)) or "(?!)"
-    key = re.compile(rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<![\w:.\-{_QUOTES}])({words})\s*:?\s*(?=[{_QUOTES}])")
-    keys = list(key.finditer(rest)) or list(re.finditer(rf"\b({words})()\s+", rest))
+    words = "|".join(map(re.escape, known)) or r"[A-Za-z_][\w:.\-]*"
+    key = re.compile(
+        rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<![\w:.\-{_QUOTES}])({words})\s*:?\s*(?=[{_QUOTES}])"
+    )
+    keys = list(key.finditer(rest)) or list(re.finditer(rf"\b({words})()\s+", rest) if known else ())
     spans = [(found[1] or found[2] or "", found.start(), found.end()) for found in keys] or [("", 0, 0)]
     ends = [*(start for _, start, _ in spans[1:]), len(rest)]
     pairs = [(key, _value(rest[start:end])) for (key, _, start), end in zip(spans, ends, strict=True)]
