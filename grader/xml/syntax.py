@@ -1,8 +1,4 @@
-"""A generic search for edits after which a broken XML text can be read: each brings the parser further.
-
-The edits are few operations near the place where the parser stops: write a malformed tag as its words tell, insert or remove one
-character, close, rename or remove a tag, end a comment. The format of a URDF, where it is known, orders them.
-"""
+"""Edits after which a broken XML text can be read: a search over few operations near the place where the parser stops."""
 
 import re
 from collections import Counter
@@ -11,10 +7,10 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader import markup
-from grader.edits import Proposal, composed, edited
+from grader.edits import Proposal, composed
 from grader.names import closest
 from grader.source import Edit, Source
-from grader.xml.pieces import ENDS, Open, Piece, Rules, Scan, scan
+from grader.xml.pieces import Mark, Piece, Rules, Scan, scan
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 
 _MAX_ERRORS = 40  # of one text
@@ -23,17 +19,16 @@ _MAX_WAYS = 4  # at one error that grading decides among
 _MAX_FOUND = 8
 _MAX_READ = 3_000_000  # characters
 _WINDOW = 400  # characters after an error that must be read
-_QUOTES = "\"'\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`"
+_CURLY = "\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`"
+_QUOTES = f"\"'{_CURLY}"
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)(.*?)([\s?\\/>]*)\Z", re.DOTALL)
+_HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)(.*?)(\s*)([?\\/>\s]*)\Z", re.DOTALL)
 _DASHES = re.compile(r"<[-\u2013\u2014!]+(.*?)[-\u2013\u2014]*>", re.DOTALL)
-_PLACE = re.compile(r"\b|(?<=\W)(?=\W)")
 _XML = '<?xml version="1.0"?>'
-_XACRO = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
-# What is wrong with a tag, and what to do: by the characters that are added (+) or removed (-).
-_BY_CHARACTER = (
+# What is wrong with a tag, and what to do: by the characters that are removed (-) or added (+).
+_SAID = (
     ("-\\", "a backslash in a tag", "replace the backslash with /"),
-    ("-\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`", "typographic quotes", "write straight quotes"),
+    (f"-{_CURLY}", "typographic quotes", "write straight quotes"),
     ("-,;", "a comma between attributes", "separate the attributes with spaces"),
     ("+>", "a tag without its >", "end the tag with >"),
     ("+<", "the < of a tag is missing", "begin the tag with <"),
@@ -42,8 +37,9 @@ _BY_CHARACTER = (
     ("+\"'", "a quote is missing", "add the quote"),
     ("+/", "the / of a tag without content is missing", "end the tag with />"),
     ("-<>/=\"' ", "an extra character in a tag", "remove the character"),
-    ("+ ", "the space after the name of a tag is missing", "add the space"),
-)  # fmt: skip
+    ("+ ", "a space in a tag is missing", "add the space"),
+    ("", "a malformed tag", "correct the tag"),
+)
 _WAYS = {
     "close": ("a closing tag is missing", "add the closing tag"),
     "open": ("a tag is missing", "add the tag"),
@@ -58,375 +54,305 @@ _WAYS = {
     "early": ("a closing tag before the end of its element", "move the closing tag to the end"),
     "bracket": ("the < of a tag is missing", "begin the tag with <"),
     "text": ("text that is no XML", "remove the text"),
-    "<!--": ("the end of a comment is missing", "write --> at the end of a comment"),
-    "comment": ("-- inside a comment", "write - for --"),
-    "<?": ("the end of the XML declaration is missing", "write ?> at the end of the XML declaration"),
-    "version": ("the XML declaration", f"write {_XML}"),
-    "declaration": ("an XML declaration that is not at the top", "remove the XML declaration"),
-    "top": ("the place of the XML declaration", "move the XML declaration to the top"),
+    "comment": ("a malformed comment", "write the comment as <!-- ... -->"),
+    "version": ("a malformed XML declaration", f"write {_XML}"),
+    "misplaced": ("an XML declaration that is not at the top", "remove the XML declaration"),
     "reference": ("an & that is not escaped", "write &amp; for &"),
     "prefix": ("the namespace of xacro is missing", "declare xmlns:xacro"),
-    "dashes": ("the start of a comment", "begin the comment with <!--"),
 }
-_LOSSY = (_WAYS["drop"][1], _WAYS["text"][1])
+
+Change = tuple[int, int, str]
 
 
 class Way(NamedTuple):
-    """Changes of a text, each from an offset to another one, in order; what is wrong, and what to do."""
+    """Changes of a text, each from an offset to another one; what is wrong, and what to do."""
 
-    changes: tuple[tuple[int, int, str], ...]
+    changes: list[Change]
     cause: str
     action: str
 
+    def applied(self, text: str) -> str:
+        """Return the text after the changes."""
+        for start, end, new in reversed(self.changes):
+            text = text[:start] + new + text[end:]
+        return text
+
 
 def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
-    """Yield edits after which a text can be read, the most plausible ones first; nothing where none brings the parser further."""
-    search = _Search(source.path, Rules(is_urdf, is_strict, is_wary=True))
+    """Yield edits after which a text can be read, the most plausible first; nothing where none brings the parser further."""
+    search = _Search(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))
-    others = ((index, way) for index, step in reversed(list(enumerate(first))) for way in step.ways[1:])
     if first:
         yield _joined(source, first)
+    others = ((index, way) for index in reversed(range(len(first))) for way in first[index][1][1:])
     for index, way in islice(others, _MAX_FOUND):
-        step = first[index]
-        begun = [*first[:index], step._replace(ways=[way])]
-        yield _joined(source, [*begun, *search.steps(_applied(step.text, way))])
+        text = first[index][0]
+        yield _joined(source, [*first[:index], (text, [way]), *search.steps(way.applied(text))])
 
 
-class _Step(NamedTuple):
-    """A text with an error, and the ways to bring the parser further, the best first."""
-
-    text: str
-    ways: list[Way]
-
-
-def _joined(source: Source, steps: list[_Step]) -> Proposal:
+def _joined(source: Source, steps: list[tuple[str, list[Way]]]) -> Proposal:
     edits: tuple[Edit, ...] = ()
-    for text, ways in steps:
+    for text, (way, *_) in steps:
         own = Source(source.path, text)
-        edits = composed(source.text, source.path, edits, [own.edit(*change) for change in ways[0].changes])
-    causes, actions = (dict.fromkeys(step.ways[0][index] for step in steps) for index in (1, 2))
+        edits = composed(source.text, source.path, edits, [own.edit(*change) for change in way.changes])
+    causes, actions = (dict.fromkeys(ways[0][index] for _, ways in steps) for index in (1, 2))
     return Proposal(edits, " and ".join(map(str, causes)), " and ".join(map(str, actions)))
 
 
-def _applied(text: str, way: Way) -> str:
-    for start, end, new in reversed(way.changes):
-        text = text[:start] + new + text[end:]
-    return text
-
-
 class _Search:
-    """The search in one text, whose work is bounded."""
+    """A search, whose work is bounded."""
 
-    def __init__(self, path: str, rules: Rules) -> None:
-        self.path, self.rules, self.left = path, rules, _MAX_READ
+    def __init__(self, rules: Rules) -> None:
+        self.rules, self.left = rules, _MAX_READ
 
-    def steps(self, text: str) -> Iterator[_Step]:
-        """Yield one step after the other until the text can be read."""
+    def steps(self, text: str) -> Iterator[tuple[str, list[Way]]]:
+        """Yield a text with an error and the ways to bring the parser further, the best first, until the text can be read."""
         for _ in range(_MAX_ERRORS):
             ways: list[Way] = []
-            for rules in dict.fromkeys((self.rules, self.rules._replace(is_wary=False))):
-                self.left -= len(text)
+            for rules in dict.fromkeys((self.rules, self.rules._replace(is_urdf=False))):
                 stop = scan(text, rules)
-                ways = self._ways(text, stop, rules) if stop.why and not ways else ways
+                self.left -= len(text)
+                ways = ways or (self._ways(text, stop, rules) if stop.why else [])
             if not ways:
                 return
-            yield _Step(text, ways)
-            text = _applied(text, ways[0])
+            yield text, ways
+            text = ways[0].applied(text)
 
     def _ways(self, text: str, stop: Scan, rules: Rules) -> list[Way]:
-        """Return the ways which bring the parser further, the best first."""
         found: list[tuple[tuple[int, bool, int], Way]] = []
-        tries = _Ways(text, stop, rules)
-        for stage in (tries.likely(), tries.characters()):
+        operations = _Operations(text, stop, self.rules.is_urdf)
+        for stage in (operations.likely(), operations.characters()):
             for way in islice(stage, _MAX_TRIES):
-                rank = self._rank(text, stop, rules, way)
-                if rank is not None and self.left > 0:
-                    found.append((rank, way))
-            if any(faults == 0 for (_, _, faults), _ in found):
+                way.changes.sort()
+                rank = self._rank(text, stop, rules, way) if self.left > 0 else None
+                found += [(rank, way)] if rank is not None else []
+            if any(not faults for (_, _, faults), _ in found):
                 break
-        found.sort(key=lambda pair: pair[0])
-        unique = {_applied(text, way): way for _, way in reversed(found)}
-        best = list(reversed(unique.values()))
-        return best[:_MAX_WAYS] + [way for way in best[_MAX_WAYS:] if way.action in _LOSSY][:1]
+        best = list({way.applied(text): way for _, way in sorted(found, key=lambda pair: pair[0])[::-1]}.values())[::-1]
+        return best[:_MAX_WAYS] + [way for way in best[_MAX_WAYS:] if _is_lossy(way)][:1]
 
     def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, bool, int] | None:
-        """Return how far the parser comes from its end, with how many faults; None if no further, or what is lost is too much."""
-        start = way.changes[0][0]
-        mark = next((mark for mark in reversed(stop.marks) if mark.position <= start), None)
-        new = _applied(text, way)
+        """Return how far the parser is from the end, whether text is lost, and the faults for urdfdom; None if no further."""
+        new = way.applied(text)
+        mark = next((mark for mark in reversed(stop.marks) if mark.position <= way.changes[0][0]), Mark())
         limit = min(stop.at + _WINDOW + max(len(new) - len(text), 0), len(new) + 1)
+        self.left -= limit - mark.position
         after = scan(new, rules, mark, limit)
-        self.left -= limit - (mark.position if mark else 0)
-        rest = len(new) - after.at
-        if rest >= len(text) - stop.at:
+        if len(new) - after.at >= len(text) - stop.at:
             return None
-        return rest if after.at < limit else -1, way.action in _LOSSY, after.faults
+        return len(new) - after.at if after.at < limit else -1, _is_lossy(way), after.faults
 
 
-class _Ways:
+def _is_lossy(way: Way) -> bool:
+    return way[1:] in (_WAYS["drop"], _WAYS["text"])
+
+
+class _Operations:
     """The operations at one error."""
 
-    def __init__(self, text: str, stop: Scan, rules: Rules) -> None:
-        self.text, self.stop, self.rules = text, stop, rules
-        self.newline = "\r\n" if "\r\n" in text else "\n"
-        self.open: list[Piece] = []
-        opened = stop.opened
-        while opened is not None:
-            self.open.append(opened.piece)
-            opened = opened.outer
+    def __init__(self, text: str, stop: Scan, is_urdf: bool) -> None:
+        self.text, self.stop, self.is_urdf = text, stop, is_urdf
+        self.line = "\r\n" if "\r\n" in text else "\n"
+        self.open: list[Piece] = []  # the innermost first
+        opened = stop.marks[-1].opened
+        while opened:
+            self.open.append(opened[0])
+            opened = opened[1].opened
 
     def likely(self) -> Iterator[Way]:
         """Yield what is usual for the error."""
-        wrong, text, why = self.stop.wrong, self.text, self.stop.why
-        if why == "end":
-            yield from self._unclosed(len(text.rstrip()), None)
-        elif wrong is None:
-            return
-        elif why == "tag":
+        wrong, text, why, end = self.stop.wrong, self.text, self.stop.why, len(self.text.rstrip())
+        start, tags = wrong.start, [piece for piece in self.stop.pieces if piece.form != "other" and piece is not wrong]
+        if why == "tag":
             yield from self._rewritten(wrong)
-        elif why == "close":
-            yield from self._unclosed(wrong.start, wrong)
-        elif why in ENDS or why == "comment":
-            yield from self._ended(wrong)
+        elif why in ("close", "end"):
+            yield from self._unclosed(tags, wrong)
+        elif why == "comment" and wrong.name == "<!--":
+            yield from self._comment(wrong)
+        elif why in ("comment", "version"):
+            yield _way("version", (start, text.find(">", start) + 1 or end, _XML))
         elif why == "bracket":
-            yield self._way("bracket", (wrong.start, wrong.start, "<"))
+            yield _way("bracket", (start, start, "<"))
         elif why == "reference":
-            yield self._way("reference", (wrong.start, wrong.start + 1, "&amp;"))
-        elif why == "version":
-            yield self._way("version", (wrong.start, text.index(">", wrong.start) + 1, _XML))
+            yield _way("reference", (start, start + 1, "&amp;"))
         elif why == "prefix":
-            root = next(piece for piece in self.stop.pieces if piece.form != "other")
-            end = markup.name_end(text, root.start)
-            yield self._way("prefix", (end, end, _XACRO))
-        elif why == "declaration":
-            yield self._way("declaration", (wrong.start, self._after(wrong), ""))
-            start = int(text.startswith("\ufeff"))
-            body = text[wrong.start : wrong.end] + self.newline
-            if not text[start : wrong.start].strip().startswith("<?"):
-                yield self._way("text", (start, wrong.start, ""))
-                yield self._way("top", (start, start, body), (wrong.start, self._after(wrong), ""))
+            at = markup.name_end(text, (tags or [wrong])[0].start)
+            yield _way("prefix", (at, at, ' xmlns:xacro="http://www.ros.org/wiki/xacro"'))
+        elif why == "misplaced":
+            yield _way("misplaced", self._removed(wrong))
+            yield _way("text", (int(text.startswith("\ufeff")), start, ""))
         elif why == "root":
-            end = len(text.rstrip())
-            name_end = markup.name_end(text, wrong.start)
-            last = text.rfind(f"</{wrong.name}", 0)
-            renamed = (name_end - len(wrong.name), name_end, "robot")
+            name, last = markup.name_end(text, start), text.rfind(f"</{wrong.name}") + 2
             if wrong.name not in ATTRIBUTES:
-                yield self._way(
-                    "tag", renamed, *([(last + 2, last + 2 + len(wrong.name), "robot")] if last > wrong.start else [])
-                )
-                yield self._way("tag", renamed)
-            yield self._way(
-                "open",
-                (wrong.start, wrong.start, f"<robot>{self.newline}"),
-                *([] if "</robot" in text else [(end, end, f"{self.newline}</robot>")]),
-            )
+                change = (name - len(wrong.name), name, "robot")
+                yield _way("tag", change, *([(last, last + len(wrong.name), "robot")] if last > start else []))
+            closing = [] if "</robot" in text else [(end, end, f"{self.line}</robot>")]
+            yield _way("open", (start, start, f"<robot>{self.line}"), *closing)
         elif why in ("second", "text"):
-            yield from self._after_root(wrong)
+            early = (
+                self._begun(tags[0]) if tags and tags[0].form == "empty" else self._removed(tags[-1]) if tags else None
+            )
+            if early and wrong.form != "text":
+                yield _way("early", early)
+                yield _way("early", early, (end, end, f"{self.line}</{tags[0].name}>"))
+            yield _way("text", (start, min(end, wrong.end), ""))
 
     def characters(self) -> Iterator[Way]:
         """Yield the insertion or deletion of one character near the error, and the removal of what is wrong."""
-        wrong = self.stop.wrong
-        if wrong is None or wrong.form == "other":
+        wrong, text = self.stop.wrong, self.text
+        if wrong.form in ("other", "text"):
             return
-        start = self.stop.marks[-1].position if wrong.form == "close" and self.stop.marks else wrong.start
-        end = min(wrong.end + 1, start + 300)
-        for place in _PLACE.finditer(self.text, start, end):
-            for new in ("<",) if wrong.form == "close" else ('"', ">", "/>", "<", "=", "/", "'", " "):
-                yield self._by_character(place.start(), place.start(), new)
-        for at in range(start, end):
-            if not self.text[at : at + 1].isalnum():
-                yield self._by_character(at, at + 1, "")
-        yield self._way("text", (wrong.start, wrong.end, ""))
+        end = min(wrong.end + 1, wrong.start + 300)
+        for place in re.compile(r"\b|(?<=\W)(?=\W)").finditer(text, wrong.start, end):
+            for new in ('"', ">", "/>", "<", "=", "/", "'", " "):
+                yield Way([(place.start(), place.start(), new)], *_said("", new))
+        for at in range(wrong.start, end):
+            if not text[at : at + 1].isalnum():
+                yield Way([(at, at + 1, "")], *_said(text[at : at + 1], ""))
+        yield _way("text", (wrong.start, wrong.end, ""))
 
-    def _by_character(self, start: int, end: int, new: str) -> Way:
-        return Way(((start, end, new),), *_said(self.text[start:end], new))
-
-    def _way(self, name: str, *changes: tuple[int, int, str]) -> Way:
-        return Way(tuple(sorted(changes)), *_WAYS[name])
-
-    def _after(self, piece: Piece) -> int:
-        """Return the offset after a piece and the end of its line."""
-        found = re.compile(r"\r?\n").match(self.text, piece.end)
-        return found.end() if found else piece.end
-
-    def _removed(self, piece: Piece) -> tuple[int, int, str]:
+    def _removed(self, piece: Piece) -> Change:
         """Return the removal of a tag, with its line where nothing else is on it."""
         start = piece.start - len(markup.indentation(self.text, piece.start))
-        is_alone = self.text[start - 1 : start] in ("", "\n") and self._after(piece) > piece.end
-        return (start, self._after(piece), "") if is_alone else (piece.start, piece.end, "")
+        line = re.compile(r"\r?\n").match(self.text, piece.end)
+        return (
+            (start, line.end(), "")
+            if line and self.text[start - 1 : start] in ("", "\n")
+            else (piece.start, piece.end, "")
+        )
 
-    def _closed(self, offset: int, *opened: Piece) -> tuple[int, int, str]:
+    def _begun(self, piece: Piece) -> Change:
+        return len(self.text[: self.text.rindex("/", piece.start, piece.end)].rstrip()), piece.end, ">"
+
+    def _closed(self, offset: int, opened: list[Piece]) -> Change:
         """Return the closing of tags after what is before an offset."""
         end = len(self.text[:offset].rstrip())
-        new = ""
-        for piece in opened:
-            is_one_line = "\n" not in self.text[piece.start : end]
-            new += "" if is_one_line else self.newline + markup.indentation(self.text, piece.start)
-            new += f"</{piece.name}>"
-        return end, end, new
+        lines = ("\n" in self.text[piece.start : end] for piece in opened)
+        indents = (
+            self.line + markup.indentation(self.text, piece.start) if line else ""
+            for piece, line in zip(opened, lines, strict=True)
+        )
+        return end, end, "".join(f"{indent}</{piece.name}>" for piece, indent in zip(opened, indents, strict=True))
 
-    def _self_closed(self, piece: Piece) -> tuple[int, int, str]:
-        blank = " " if self.text.count('" />') >= max(self.text.count('"/>'), 1) else ""
-        return piece.end - 1, piece.end, f"{blank}/>"
-
-    def _unclosed(self, end: int, closing: Piece | None) -> Iterator[Way]:
-        """Yield what may be wrong with a closing tag, or with the tags that are open there."""
-        text, pieces = self.text, self.stop.pieces[: -1 if closing else None]
-        top, outer = (self.open[0] if self.open else None), [piece.name for piece in self.open[1:]]
-        is_outer = closing is None or closing.name in outer
-        names = "|".join(re.escape(piece.name) for piece in (top, closing) if piece)
-        lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{names})\b(?=[^<>]*>)").finditer(text, top.end if top else 0, end)
-        for found in islice(lost, 3):
-            yield self._way("bracket", (found.start(), found.start(), "<"))
-        if top is not None:
-            if closing is not None and not is_outer:
-                renamed = self._way("name", (closing.start, closing.end, f"</{top.name}>"))
-                start = markup.name_end(text, top.start)
-                tag = self._way("tag", (start - len(top.name), start, closing.name))
-                if not self.rules.is_urdf or closing.name not in ATTRIBUTES:
-                    yield renamed
-                if not self.rules.is_urdf or top.name not in ATTRIBUTES:
-                    yield tag
-            if top.name in ATTRIBUTES and top.name not in CHILDREN and is_outer:
-                yield self._way("empty", self._self_closed(top))
+    def _unclosed(self, tags: list[Piece], closing: Piece) -> Iterator[Way]:
+        """Yield what may be wrong with a closing tag or the end of the file, or with the tags that are open there."""
+        text, end, names = self.text, len(self.text[: closing.start].rstrip()), [piece.name for piece in self.open]
+        is_end, top = closing.form != "close", self.open[0] if self.open else None
+        near = "|".join(re.escape(piece.name) for piece in (top, closing) if piece and piece.name)
+        lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{near})\b(?=[^<>]*>)").finditer(text, top.end if top else 0, end)
+        yield from (_way("bracket", (found.start(), found.start(), "<")) for found in islice(lost, 3))
+        if top and not is_end:
+            yield _way("name", (closing.start, closing.end, f"</{top.name}>"))
+        if top and not is_end and (not self.is_urdf or top.name not in ATTRIBUTES):
+            name = markup.name_end(text, top.start)
+            yield _way("tag", (name - len(top.name), name, closing.name))
+        if top and (is_end or closing.name in names):
+            inner = self.open if is_end else self.open[: names.index(closing.name)]
+            line = re.compile(r"[^<\n]*\S[^<\n]*$", re.MULTILINE).match(text, top.end)
+            blank = " " if text.count('" />') >= max(text.count('"/>'), 1) else ""
+            if not line:
+                yield _way("empty", (top.end - 1, top.end, f"{blank}/>"))
             for piece in [piece for piece in self.open[:-1] if not piece.has_attributes][:3]:
-                yield self._way("slash", (piece.start, piece.end, f"</{piece.name}>"))
-            if is_outer:
-                depth = outer.index(closing.name) + 1 if closing else len(self.open)
-                yield from self._places(pieces, end, self.open[:depth])
-                if closing is None and len(self.open) > 1:
-                    yield self._way("end", self._closed(end, *self.open))
-                yield self._way("empty", self._self_closed(top))
-                yield self._way("drop", self._removed(top))
-                for piece in [piece for piece in self.open[:-1] if piece.name in {*outer[self.open.index(piece) :]}][
-                    :3
-                ]:
-                    yield self._way("drop", self._removed(piece))
-            else:
-                yield from ()
-        if closing is None:
-            return
-        if not is_outer or top is None:
-            same = next(
-                (piece for piece in reversed(pieces) if piece.form == "empty" and piece.name == closing.name), None
-            )
-            if same is not None:
-                slash = text.rindex("/", same.start, same.end)
-                yield self._way("begin", (len(text[:slash].rstrip()), same.end, ">"))
-            before = next(
-                (piece for piece in reversed(pieces) if piece.form == "close" and piece.name == closing.name), None
-            )
-            if top is None and before is not None:
-                yield self._way("early", self._removed(before))
-            allowed = CHILDREN.get(closing.name, ())
-            inner = [piece for piece in pieces if not top or piece.start >= top.end]
-            below = _descendants(closing.name)
-            after = [p for p in inner if p.form == "other" or p.name not in below]
-            first = next((p for p in inner if p.name in allowed and (not after or p.start > after[-1].start)), None)
-            if first is not None:
-                yield self._way("open", (first.start, first.start, f"<{closing.name}>"))
-        if top is not None and not is_outer:
-            yield renamed
-        yield self._way("extra", self._removed(closing))
-        if top is not None and is_outer:
-            yield self._way("name", (closing.start, closing.end, f"</{top.name}>"))
+                yield _way("slash", (piece.start, piece.end, f"</{piece.name}>"))
+            yield from self._places(tags, end, inner)
+            if line:
+                yield _way(
+                    "close",
+                    (line.end(), line.end(), f"</{top.name}>"),
+                    *([self._closed(end, inner[1:])] if inner[1:] else []),
+                )
+            yield _way("end" if is_end else "close", self._closed(end, inner))
+            yield from (_way("drop", self._removed(piece)) for piece in self.open[:3])
+        if not is_end:
+            inside, below = [piece for piece in tags if not top or piece.start >= top.end], _descendants(closing.name)
+            empty = [piece for piece in inside if piece.form == "empty" and piece.name == closing.name]
+            yield from (_way("begin", self._begun(piece)) for piece in empty[-1:])
+            early = [piece for piece in tags if piece.form == "close" and piece.name == closing.name and not top]
+            yield from (_way("early", self._removed(piece)) for piece in early[-1:])
+            after = max((piece.start for piece in inside if piece.name not in below), default=-1)
+            first = [piece for piece in inside if piece.start > after and piece.name in CHILDREN.get(closing.name, ())]
+            yield from (_way("open", (piece.start, piece.start, f"<{closing.name}>")) for piece in first[:1])
+            yield _way("extra", self._removed(closing))
 
-    def _places(self, pieces: list[Piece], end: int, inside: list[Piece]) -> Iterator[Way]:
-        """Yield where an open tag may be closed: before a tag that may not be in it, at the end of its line, before the end."""
-        changes: list[tuple[int, int, str]] = []
+    def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Iterator[Way]:
+        """Yield the closing of what is open before the first tags that may not be in it, as the format or the indentation tells."""
+        changes: list[Change] = []
         stack: list[Piece] = []
-        for piece in pieces if self.rules.is_urdf else ():
-            fits = [index for index, one in enumerate(stack) if piece.name in CHILDREN.get(one.name, ())]
-            inner = stack[fits[-1] + 1 :] if fits and piece.form in ("open", "empty") else []
-            if inner and all(one in self.open for one in inner):
-                changes.append(self._closed(piece.start, *reversed(inner)))
-                del stack[fits[-1] + 1 :]
+        for piece in tags if self.is_urdf else ():
+            fits = (
+                max((index for index, one in enumerate(stack) if piece.name in CHILDREN.get(one.name, ())), default=-2)
+                + 1
+            )
+            if piece.form != "close" and fits > 0 and stack[fits:] and all(one in self.open for one in stack[fits:]):
+                changes.append(self._closed(piece.start, stack[: fits - 1 : -1]))
+                del stack[fits:]
             if piece.form == "open":
                 stack.append(piece)
             elif piece.form == "close" and stack:
                 stack.pop()
-        left = [piece for piece in reversed(stack) if piece in inside]
+        left = [piece for piece in inner if piece in stack]
         if changes:
-            yield self._way("close", *changes, *([self._closed(end, *left)] if left else []))
-        top, *rest = inside
-        last = [self._closed(end, *rest)] if rest else []
-        indent = len(markup.indentation(self.text, top.start))
-        line = re.compile(r"[^<\n]*\S[^<\n]*$", re.MULTILINE).match(self.text, top.end)
-        if line:
-            yield self._way("close", self._closed(line.end(), top), *last)
-        after = (piece for piece in pieces if piece.start > top.end and "\n" in self.text[top.end : piece.start])
-        less = next((piece for piece in after if len(markup.indentation(self.text, piece.start)) <= indent), None)
-        if less is not None and not self.rules.is_urdf:
-            yield self._way("close", self._closed(less.start, top), *last)
-        if not last or self.stop.why != "end":
-            yield self._way("close", self._closed(end, *inside))
+            yield _way("close", *changes, *([self._closed(end, left)] if left else []))
+        indent = len(markup.indentation(self.text, inner[0].start))
+        for piece in tags if not self.is_urdf else ():
+            if (
+                piece.start > inner[0].end
+                and len(markup.indentation(self.text, piece.start)) <= indent
+                and "\n" in self.text[inner[0].end : piece.start]
+            ):
+                yield _way(
+                    "close",
+                    self._closed(piece.start, inner[:1]),
+                    *([self._closed(end, inner[1:])] if inner[1:] else []),
+                )
+                return
 
-    def _after_root(self, wrong: Piece) -> Iterator[Way]:
-        """Yield what may be wrong with something after the root: the root ends early, or this is no part of the robot."""
-        text, end = self.text, len(self.text.rstrip())
-        tags = [piece for piece in self.stop.pieces if piece.form != "other" and piece is not wrong]
-        root, last = tags[0], tags[-1]
-        if wrong.form != "text" and root.form == "empty":
-            slash = text.rindex("/", root.start, root.end)
-            yield self._way("begin", (len(text[:slash].rstrip()), root.end, ">"))
-            yield self._way(
-                "begin", (len(text[:slash].rstrip()), root.end, ">"), (end, end, f"{self.newline}</{root.name}>")
+    def _comment(self, piece: Piece) -> Iterator[Way]:
+        """Yield the ends of a comment: what looks like one, the end of its line, before the next tag; or without -- in it."""
+        text, start, end = self.text, piece.start + 4, piece.end if piece.at is not None else piece.end - 3
+        limit = text.find("<", start) if text.find("<", start) >= 0 else len(text)
+        if piece.at is None and limit > end:
+            yield _way(
+                "comment",
+                *((start + dash.start(), start + dash.end(), "-") for dash in re.finditer("--+", text[start:end])),
             )
-        elif wrong.form != "text":
-            closed = f"{self.newline}</{root.name}>"
-            yield self._way("early", self._removed(last))
-            yield self._way("early", self._removed(last), (end, end, closed))
-        yield self._way("text", (wrong.start, end, ""))
-
-    def _ended(self, piece: Piece) -> Iterator[Way]:
-        """Yield the ends of a comment or declaration: what looks like one, the end of its line, before the next tag."""
-        text, name = self.text, piece.name
-        limit = text.find("<", piece.start + len(name))
-        limit = limit if limit >= 0 else len(text)
-        if dashes := [match.span() for match in re.finditer("--+", text[piece.start + 4 : piece.end - 3])]:
-            if piece.error is None and "<!--" not in text[piece.start + 4 : piece.end]:
-                at = piece.start + 4
-                yield self._way("comment", *((at + start, at + end, "-") for start, end in dashes))
-        near = r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)" if name == "<!--" else r"\s*[/?]?>"
-        said = name if name in _WAYS else "<!--"
-        found = re.compile(near).search(text, piece.start + len(name), limit)
-        if found:
-            yield self._way(said, (*found.span(), ENDS[name]))
-        line = text.find("\n", piece.start, limit)
-        for end in dict.fromkeys(len(text[:at].rstrip()) for at in (line if line >= 0 else limit, limit)):
-            yield self._way(said, (end, end, f" {ENDS[name]}" if name == "<!--" else ENDS[name]))
+        near = re.compile(r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)").search(text, start, limit)
+        line = text.find("\n", start, limit)
+        ends = [near.span()] if near else []
+        ends += [(at, at) for at in (len(text[:stop].rstrip()) for stop in (line, limit) if stop >= 0)]
+        yield from (_way("comment", (*span, "-->" if span[0] < span[1] else " -->")) for span in ends)
 
     def _rewritten(self, piece: Piece) -> Iterator[Way]:
         """Yield the ways to write a malformed tag with the words that it has."""
-        text = self.text
-        end = piece.end + (text[piece.end : piece.end + 1] == ">")
-        body = text[piece.start : end]
-        plain = _COMMENT.sub("", body)
-        head = _HEAD.match(plain)
+        end = piece.end + (self.text[piece.end : piece.end + 1] == ">")
+        body = self.text[piece.start : end]
         if dashes := _DASHES.fullmatch(body):
-            yield self._way("dashes", (piece.start, end, f"<!-- {dashes[1].strip()} -->"))
+            yield _way("comment", (piece.start, end, f"<!-- {dashes[1].strip()} -->"))
+        head = _HEAD.match(_COMMENT.sub("", body))
         if head is None:
             return
-        name, rest, tail = head[2], head[3], head[4]
-        if name.lower() == "xml" and not head[1]:
-            yield self._way("version", (piece.start, end, _XML))
-        forms = [f"</{name}>"] if head[1] else []
-        is_empty = bool({"/", "\\"} & set(tail)) or (
-            not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
+        slash, name, rest, blank, tail = head.groups()
+        if name.lower() == "xml" and not slash:
+            yield _way("version", (piece.start, end, _XML))
+        quote = "'" if self.text.count("='") > self.text.count('="') else '"'
+        is_empty = (
+            "/" in tail or "\\" in tail or (not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN)
         )
-        blank = " " if tail[:1] in (" ", "\t") else ""
-        quote = "'" if text.count("='") > text.count('="') else '"'
-        for attributes in () if head[1] else _attributes(name, rest):
-            values = "".join(f" {key}={quote}{value}{quote}" for key, value in attributes)
-            forms += [f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty)]
-        for form in forms:
-            said = (
-                ("a duplicate attribute", "rename or remove one of the two attributes") if False else _said(body, form)
-            )
-            yield Way(
-                ((piece.start, end, form),),
-                *(("a comment inside a tag", "remove the comment from the tag") if plain != body else said),
-            )
+        written = [
+            "".join(f" {key}={quote}{value}{quote}" for key, value in pairs.items())
+            for pairs in _attributes(name, rest)
+        ]
+        forms = [
+            f"<{name}{values}{blank[:1] if tail else ''}{'/' * empty}>"
+            for values in written
+            for empty in (is_empty, not is_empty)
+        ]
+        for form in [f"</{name}>"] if slash else forms:
+            yield Way([(piece.start, end, form)], *_said(body, form))
+
+
+def _way(name: str, *changes: Change) -> Way:
+    return Way(list(changes), *_WAYS[name])
 
 
 def _descendants(tag: str) -> set[str]:
@@ -436,37 +362,30 @@ def _descendants(tag: str) -> set[str]:
 
 def _said(old: str, new: str) -> tuple[str, str]:
     """Return what was wrong with a text, and what to do, as the characters that change tell."""
-    added, removed = Counter(new) - Counter(old), Counter(old) - Counter(new)
-    for characters, cause, action in _BY_CHARACTER:
-        if any(character in (added if characters[0] == "+" else removed) for character in characters[1:]):
-            return cause, action
-    return "a malformed tag", "correct the tag"
+    changed = {"+": Counter(new) - Counter(old), "-": Counter(old) - Counter(new)}
+    rows = (row for row in _SAID if not row[0] or any(character in changed[row[0][0]] for character in row[0][1:]))
+    return next(rows)[1:]
 
 
-def _attributes(tag: str, rest: str) -> Iterator[list[tuple[str, str]]]:
-    """Yield the attributes that the text after the name of a tag may stand for."""
-    name = tag if tag in TAGS else closest(tag, TAGS) or ""
-    known = list(TAGS[name].attributes) if name else []
+def _attributes(tag: str, rest: str) -> Iterator[dict[str, str]]:
+    """Yield the attributes that the text after the name of a tag may stand for: one that is repeated is renamed, or dropped."""
+    known = list(TAGS[tag if tag in TAGS else closest(tag, TAGS) or "geometry"].attributes)
     words = "|".join(map(re.escape, known)) or r"[A-Za-z_][\w:.\-]*"
-    key = re.compile(
-        rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<![\w:.\-{_QUOTES}])({words})\s*:?\s*(?=[{_QUOTES}])"
-    )
+    key = re.compile(rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<!\S)({words})\s*:?\s*(?=[{_QUOTES}])")
     keys = list(key.finditer(rest)) or list(re.finditer(rf"\b({words})()\s+", rest) if known else ())
     spans = [(found[1] or found[2] or "", found.start(), found.end()) for found in keys] or [("", 0, 0)]
     ends = [*(start for _, start, _ in spans[1:]), len(rest)]
-    pairs = [(key, _value(rest[start:end])) for (key, _, start), end in zip(spans, ends, strict=True)]
-    pairs = pairs if keys or pairs[0][1] else []
-    given = [name for name, _ in pairs]
-    renamed: list[tuple[str, str]] = []
-    for name, value in pairs:
-        free = [other for other in known if other not in given and other not in dict(renamed)]
-        is_free = name and name not in dict(renamed)
-        renamed.append((name if is_free else free[0] if free else name or "name", value))
-    yield from ([*dict(found).items()] for found in (renamed, list(reversed(renamed))))
+    pairs = [(name, _value(rest[start:end])) for (name, _, start), end in zip(spans, ends, strict=True)]
+    free = [name for name in known if name not in [name for name, _ in pairs]]
+    named: dict[str, str] = {}
+    for name, value in pairs if keys or pairs[0][1] else ():
+        named[name if name and name not in named else free.pop(0) if free else name or "name"] = value
+    yield named
+    if len({name for name, _ in pairs}) < len(pairs):
+        yield dict(reversed(pairs))
 
 
 def _value(text: str) -> str:
     """Return a value without quotes, and without what is after its second quote."""
     begun = text.strip(" \t\r\n,;")
-    value = begun.lstrip(_QUOTES)
-    return re.split(f"[{_QUOTES}]", value)[0].strip() if value != begun or re.search(f"[{_QUOTES}]", value) else value
+    return re.split(f"[{_QUOTES}]", begun.lstrip(_QUOTES))[0].strip()
