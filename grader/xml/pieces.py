@@ -96,12 +96,12 @@ def _gap(text: str, mark: Mark, piece: Piece | None, rules: Rules) -> tuple[str,
     start = mark.position + len(text[mark.position : end]) - len(text[mark.position : end].lstrip(" \t\r\n\ufeff"))
     if start < end and not mark.opened and (rules.is_strict or (piece is None and mark.stage == 3)):
         return "text", Piece(start, end, "", "text")
-    if start < end and rules.is_urdf and mark.opened and mark.opened[0].name in CHILDREN:
-        if lost := _LOST.search(text, start, end):
-            return "bracket", Piece(lost.start(), end, "", "text")
+    is_robot = rules.is_urdf and mark.opened and mark.opened[0].name in CHILDREN
+    if is_robot and (lost := _LOST.search(text, start, end)):
+        return "bracket", Piece(lost.start(), end, "", "text")
     if rules.is_strict and (reference := REFERENCE.search(text, start, end)):
         return "reference", Piece(*reference.span(), "&", "text")
-    is_end = piece is None and (mark.opened or not mark.stage == 3)
+    is_end = piece is None and (mark.opened or mark.stage != 3)
     return "end" if is_end else "", Piece(end, end, "", "text")
 
 

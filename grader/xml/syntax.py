@@ -30,6 +30,7 @@ _SAID = (
     ("-\\", "a backslash in a tag", "replace the backslash with /"),
     (f"-{_CURLY}", "typographic quotes", "write straight quotes"),
     ("-,;", "a comma between attributes", "separate the attributes with spaces"),
+    ("-!", "a comment inside a tag", "remove the comment from the tag"),
     ("+>", "a tag without its >", "end the tag with >"),
     ("+<", "the < of a tag is missing", "begin the tag with <"),
     ("+abcdefghijklmnopqrstuvwxyz", "the name of an attribute is missing", "name the attribute"),
@@ -107,7 +108,7 @@ class _Search:
 
     def steps(self, text: str) -> Iterator[tuple[str, list[Way]]]:
         """Yield a text with an error and the ways to bring the parser further, the best first, until the text can be read."""
-        for _ in range(_MAX_ERRORS):
+        for _ in range(_MAX_ERRORS if self.left > 0 else 0):
             ways: list[Way] = []
             for rules in dict.fromkeys((self.rules, self.rules._replace(is_urdf=False))):
                 stop = scan(text, rules)
@@ -195,7 +196,8 @@ class _Operations:
             if early and wrong.form != "text":
                 yield _way("early", early)
                 yield _way("early", early, (end, end, f"{self.line}</{tags[0].name}>"))
-            yield _way("text", (start, min(end, wrong.end), ""))
+            if tags:
+                yield _way("text", (start, min(end, wrong.end), ""))
 
     def characters(self) -> Iterator[Way]:
         """Yield the insertion or deletion of one character near the error, and the removal of what is wrong."""
@@ -206,9 +208,9 @@ class _Operations:
         for place in re.compile(r"\b|(?<=\W)(?=\W)").finditer(text, wrong.start, end):
             for new in ('"', ">", "/>", "<", "=", "/", "'", " "):
                 yield Way([(place.start(), place.start(), new)], *_said("", new))
-        for at in range(wrong.start, end):
-            if not text[at : at + 1].isalnum():
-                yield Way([(at, at + 1, "")], *_said(text[at : at + 1], ""))
+        for at, old in enumerate(text[wrong.start : end], wrong.start):
+            way = (at, at, " ") if old.isalnum() else (at, at + 1, "")
+            yield Way([way], *_said(text[at : way[1]], way[2]))
         yield _way("text", (wrong.start, wrong.end, ""))
 
     def _removed(self, piece: Piece) -> Change:
@@ -240,13 +242,14 @@ class _Operations:
         is_end, top = closing.form != "close", self.open[0] if self.open else None
         near = "|".join(re.escape(piece.name) for piece in (top, closing) if piece and piece.name)
         lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{near})\b(?=[^<>]*>)").finditer(text, top.end if top else 0, end)
-        yield from (_way("bracket", (found.start(), found.start(), "<")) for found in islice(lost, 3))
-        if top and not is_end:
+        yield from (_way("bracket", (found.start(), found.start(), "<")) for found in islice(lost, 3 if near else 0))
+        is_outer = is_end or closing.name in names[1:]
+        if top and not is_outer:
             yield _way("name", (closing.start, closing.end, f"</{top.name}>"))
         if top and not is_end and (not self.is_urdf or top.name not in ATTRIBUTES):
             name = markup.name_end(text, top.start)
             yield _way("tag", (name - len(top.name), name, closing.name))
-        if top and (is_end or closing.name in names):
+        if top and is_outer:
             inner = self.open if is_end else self.open[: names.index(closing.name)]
             line = re.compile(r"[^<\n]*\S[^<\n]*$", re.MULTILINE).match(text, top.end)
             blank = " " if text.count('" />') >= max(text.count('"/>'), 1) else ""
@@ -273,6 +276,8 @@ class _Operations:
             first = [piece for piece in inside if piece.start > after and piece.name in CHILDREN.get(closing.name, ())]
             yield from (_way("open", (piece.start, piece.start, f"<{closing.name}>")) for piece in first[:1])
             yield _way("extra", self._removed(closing))
+            if top and is_outer:
+                yield _way("name", (closing.start, closing.end, f"</{top.name}>"))
 
     def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Iterator[Way]:
         """Yield the closing of what is open before the first tags that may not be in it, as the format or the indentation tells."""
@@ -362,6 +367,9 @@ def _descendants(tag: str) -> set[str]:
 
 def _said(old: str, new: str) -> tuple[str, str]:
     """Return what was wrong with a text, and what to do, as the characters that change tell."""
+    names = re.findall(r"([\w:.-]+)\s*=", old)
+    if len(set(names)) < len(names):
+        return "a duplicate attribute", "rename or remove one of the two attributes"
     changed = {"+": Counter(new) - Counter(old), "-": Counter(old) - Counter(new)}
     rows = (row for row in _SAID if not row[0] or any(character in changed[row[0][0]] for character in row[0][1:]))
     return next(rows)[1:]
