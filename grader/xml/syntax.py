@@ -111,8 +111,8 @@ class _Search:
         for _ in range(_MAX_ERRORS if self.left > 0 else 0):
             ways: list[Way] = []
             for rules in dict.fromkeys((self.rules, self.rules._replace(is_urdf=False))):
-                stop = scan(text, rules)
                 self.left -= len(text)
+                stop = scan(text, rules)
                 ways = ways or (self._ways(text, stop, rules) if stop.why else [])
             if not ways:
                 return
@@ -124,8 +124,7 @@ class _Search:
         operations = _Operations(text, stop, self.rules.is_urdf)
         for stage in (operations.likely(), operations.characters()):
             for way in islice(stage, _MAX_TRIES):
-                way.changes.sort()
-                rank = self._rank(text, stop, rules, way) if self.left > 0 else None
+                rank = self._rank(text, stop, rules, way) if self.left > 0 and way.changes else None
                 found += [(rank, way)] if rank is not None else []
             if any(not faults for (_, _, faults), _ in found):
                 break
@@ -187,13 +186,11 @@ class _Operations:
             if wrong.name not in ATTRIBUTES:
                 change = (name - len(wrong.name), name, "robot")
                 yield _way("tag", change, *([(last, last + len(wrong.name), "robot")] if last > start else []))
-            closing = [] if "</robot" in text else [(end, end, f"{self.line}</robot>")]
-            yield _way("open", (start, start, f"<robot>{self.line}"), *closing)
+            closing = "" if "</robot" in text else f"{self.line}</robot>"
+            yield _way("open", (start, start, f"<robot>{self.line}"), (end, end, closing))
         elif why in ("second", "text"):
-            early = (
-                self._begun(tags[0]) if tags and tags[0].form == "empty" else self._removed(tags[-1]) if tags else None
-            )
-            if early and wrong.form != "text":
+            if tags and wrong.form != "text":
+                early = self._begun(tags[0]) if tags[0].form == "empty" else self._removed(tags[-1])
                 yield _way("early", early)
                 yield _way("early", early, (end, end, f"{self.line}</{tags[0].name}>"))
             if tags:
@@ -217,11 +214,8 @@ class _Operations:
         """Return the removal of a tag, with its line where nothing else is on it."""
         start = piece.start - len(markup.indentation(self.text, piece.start))
         line = re.compile(r"\r?\n").match(self.text, piece.end)
-        return (
-            (start, line.end(), "")
-            if line and self.text[start - 1 : start] in ("", "\n")
-            else (piece.start, piece.end, "")
-        )
+        is_alone = line and self.text[start - 1 : start] in ("", "\n")
+        return (start, line.end(), "") if line and is_alone else (piece.start, piece.end, "")
 
     def _begun(self, piece: Piece) -> Change:
         return len(self.text[: self.text.rindex("/", piece.start, piece.end)].rstrip()), piece.end, ">"
@@ -229,12 +223,15 @@ class _Operations:
     def _closed(self, offset: int, opened: list[Piece]) -> Change:
         """Return the closing of tags after what is before an offset."""
         end = len(self.text[:offset].rstrip())
-        lines = ("\n" in self.text[piece.start : end] for piece in opened)
-        indents = (
-            self.line + markup.indentation(self.text, piece.start) if line else ""
-            for piece, line in zip(opened, lines, strict=True)
-        )
-        return end, end, "".join(f"{indent}</{piece.name}>" for piece, indent in zip(opened, indents, strict=True))
+        new = ""
+        for piece in opened:
+            is_line = "\n" in self.text[piece.start : end]
+            new += (
+                f"{self.line}{markup.indentation(self.text, piece.start)}</{piece.name}>"
+                if is_line
+                else f"</{piece.name}>"
+            )
+        return end, end, new
 
     def _unclosed(self, tags: list[Piece], closing: Piece) -> Iterator[Way]:
         """Yield what may be wrong with a closing tag or the end of the file, or with the tags that are open there."""
@@ -257,21 +254,15 @@ class _Operations:
                 yield _way("empty", (top.end - 1, top.end, f"{blank}/>"))
             for piece in [piece for piece in self.open[:-1] if not piece.has_attributes][:3]:
                 yield _way("slash", (piece.start, piece.end, f"</{piece.name}>"))
-            yield from self._places(tags, end, inner)
+            yield self._places(tags, end, inner)
             if line:
-                yield _way(
-                    "close",
-                    (line.end(), line.end(), f"</{top.name}>"),
-                    *([self._closed(end, inner[1:])] if inner[1:] else []),
-                )
+                yield _way("close", self._closed(line.end(), inner[:1]), self._closed(end, inner[1:]))
             yield _way("end" if is_end else "close", self._closed(end, inner))
             yield from (_way("drop", self._removed(piece)) for piece in self.open[:3])
         if not is_end:
             inside, below = [piece for piece in tags if not top or piece.start >= top.end], _descendants(closing.name)
             empty = [piece for piece in inside if piece.form == "empty" and piece.name == closing.name]
             yield from (_way("begin", self._begun(piece)) for piece in empty[-1:])
-            early = [piece for piece in tags if piece.form == "close" and piece.name == closing.name and not top]
-            yield from (_way("early", self._removed(piece)) for piece in early[-1:])
             after = max((piece.start for piece in inside if piece.name not in below), default=-1)
             first = [piece for piece in inside if piece.start > after and piece.name in CHILDREN.get(closing.name, ())]
             yield from (_way("open", (piece.start, piece.start, f"<{closing.name}>")) for piece in first[:1])
@@ -279,38 +270,29 @@ class _Operations:
             if top and is_outer:
                 yield _way("name", (closing.start, closing.end, f"</{top.name}>"))
 
-    def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Iterator[Way]:
-        """Yield the closing of what is open before the first tags that may not be in it, as the format or the indentation tells."""
+    def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Way:
+        """Return the closing of what is open before the first tags that may not be in it, as the format or the indentation tells."""
         changes: list[Change] = []
         stack: list[Piece] = []
-        for piece in tags if self.is_urdf else ():
-            fits = (
-                max((index for index, one in enumerate(stack) if piece.name in CHILDREN.get(one.name, ())), default=-2)
-                + 1
-            )
-            if piece.form != "close" and fits > 0 and stack[fits:] and all(one in self.open for one in stack[fits:]):
-                changes.append(self._closed(piece.start, stack[: fits - 1 : -1]))
-                del stack[fits:]
+        for piece in tags:
+            inside = stack[self._around(piece, stack) :] if piece.form != "close" else []
+            if inside and all(one in self.open for one in inside):
+                changes.append(self._closed(piece.start, inside[::-1]))
+                del stack[-len(inside) :]
             if piece.form == "open":
                 stack.append(piece)
             elif piece.form == "close" and stack:
                 stack.pop()
-        left = [piece for piece in inner if piece in stack]
-        if changes:
-            yield _way("close", *changes, *([self._closed(end, left)] if left else []))
-        indent = len(markup.indentation(self.text, inner[0].start))
-        for piece in tags if not self.is_urdf else ():
-            if (
-                piece.start > inner[0].end
-                and len(markup.indentation(self.text, piece.start)) <= indent
-                and "\n" in self.text[inner[0].end : piece.start]
-            ):
-                yield _way(
-                    "close",
-                    self._closed(piece.start, inner[:1]),
-                    *([self._closed(end, inner[1:])] if inner[1:] else []),
-                )
-                return
+        return _way("close", *changes, self._closed(end, [piece for piece in inner if piece in stack]))
+
+    def _around(self, piece: Piece, stack: list[Piece]) -> int:
+        """Return how many of the open tags a tag may be in."""
+        if self.is_urdf:
+            places = (at for at in range(len(stack), 0, -1) if piece.name in CHILDREN.get(stack[at - 1].name, ()))
+            return next(places, len(stack))
+        indent = markup.indentation(self.text, piece.start)
+        is_first = self.text.startswith("\n", piece.start - len(indent) - 1)
+        return sum(markup.indentation(self.text, one.start) < indent for one in stack) if is_first else len(stack)
 
     def _comment(self, piece: Piece) -> Iterator[Way]:
         """Yield the ends of a comment: what looks like one, the end of its line, before the next tag; or without -- in it."""
@@ -357,7 +339,10 @@ class _Operations:
 
 
 def _way(name: str, *changes: Change) -> Way:
-    return Way(list(changes), *_WAYS[name])
+    return Way(
+        [change for change in sorted(changes, key=lambda change: change[0]) if change[0] < change[1] or change[2]],
+        *_WAYS[name],
+    )
 
 
 def _descendants(tag: str) -> set[str]:
