@@ -201,14 +201,13 @@ class _Operations:
         wrong, text = self.stop.wrong, self.text
         if wrong.form in ("other", "text"):
             return
-        end = min(wrong.end + 1, wrong.start + 300)
-        for place in re.compile(r"\b|(?<=\W)(?=\W)").finditer(text, wrong.start, end):
-            for new in ('"', ">", "/>", "<", "=", "/", "'", " "):
-                yield Way([(place.start(), place.start(), new)], *_said("", new))
-        for at, old in enumerate(text[wrong.start : end], wrong.start):
-            way = (at, at, " ") if old.isalnum() else (at, at + 1, "")
-            yield Way([way], *_said(text[at : way[1]], way[2]))
         yield _way("text", (wrong.start, wrong.end, ""))
+        places = {found.start() for found in re.finditer(r"\b|(?<=\W)(?=\W)", text[wrong.start : wrong.end + 1])}
+        for at, old in enumerate(text[wrong.start : wrong.end + 1], wrong.start):
+            for new in ('"', ">", "/>", "<", "=", "/", "'", " ") if at - wrong.start in places else " ":
+                yield Way([(at, at, new)], *_said("", new))
+            if not old.isalnum():
+                yield Way([(at, at + 1, "")], *_said(old, ""))
 
     def _removed(self, piece: Piece) -> Change:
         """Return the removal of a tag, with its line where nothing else is on it."""
