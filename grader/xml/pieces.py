@@ -11,7 +11,9 @@ _MAX_TAG = 2000  # characters: what is longer is no tag
 _MAX_DEPTH = 500
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
-_LOST = re.compile(rf"(?<![<\w/:.\-\"'=])/?(?:{'|'.join(sorted(ATTRIBUTES, key=len, reverse=True))})\b(?=[^<>]*>)")
+_LOST = re.compile(
+    rf"(?<![<\w/:.\-\"'=])/?(?:{'|'.join(sorted(ATTRIBUTES, key=len, reverse=True))})\b(?=[^<>]{{0,300}}>)"
+)
 _DECLARATION = re.compile(r"""<\?xml\s+version\s*=\s*["']1\.[0-9]["']\s*(encoding\s*=\s*["'][^"']*["']\s*)?\?>""")
 _NO_NUMBERS = re.compile(r"[^-+0-9.,eE\s]")
 

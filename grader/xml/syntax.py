@@ -18,12 +18,14 @@ _MAX_TRIES = 400  # at one error
 _MAX_WAYS = 4  # at one error that grading decides among
 _MAX_FOUND = 8
 _MAX_READ = 3_000_000  # characters
+_MAX_LOOKED = 2_000  # characters of a line or comment
 _WINDOW = 400  # characters after an error that must be read
 _CURLY = "\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb\u2033\u2032\u00b4`"
 _QUOTES = f"\"'{_CURLY}"
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-_HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)(.*?)(\s*)([?\\/>\s]*)\Z", re.DOTALL)
-_DASHES = re.compile(r"<[-\u2013\u2014!]+(.*?)[-\u2013\u2014]*>", re.DOTALL)
+_HEAD = re.compile(r"[<\s]*([\\/]?)\s*([A-Za-z_][\w.:\-]*)")
+_DASHES = "-\u2013\u2014!"
+_NEAR = re.compile(r"[-\u2013\u2014]+[\s!]*>|[-\u2013\u2014]{2,}(?=\s*\n)")  # the end of a comment
 _XML = '<?xml version="1.0"?>'
 # What is wrong with a tag, and what to do: by the characters that are removed (-) or added (+).
 _SAID = (
@@ -128,8 +130,9 @@ class _Search:
                 found += [(rank, way)] if rank is not None else []
             if any(not faults for (_, _, faults), _ in found):
                 break
-        best = list({way.applied(text): way for _, way in sorted(found, key=lambda pair: pair[0])[::-1]}.values())[::-1]
-        return best[:_MAX_WAYS] + [way for way in best[_MAX_WAYS:] if _is_lossy(way)][:1]
+        best = [way for _, way in sorted(found, key=lambda pair: pair[0])]
+        unique = list({way.applied(text): way for way in best[3 * _MAX_WAYS :: -1]}.values())[: -_MAX_WAYS - 1 : -1]
+        return unique + [way for way in best if _is_lossy(way) and way not in unique][:1]
 
     def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, bool, int] | None:
         """Return how far the parser is from the end, whether text is lost, and the faults for urdfdom; None if no further."""
@@ -237,7 +240,9 @@ class _Operations:
         text, end, names = self.text, len(self.text[: closing.start].rstrip()), [piece.name for piece in self.open]
         is_end, top = closing.form != "close", self.open[0] if self.open else None
         near = "|".join(re.escape(piece.name) for piece in (top, closing) if piece and piece.name)
-        lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{near})\b(?=[^<>]*>)").finditer(text, top.end if top else 0, end)
+        lost = re.compile(rf"(?<![<\w/\"'=])/?(?:{near})\b(?=[^<>]{{0,300}}>)").finditer(
+            text, top.end if top else 0, end
+        )
         yield from (_way("bracket", (found.start(), found.start(), "<")) for found in islice(lost, 3 if near else 0))
         is_outer = is_end or closing.name in names[1:]
         if top and not is_outer:
@@ -247,15 +252,15 @@ class _Operations:
             yield _way("tag", (name - len(top.name), name, closing.name))
         if top and is_outer:
             inner = self.open if is_end else self.open[: names.index(closing.name)]
-            line = re.compile(r"[^<\n]*\S[^<\n]*$", re.MULTILINE).match(text, top.end)
+            line = text[top.end : top.end + _MAX_LOOKED].partition("\n")[0].rstrip()
             blank = " " if text.count('" />') >= max(text.count('"/>'), 1) else ""
-            if not line:
+            if not line or "<" in line:
                 yield _way("empty", (top.end - 1, top.end, f"{blank}/>"))
             for piece in [piece for piece in self.open[:-1] if not piece.has_attributes][:3]:
                 yield _way("slash", (piece.start, piece.end, f"</{piece.name}>"))
             yield self._places(tags, end, inner)
-            if line:
-                yield _way("close", self._closed(line.end(), inner[:1]), self._closed(end, inner[1:]))
+            if line and "<" not in line:
+                yield _way("close", self._closed(top.end + len(line), inner[:1]), self._closed(end, inner[1:]))
             yield _way("end" if is_end else "close", self._closed(end, inner))
             yield from (_way("drop", self._removed(piece)) for piece in self.open[:3])
         if not is_end:
@@ -302,7 +307,7 @@ class _Operations:
                 "comment",
                 *((start + dash.start(), start + dash.end(), "-") for dash in re.finditer("--+", text[start:end])),
             )
-        near = re.compile(r"[-\u2013\u2014]+\s*!?\s*>|[-\u2013\u2014]{2,}(?=\s*\n)").search(text, start, limit)
+        near = _NEAR.search(text, start, min(limit, start + _MAX_LOOKED))
         line = text.find("\n", start, limit)
         ends = [near.span()] if near else []
         ends += [(at, at) for at in (len(text[:stop].rstrip()) for stop in (line, limit) if stop >= 0)]
@@ -312,12 +317,15 @@ class _Operations:
         """Yield the ways to write a malformed tag with the words that it has."""
         end = piece.end + (self.text[piece.end : piece.end + 1] == ">")
         body = self.text[piece.start : end]
-        if dashes := _DASHES.fullmatch(body):
-            yield _way("comment", (piece.start, end, f"<!-- {dashes[1].strip()} -->"))
-        head = _HEAD.match(_COMMENT.sub("", body))
+        if body[1:2] in tuple(_DASHES):
+            yield _way("comment", (piece.start, end, f"<!-- {body.strip(f'<>{_DASHES} ')} -->"))
+        plain = _COMMENT.sub("", body)
+        head = _HEAD.match(plain)
         if head is None:
             return
-        slash, name, rest, blank, tail = head.groups()
+        (slash, name), inner = head.groups(), plain[head.end() :]
+        rest = inner.rstrip("?\\/> \t\r\n")
+        tail = inner[len(rest) :]
         if name.lower() == "xml" and not slash:
             yield _way("version", (piece.start, end, _XML))
         quote = "'" if self.text.count("='") > self.text.count('="') else '"'
@@ -329,7 +337,7 @@ class _Operations:
             for pairs in _attributes(name, rest)
         ]
         forms = [
-            f"<{name}{values}{blank[:1] if tail else ''}{'/' * empty}>"
+            f"<{name}{values}{' ' if tail[:1].isspace() and tail.strip() else ''}{'/' * empty}>"
             for values in written
             for empty in (is_empty, not is_empty)
         ]

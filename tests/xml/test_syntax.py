@@ -36,6 +36,13 @@ ANY = (
 )
 
 
+HOSTILE = (
+    *("<link " * 60_000, "<a>" * 100_000, "<" * 400_000, '<a b="' * 60_000, "<!--" * 90_000, "<?a?>" * 80_000),
+    *("<a" + " " * 200_000 + "b", "<a>" + "x " * 200_000 + "<b></a>", "<!--" + "-" * 100_000 + " " * 100_000),
+    *("<" + "-" * 200_000, "<robot>" + "link " * 80_000 + "</x>", "<a " + "=" * 200_000, "<a " + "b" * 200_000),
+)
+
+
 def fixed(text: str, *, is_urdf: bool) -> list[tuple[str | None, str]]:
     """Return the texts after the edits that are found, and what was wrong with each."""
     found = proposals(Source("file", text), is_urdf=is_urdf, is_strict=not is_urdf)
@@ -70,9 +77,7 @@ def test_nothing_is_found_where_no_edit_helps(text: str) -> None:
     assert not fixed(text, is_urdf=False)
 
 
-@pytest.mark.parametrize(
-    "text", ["<link " * 60_000, "<a>" * 100_000, "<" * 400_000, '<a b="' * 60_000, "<!--" * 90_000, "<?a?>" * 80_000]
-)
+@pytest.mark.parametrize("text", HOSTILE)
 @pytest.mark.parametrize("is_urdf", [False, True])
 def test_hostile_text_costs_bounded_work(text: str, is_urdf: bool) -> None:
     """The work for 400 KB of nothing but errors is bounded."""
