@@ -14,6 +14,7 @@ from grader.robot.transforms import Vector
 from grader.source import LazyLocation
 from grader.text import quoted
 from grader.xml.parsing import Element, XmlDocument
+from grader.xml.urdf_format import TAGS
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
 _MAX_PROBLEMS = 1000
@@ -151,16 +152,14 @@ class ElementReader:
         consequence = self._consequence.format(quoted(self._link))
         self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
 
-    def number(self, element: Element, attribute: str, default: float = 0.0) -> float:
-        """Return an attribute's number, or the default if it is not given."""
-        value = self._value(element, attribute, number, nan)
-        return value if attribute in element.attrib else default
-
-    def required(self, element: Element, attribute: str) -> float:
-        """Return an attribute's number; it is a problem if it is not given."""
-        if element.get(attribute) is None:
+    def number(self, element: Element, attribute: str) -> float:
+        """Return an attribute's number, or its default if it is not given; it is a problem if it has none."""
+        if attribute in element.attrib:
+            return self._value(element, attribute, number, nan)
+        default = TAGS[element.tag].attributes[attribute].default
+        if default is None:
             self.fail(f"<{element.tag}> has no {attribute}", element)
-        return self._value(element, attribute, number, nan)
+        return float(default or nan)
 
     def vector(self, element: Element, attribute: str, default: Vector = _ZERO) -> Vector:
         """Return an attribute's three numbers, or the default if it is not given."""

@@ -111,7 +111,7 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
         return None
     reader = ElementReader(problems, catalogue.BAD_LIMIT)
     lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
-    effort, velocity = reader.required(limit, "effort"), reader.required(limit, "velocity")
+    effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
     if kind in _WITH_LIMIT and lower >= upper and not reader.failed:
         message = f"lower {lower:g} is not below upper {upper:g}: the joint cannot move"
         problems.add(catalogue.EMPTY_RANGE, message, limit, "lower" if "lower" in limit.attrib else "upper")
@@ -133,7 +133,7 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
     joint = element.get("joint")
     if joint is None:
         reader.fail("<mimic> has no joint", element)
-    multiplier, offset = reader.number(element, "multiplier", 1.0), reader.number(element, "offset")
+    multiplier, offset = reader.number(element, "multiplier"), reader.number(element, "offset")
     return None if reader.failed or joint is None else Mimic(joint, multiplier, offset, problems.location(element))
 
 
@@ -148,7 +148,7 @@ def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
 def _read_safety(element: Element, problems: Problems) -> SafetyController:
     reader = ElementReader(problems, catalogue.BAD_SAFETY)
     return SafetyController(
-        reader.required(element, "k_velocity"),
+        reader.number(element, "k_velocity"),
         reader.number(element, "soft_lower_limit"),
         reader.number(element, "soft_upper_limit"),
         reader.number(element, "k_position"),

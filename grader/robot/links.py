@@ -153,7 +153,7 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
     values: list[float] = []
     for tag, attributes in (("mass", ("value",)), ("inertia", _INERTIA)):
         if tag in inside:
-            values += [reader.required(inside[tag], attribute) for attribute in attributes]
+            values += [reader.number(inside[tag], attribute) for attribute in attributes]
         else:
             reader.fail(f"<inertial> has no <{tag}>", element)
     if reader.failed:
@@ -204,10 +204,10 @@ def _read_geometry(
             geometry = Box(reader.vector(shape, "size"), location)
             sizes = [("size", edge) for edge in geometry.size]
         case "cylinder":
-            geometry = Cylinder(reader.required(shape, "radius"), reader.required(shape, "length"), location)
+            geometry = Cylinder(reader.number(shape, "radius"), reader.number(shape, "length"), location)
             sizes = [("radius", geometry.radius), ("length", geometry.length)]
         case "sphere":
-            geometry = Sphere(reader.required(shape, "radius"), location)
+            geometry = Sphere(reader.number(shape, "radius"), location)
             sizes = [("radius", geometry.radius)]
         case "mesh":
             if shape.get("filename") is None:

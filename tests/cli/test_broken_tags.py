@@ -1,6 +1,7 @@
 """A broken tag costs the criteria that need it, and `urdf-loads`: the elements before and after it are graded as they stand."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -187,3 +188,72 @@ def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
         assert len(elements) == len(found.offsets)
         assert all(text[offset] == "<" for offset in found.offsets)
         assert found.offsets == sorted(found.offsets)
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_tag_has_a_proven_hint(name: str, tmp_path: Path) -> None:
+    """The edits of the hint, which `--fix` applies, give the points back; another broken tag in the file is found as well."""
+    path, fixed = tmp_path / "my_robot.urdf", tmp_path / "fixed.urdf"
+    path.write_text(
+        replaced(BROKEN[name], ('<child link="left_wheel"/>', '<child link="left_wheel/>')), encoding="utf-8"
+    )
+    run(("grade", path, "--fix", fixed))
+    assert report_of(fixed)["score"] == 70
+
+
+def test_the_hint_says_the_cause_or_the_edit(tmp_path: Path) -> None:
+    """The level `cause` says what is wrong and where, without the edits; all errors of a file are one hint."""
+    path = tmp_path / "my_robot.urdf"
+    path.write_text(
+        replaced(BROKEN["a visual that is not closed"], BROKEN["a quote that is not closed"]), encoding="utf-8"
+    )
+    cause, edit = (
+        " ".join(run(("grade", path, "--hints", level)).stdout.decode().split()) for level in ("cause", "edit")
+    )
+    assert "Check lines 27 and 32: a quote is missing and a closing tag is missing." in cause
+    assert (
+        'Change `<link name="lidar>` to `<link name="lidar">` (line 27) and insert `</visual>` (after line 32)' in edit
+    )
+
+
+def test_broken_xacro_has_a_proven_hint(tmp_path: Path) -> None:
+    """xacro reads XML strictly: a tag that is not closed, an & and a missing namespace are corrected together."""
+    path, fixed = tmp_path / "my_robot.urdf.xacro", tmp_path / "fixed.urdf.xacro"
+    text = replaced(
+        (
+            '<robot name="my_robot">',
+            '<robot name="my_robot">\n<xacro:property name="r" value="0.05"/>\n<!-- a -- b -->',
+        ),
+        ('sphere radius="0.05"', 'sphere radius="${r}"'),
+        BROKEN["a visual that is not closed"],
+    )
+    path.write_text(text, encoding="utf-8")
+    run(("grade", path, "--fix", fixed))
+    assert report_of(fixed)["score"] == 70
+
+
+def report_of(path: Path) -> dict[str, Any]:
+    """Return the JSON report on a file or folder."""
+    return dict(json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout))
+
+
+PACKAGE = {
+    "package.xml": [("</license>", "<license>"), ('email="', "email=\u201c"), ("</export>", "")],
+    "launch/my_robot_rviz.launch.xml": [("</launch>", ""), ("<node ", "node "), ("</node>", "")],
+}
+
+
+@pytest.mark.parametrize(("path", "change"), [(path, change) for path, those in PACKAGE.items() for change in those])
+def test_the_xml_of_a_package_has_a_proven_hint(path: str, change: tuple[str, str], tmp_path: Path) -> None:
+    """package.xml and launch files in XML are corrected by the same search, which knows nothing of their format."""
+    folder, fixed = tmp_path / "my_robot", tmp_path / "fixed"
+    shutil.copytree(ROOT / "submissions/equivalent-launch-file-in-xml/my_robot", folder)
+    text = (folder / path).read_text(encoding="utf-8")
+    assert change[0] in text
+    (folder / path).write_text(text.replace(*change, 1), encoding="utf-8")
+    before = report_of(folder)["score"]
+    run(("grade", folder, "--fix", fixed))
+    after = (fixed if fixed.is_file() else fixed / path).read_text(encoding="utf-8")
+    assert after.split() == text.split()
+    (folder / path).write_text(after, encoding="utf-8")
+    assert before < report_of(folder)["score"]

@@ -1,11 +1,8 @@
-"""What a text that ROS 2 cannot read may stand for: numbers, and tags that are malformed."""
+"""What numbers that ROS 2 cannot read may stand for."""
 
 import pytest
 
 from grader.robot.repairs.numbers import is_readable, readable
-from grader.robot.repairs.pieces import Tree, pieces_of, remaining
-from grader.robot.repairs.tags import rewrites
-from grader.robot.repairs.texts import lost_brackets
 
 NUMBERS = (
     ("xyz", "0,15 0 0,225", "0.15 0 0.225", "a decimal comma"),
@@ -45,56 +42,3 @@ def test_numbers_are_not_guessed(text: str) -> None:
 def test_numbers_that_ros_reads_need_no_repair(text: str) -> None:
     """Numbers that ROS 2 reads are left as they are."""
     assert is_readable("xyz", text)
-
-
-TAGS = (
-    ('<parent="base_link"/>', '<parent link="base_link"/>', "the name of an attribute is missing"),
-    ('<origin="0 0 0.1" rpy="0 0 0"/>', '<origin xyz="0 0 0.1" rpy="0 0 0"/>', "the name of an attribute is missing"),
-    ('<origin xyz="0 0 1" ="0 0 0" />', '<origin xyz="0 0 1" rpy="0 0 0" />', "a malformed tag"),
-    ('<joint name="a", type="fixed">', '<joint name="a" type="fixed">', "a comma between attributes"),
-    ("<joint name=a type=fixed>", '<joint name="a" type="fixed">', "the quotes, which are missing"),
-    ("<link name=\u201ca\u201d/>", '<link name="a"/>', "typographic quotes"),
-    ('<mesh filename="package://a/b.stl scale="1 1 1"/>', '<mesh filename="package://a/b.stl" scale="1 1 1"/>', "a quote is missing"),
-    ('<originxyz="0 0 1"/>', '<origin xyz="0 0 1"/>', "the space after the name of a tag is missing"),
-    ("<\\link>", "</link>", "a backslash in a tag"),
-    ('<xml version="1.0"?>', '<?xml version="1.0"?>', "the XML declaration"),
-    ("<- a comment ->", "<!-- a comment -->", "the start of a comment"),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize(("tag", "meant", "cause"), TAGS)
-def test_malformed_tag_is_written_as_it_is_meant(tag: str, meant: str, cause: str) -> None:
-    """A malformed tag is written with its name, and with each attribute that it has, in quotes."""
-    (piece,) = pieces_of(tag)
-    found = next(rewrites(tag, piece))
-    assert (found.new, found.cause) == (meant, cause)
-
-
-def test_extent_of_a_tag_without_end() -> None:
-    """A tag without its > ends before the next tag; a comment in a tag belongs to it."""
-    text = '<a x="1"\n  <b <!-- c --> y="2"/>\n</a'
-    assert [piece.text_in(text) for piece in pieces_of(text)] == ['<a x="1"', '<b <!-- c --> y="2"/>', "</a"]
-
-
-@pytest.mark.parametrize(
-    ("text", "unread"),
-    [
-        ("<a><b/></a>", -1),
-        ("<a></b></a>", 8),
-        ("<a><b></a>", 4),
-        ("<a><b/>", 0),
-        ("<a><!-- </a>", 9),
-        ("<a/> text", 5),
-        ("<a><!-- <b> --></a>", -1),
-    ],
-)
-def test_remaining_text_is_what_tinyxml2_does_not_read(text: str, unread: int) -> None:
-    """The rest of a text is counted from its first error; a tag that is still open at the end leaves nothing."""
-    assert remaining(text) == unread
-    assert (Tree.of(text).mismatch is not None) == (unread in (8, 4))
-
-
-def test_lost_brackets_are_found_in_text_only() -> None:
-    """What looks like a tag without its < is found between tags, not in a comment or a value."""
-    text = '<robot name="link>"><!-- link name> -->link name="a"></link> visual></robot>'
-    assert [text[at : at + 4] for at in lost_brackets(text)] == ["link", "visu"]

@@ -13,15 +13,14 @@ from grader.robot.edits.pieces import Difference
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
-from grader.robot.repairs.pieces import remaining
-from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
 from grader.submission.urdf import Read
-from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
+from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
+from grader.xml.pieces import remaining
+from grader.xml.syntax import proposals as syntax_proposals
 
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
 _MAX_VALUES = 40  # edits of one step that are graded
-_MAX_FALLBACKS = 60
 _MAX_CANDIDATES = 150  # edits of one step that are read
 _STRUCTURE = {"parent", "child"}
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
@@ -58,7 +57,9 @@ def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
     unread = remaining(reading.source.text) if reading.root is None else -1
-    silent = sum(problem.kind in _SILENT for problem in reading.problems) + len(lost_brackets(reading.source.text))
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + (
+        remaining(reading.source.text, is_urdf=True) >= 0
+    )
     rejected = effects.count("rejects") or int(reading.verdict == "rejected")
     return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
 
@@ -121,7 +122,8 @@ def _reading(state: State) -> Reading | None:
 
 def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
     """Yield the edits that may be the next step, the most plausible first: of the text, then of its elements."""
-    yield from text_proposals(reading, reference)
+    is_strict = any(problem.kind.is_before_ros for problem in reading.problems)  # xacro, which reads XML only
+    yield from syntax_proposals(reading.source, is_urdf=True, is_strict=is_strict)
     draft = Draft.of(reading)
     if draft is not None:
         difference = Difference(draft, reference or draft)
@@ -133,8 +135,6 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
         for piece in chain(misplaced(difference), chain.from_iterable(own), near):
             for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
                 yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)
-    elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
-        yield from islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
 
 
 def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> Step | None:
