@@ -26,20 +26,24 @@ def show_groups(page: Page) -> None:
     shown = [
         group for group in groups(report) if page.is_verbose or not all(result.is_open for result in group.results)
     ]
-    if shown and not page.is_verbose:
-        console.print()
+    if not page.is_verbose:
+        lost = [group for group in shown if page.room > 1 or group_status(group) != "passed"]
+        texts = [
+            mark(group_status(group), console) + Text(f" {printable(group.title)} {content.earned_text(group.results)}")
+            for group in lost
+        ]
+        if texts:
+            page.leave_row()
+            wrapped(console, Text("  ").join(texts), INDENT, Text())
+        return
     for part, of_part in groupby(shown, key=lambda group: group.part):
         found = list(of_part)
-        if page.is_verbose and len(report.parts) > 1:
+        if len(report.parts) > 1:
             console.print()
             points = content.earned_text(tuple(result for group in found for result in group.results))
             wrapped(console, Text(f"{printable(titles[part])}  {points}", "bold underline"), 0)
         for group in found:
-            if page.is_verbose:
-                _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
-            else:
-                start = mark(group_status(group), console) + Text(" ")
-                wrapped(console, Text(f"{printable(group.title)} {content.earned_text(group.results)}"), INDENT, start)
+            _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
 
 
 def _show_criteria(group: Group, page: Page, *, has_title: bool) -> None:
@@ -87,7 +91,7 @@ def show_other_problems(page: Page) -> None:
     problems = tuple(content.other_problems(report))
     listed = problems if page.is_verbose else tuple(found for found in problems if found.severity != "note")
     if listed:
-        console.print()
+        page.leave_row()
     if page.is_verbose and listed:
         wrapped(console, Text(content.other_problems_title(report), "bold"), 0)
         show_problems(console, problems, report.submission.source, report.submission.path)
