@@ -116,7 +116,8 @@ def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
     """Yield the feedback where there is no hint, and what should be where the message does not say it; with room for it both."""
     if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
         yield Text(details.feedback, "italic")
-    if details.expected and (page.room > 1 or result.outcome.expected is None):
+    is_clear = result.outcome.expected is not None or (not page.room and bool(details.hints))
+    if details.expected and (page.room > 1 or not is_clear):
         yield Text(details.expected, "dim")
 
 

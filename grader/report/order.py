@@ -110,11 +110,12 @@ def _edit(failure: Failure) -> str:
 
 
 def _together(some: tuple[Failure, ...]) -> tuple[Failure, ...]:
-    """Return failures that one edit fixes: first the one at the line that is edited, else the costliest."""
+    """Return failures that one edit fixes: first the one at the line that is edited, of the file before the robot, else the costliest."""
 
-    def rank(failure: Failure) -> tuple[bool, Decimal]:
+    def rank(failure: Failure) -> tuple[bool, bool, Decimal]:
         where, at = failure.result.outcome.location, failure.result.hints[0].at
-        return where is None or (where.path, where.line) != (at.path, at.line), -failure.lost
+        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
+        return not is_there, failure.result.criterion.check.subject != "urdf", -failure.lost
 
     first, *also = sorted(some, key=rank) if len(some) > 1 else some
     return first._replace(also=tuple(also)), *(one._replace(first=first.result.criterion.id) for one in also)

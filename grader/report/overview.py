@@ -27,14 +27,12 @@ def show_groups(page: Page) -> None:
         group for group in groups(report) if page.is_verbose or not all(result.is_open for result in group.results)
     ]
     if not page.is_verbose:
-        lost = [group for group in shown if page.room > 1 or group_status(group) != "passed"]
-        texts = [
-            mark(group_status(group), console) + Text(f" {printable(group.title)} {content.earned_text(group.results)}")
-            for group in lost
-        ]
-        if texts:
+        kinds = [kind for kind in alike(shown, group_status) if page.room > 1 or kind[0] != "passed"]
+        if kinds:
             page.leave_row()
-            wrapped(console, Text("  ").join(texts), INDENT, Text())
+        for status, some in kinds:
+            names = (f"{printable(group.title)} {content.earned_text(group.results)}" for group in some)
+            wrapped(console, Text(", ".join(names)), INDENT, mark(status, console) + Text(" "))
         return
     for part, of_part in groupby(shown, key=lambda group: group.part):
         found = list(of_part)
@@ -98,7 +96,7 @@ def show_other_problems(page: Page) -> None:
         return
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
     for _, some in kinds[:_MAX_KINDS]:
-        put(console, _kind_block(some, console))
+        put(console, _kind_block(some, console, most=2 if page.room else 1))
     rest = len(problems) - sum(len(some) for _, some in kinds[:_MAX_KINDS])
     if rest:
         noun = "problem" if len(kinds) > _MAX_KINDS else "note"
@@ -106,13 +104,13 @@ def show_other_problems(page: Page) -> None:
         wrapped(console, Text(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim"), 0)
 
 
-def _kind_block(problems: Sequence[Problem], console: Console) -> Text:
-    """Return problems of one kind in one file in at most two lines: code, place and message of the first, and how many more."""
+def _kind_block(problems: Sequence[Problem], console: Console, most: int) -> Text:
+    """Return problems of one kind in one file in few lines: code, place and message of the first, and how many more."""
     first, more = problems[0], len(problems) - 1
     where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
     text = Text.assemble((f"{first.code} {first.severity} ", SEVERITY_STYLES[first.severity]), (where, "dim"))
     text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
-    return block(console, text, INDENT, Text(), most=2)
+    return block(console, text, INDENT, Text(), most=most)
 
 
 def show_notes(page: Page) -> None:

@@ -58,7 +58,7 @@ def _package_line(page: Page) -> str:
 def _show_consequences(order: Order, page: Page) -> None:
     """Print the failures whose error is carried forward, unless they are shown, and what is skipped although nothing failed."""
     carried = [failure.result for failure in order.failures if failure.result.why_given and not page.is_verbose]
-    lines = [content.carried_text(some) for _, some in alike(carried, lambda result: result.carried)]
+    lines = [content.carried_text(carried)] if carried else []
     skipped = alike(order.skipped, lambda result: result.because or "")
     lines += [content.skipped_text(cause, some) for cause, some in skipped]
     if lines:
