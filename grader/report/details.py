@@ -137,5 +137,3 @@ def sentence(message: str) -> str:
 def location_text(where: Location) -> str:
     """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
     return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
-
-

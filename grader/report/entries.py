@@ -26,7 +26,11 @@ STYLES = {
 _ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
-_MAX_EXCERPTS, _MAX_ROWS, _MAX_REASON = 3, 3, 2  # failures with their source line; rows of a message or hint, and of a reason
+_MAX_EXCERPTS, _MAX_ROWS, _MAX_REASON = (
+    3,
+    3,
+    2,
+)  # failures with their source line; rows of a message or hint, and of a reason
 
 
 class Page(NamedTuple):

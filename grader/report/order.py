@@ -159,7 +159,11 @@ def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[
 
 def hints_of(result: Result, report: Report) -> tuple[Hint, ...]:
     """Return the hints of a criterion, which say what they fix besides; one that an earlier failure has names that failure."""
-    found = (failure for failure in failures(report) if failure.result.criterion.id == result.criterion.id) if result.hints else ()
+    found = (
+        (failure for failure in failures(report) if failure.result.criterion.id == result.criterion.id)
+        if result.hints
+        else ()
+    )
     return tuple(_named(hint, failure) for failure in found for hint in result.hints)
 
 
@@ -170,4 +174,6 @@ def _named(hint: Hint, failure: Failure) -> Hint:
     skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
     fixes = f" Also fixes {enumerated(also)}." if also else ""
-    return hint._replace(message=hint.message + fixes + (f" Then look at {enumerated(left, _MAX_NAMED)}." if left else ""))
+    return hint._replace(
+        message=hint.message + fixes + (f" Then look at {enumerated(left, _MAX_NAMED)}." if left else "")
+    )
