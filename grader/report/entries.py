@@ -1,6 +1,7 @@
 """One criterion in the report for a terminal: a failure with what to do, or what needs manual grading."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from rich.console import Console
@@ -26,11 +27,8 @@ STYLES = {
 _ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
-_MAX_EXCERPTS, _MAX_ROWS, _MAX_REASON = (
-    3,
-    3,
-    2,
-)  # failures with their source line; rows of a message or hint, and of a reason
+_MAX_FIRST = 3  # failures with their source line
+_MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 
 
 class Page(NamedTuple):
@@ -63,29 +61,32 @@ def show_failure(failure: Failure, page: Page, number: int) -> None:
     """
     result, console = failure.result, page.console
     details = result_details(result, page.report)
-    head, message = _head(failure, details, console), _message(details, result)
+    head, message = _head(failure, details, page), _message(details, result)
     texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
+    is_first = page.is_verbose or number < _MAX_FIRST
     if not page.room:
-        texts = [block(console, Text(": ").join((head, message)), INDENT, Text(), most=_MAX_ROWS)]
-    texts += _excerpt(details, page) if page.is_verbose or number < _MAX_EXCERPTS else ()
+        most = _MAX_ROWS if is_first else _MAX_REASON
+        texts = [block(console, Text(": ").join((head, message)), INDENT, Text(), most)]
+    texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
     texts += _hints(details, page)
-    reasons = [*_reasons(details, result, page)]
+    reasons = [*_reasons(details, result, page)] if page.room or is_first else []
     page.shown.update(text.plain for text in reasons)
-    skipped = [_skipped(failure)] if failure.skipped else []
+    skipped = [_skipped(failure)] if failure.skipped and (page.room or is_first) else []
     most = None if page.room else _MAX_REASON
     texts += [block(console, text, INDENT, most=most) for text in (*reasons, *skipped)]
     page.leave_row()
     put(console, Text("\n").join(texts))
 
 
-def _head(failure: Failure, details: Details, console: Console) -> Text:
+def _head(failure: Failure, details: Details, page: Page) -> Text:
     result = failure.result
     status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
-    text = Text.assemble(mark(status, console), " ", (printable(result.criterion.id), "bold"))
+    text = Text.assemble(mark(status, page.console), " ", (printable(result.criterion.id), "bold"))
     text.append(f"  {content.cost_text(failure)}", STYLES[status])
     if details.location is not None:
-        text.append(f"  {location_text(details.location)}", "dim")
+        where = details.location if page.room else replace(details.location, calls=())
+        text.append(f"  {location_text(where)}", "dim")
     return text
 
 
@@ -108,7 +109,7 @@ def _hints(details: Details, page: Page) -> Iterator[Text]:
     """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
     for hint in details.hints[: None if page.is_verbose else 1]:
         whole = block(page.console, Text(hint.message, "bold"), INDENT)
-        is_long = not page.is_verbose and hint.action and _height(whole) > _MAX_ROWS
+        is_long = not page.is_verbose and hint.action and _height(whole) >= _MAX_ROWS
         short = f"{sentence(hint.action)} --verbose shows the edits."
         yield block(page.console, Text(short, "bold"), INDENT) if is_long else whole
         if page.is_verbose:
@@ -120,7 +121,7 @@ def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
     """Yield the feedback where there is no hint, and what should be where the message does not say it; with room for it both."""
     if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
         yield Text(details.feedback, "italic")
-    is_clear = result.outcome.expected is not None or (not page.room and bool(details.hints))
+    is_clear = result.outcome.expected is not None or (not page.room and bool(details.advice))
     if details.expected and (page.room > 1 or not is_clear):
         yield Text(details.expected, "dim")
 

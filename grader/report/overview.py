@@ -69,7 +69,7 @@ def show_evidence(page: Page) -> None:
     """Print the evidence that was found, and what is missing."""
     console = page.console
     if not page.is_verbose:
-        if line := evidence_line(page.report):
+        if page.room and (line := evidence_line(page.report)):
             wrapped(console, Text(line, "dim"), INDENT, Text())
         return
     for number, (title, lines) in enumerate(evidence(page.report)):

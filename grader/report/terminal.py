@@ -108,7 +108,7 @@ def _show_remarks(order: Order, page: Page) -> None:
 def _show_end(page: Page) -> None:
     """Print the next command, whether ROS 2 loads the URDF, and the score: the last lines of a report."""
     report, console = page.report, page.console
-    console.print()
+    page.leave_row()
     if page.is_verbose and report.submission.has_urdf:
         wrapped(console, Text("grader inspect shows the whole robot.", "dim"), 0)
     counting = report.counting
@@ -116,7 +116,8 @@ def _show_end(page: Page) -> None:
     score = Text(content.headline(report), "bold green" if is_full else "bold")
     command = content.next_command(report)
     next_step = f"Next: {command}" if command else content.what_is_left(report)
-    lines = (next_step, content.verdict_and_counts(report), content.bonus_line(report), content.grade_line(report))
-    for line in filter(None, lines):
+    verdict = content.verdict_and_counts(report)
+    lines = (verdict, next_step) if page.room else (f"{verdict}. {next_step}",)
+    for line in filter(None, (*lines, content.bonus_line(report), content.grade_line(report))):
         wrapped(console, Text(line), INDENT, Text())
     wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)
