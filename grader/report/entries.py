@@ -65,8 +65,9 @@ def show_failure(failure: Failure, page: Page, number: int) -> None:
     texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
     is_first = page.is_verbose or number < _MAX_FIRST
     if not page.room:
-        most = _MAX_ROWS if is_first else _MAX_REASON
-        texts = [block(console, Text(": ").join((head, message)), INDENT, Text(), most)]
+        texts = [
+            block(console, Text(": ").join((head, message)), INDENT, Text(), _MAX_ROWS if is_first else _MAX_REASON)
+        ]
     texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
     texts += _hints(details, page)

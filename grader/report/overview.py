@@ -30,7 +30,7 @@ def show_groups(page: Page) -> None:
         kinds = [kind for kind in alike(shown, group_status) if page.room > 1 or kind[0] != "passed"]
         if kinds:
             page.leave_row()
-        for status, some in kinds:
+        for status, some in sorted(kinds, key=lambda kind: kind[0] == "passed"):
             names = (f"{printable(group.title)} {content.earned_text(group.results)}" for group in some)
             wrapped(console, Text(", ".join(names)), INDENT, mark(status, console) + Text(" "))
         return
