@@ -5,7 +5,19 @@ from itertools import permutations, repeat
 from math import cos, radians
 from typing import TypeVar
 
-from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, pending, place, point, within
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    judged,
+    measured,
+    other_unit,
+    passed,
+    pending,
+    place,
+    point,
+    within,
+)
 from grader.checks.toml_types import Colour, NonNegative, Size
 from grader.checks.visuals import ShapeName, main_visual, shape_name, visuals
 from grader.errors import MissingElement
@@ -34,7 +46,9 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges should be along the axes of {link!r}", at)
     fine = _all_within(actual, size, tolerance)
-    message = f"{link!r} shows a box {point(actual)} m{'' if fine else f'; it should be {point(size)} m (x, y, z)'}"
+    message = f"{link!r} shows a box {point(actual)} m"
+    if not fine:
+        message += f"; it should be {point(size)} m ({other_unit(actual, size) or 'x, y, z'})"
     return judged(fine, message, actual, size, tolerance, "m", at=at)
 
 
@@ -56,6 +70,7 @@ def shows_cylinder(
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
+        message += f" ({unit})" if (unit := other_unit(actual, expected)) else ""
     at = place(best.location, "length" if within(actual[0], radius, tolerance) else "radius")
     return judged(fine, message, actual, expected, tolerance, "m", at=at)
 

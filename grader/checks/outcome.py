@@ -1,6 +1,6 @@
 """The outcome of a check, and its wording: measured against expected, the difference, its unit and frame."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
 from typing import Literal, NamedTuple
@@ -15,6 +15,7 @@ AnyPlace = Location | LazyLocation | None
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
 SLACK = 1e-9
 SIDES = ("too large", "too small")
+_UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
@@ -133,7 +134,8 @@ def measured(
     fine = within(actual, expected, tolerance)
     message = f"{what} {point((actual,))} m"
     if not fine:
-        message += f"; it should be {point((expected,))} m ({difference(actual - expected, *sides)})"
+        off = other_unit((actual,), (expected,)) or difference(actual - expected, *sides)
+        message += f"; it should be {point((expected,))} m ({off})"
     return judged(fine, message, actual, expected, tolerance, "m", at=at)
 
 
@@ -145,8 +147,16 @@ def measured_point(
     off = [f"{axis} {difference(a - b)}" for axis, a, b in pairs if not within(a, b, tolerance)]
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
-        message += f"; it should be at {point(expected)} m ({', '.join(off)})"
+        message += f"; it should be at {point(expected)} m ({other_unit(actual, expected) or ', '.join(off)})"
     return judged(not off, message, actual, expected, tolerance, "m", at=at)
+
+
+def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
+    """Return that lengths seem to be in millimetres or centimetres; empty if not all of them are too large by such a factor."""
+    pairs = [(a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK]
+    units = (unit for factor, unit in _UNITS if all(abs(a - b * factor) < abs(b) for a, b in pairs))
+    unit = next(units, "") if pairs else ""
+    return f"a URDF is in metres, not in {unit}" if unit else ""
 
 
 def difference(off: float, over: str = SIDES[0], under: str = SIDES[1]) -> str:

@@ -20,7 +20,9 @@ from grader.usecases.writing import write_stdout
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
 _SAVE = "Also write a report to a file; repeatable."
 _FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
-_FIX = "Write the files that the hints change, with all edits, to a file or an existing folder."
+_FIX = (
+    "Write the graded file with all proven edits to a file; of a folder or an archive, the changed files to a folder."
+)
 _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
@@ -47,7 +49,7 @@ def grade(
     hints: Annotated[
         Level | None, typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit.")
     ] = None,
-    fix: Annotated[Path | None, typer.Option(metavar="FILE", help=_FIX)] = None,
+    fix: Annotated[Path | None, typer.Option(metavar="FILE|FOLDER", help=_FIX)] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,
 ) -> int:
     """Grade a submission against a rubric.

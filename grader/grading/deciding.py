@@ -83,7 +83,7 @@ class _Grading:
             return self._miss(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=explained(result.outcome, self._subjects.problems))
+        return result._replace(outcome=explained(result.outcome, self._subjects.problems, self._subjects.source))
 
     def _carried(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
@@ -154,7 +154,9 @@ class _Grading:
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
-        return Result(criterion, explained(outcome, self._subjects.problems, missing.kind, missing.name))
+        return Result(
+            criterion, explained(outcome, self._subjects.problems, self._subjects.source, missing.kind, missing.name)
+        )
 
 
 def _skipped(cause: str) -> Outcome:

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable
 
+from grader import markup
 from grader.checks.outcome import Outcome
 from grader.problems import Problem
 from grader.robot import catalogue
+from grader.source import Location, Source
 
 # Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of a link.
 _EXPLAINING = (
@@ -24,17 +26,47 @@ _DROPPING = {
 }
 
 
-def explained(outcome: Outcome, problems: Iterable[Problem], part: str = "", link: str = "") -> Outcome:
-    """Return a failure with the problem that explains it: at its place, or why ROS 2 drops a part of a link."""
+def explained(
+    outcome: Outcome, problems: Iterable[Problem], source: Source | None, part: str = "", link: str = ""
+) -> Outcome:
+    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a mistake at its place.
+
+    `source` is the file in which that place may be an element: a mistake inside it explains the failure, too.
+    """
+    if outcome.problem:  # the check has said it
+        return outcome
     mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
+    dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
+    if dropped is not None:
+        message = f"{outcome.message}: {dropped.message}"
+        outcome = outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
+    place, inside = outcome.location, _extent(outcome.location, source)
     for problem in problems:
-        if problem.kind in dropping and problem.subject == link:
-            message = f"{outcome.message}: {problem.message}"
-            return outcome._replace(
-                message=message, location=problem.location, mistake=mistake, problem=problem.message
-            )
-        explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-        if ((not dropping and explains) or problem.kind.is_before_ros) and problem.location == outcome.location:
+        kind, where = problem.kind, problem.location
+        explains = kind in _EXPLAINING or (kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
+        is_cause = kind is catalogue.MISSPELT or (explains and not dropping)
+        if where == place and dropped is not None:
+            continue
+        if (where == place and (is_cause or kind.is_before_ros)) or (is_cause and _is_in(where, place, inside, source)):
             message = f"{outcome.message} ({problem.code}: {problem.message})"
-            return outcome._replace(message=message, mistake=mistake, problem=problem.message)
+            if dropped is not None:
+                return outcome._replace(message=message)
+            return outcome._replace(message=message, location=where, mistake=mistake, problem=problem.message)
     return outcome
+
+
+def _extent(place: Location | None, source: Source | None) -> range:
+    """Return the offsets of the element at a place, or of the tag if an attribute is there."""
+    if place is None or source is None or place.path != source.path:
+        return range(0)
+    text, at = source.text, source.offset(place.line, place.column)
+    start = text.rfind("<", 0, at + 1)
+    if start < 0 or text.startswith("<robot", start):
+        return range(0)
+    return range(start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0])
+
+
+def _is_in(where: Location, place: Location | None, inside: range, source: Source | None) -> bool:
+    if source is None or place is None or (where.path, where.calls) != (place.path, place.calls):
+        return False
+    return source.offset(where.line, where.column) in inside

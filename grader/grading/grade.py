@@ -65,10 +65,8 @@ def _chosen_parts(
         notes.append(_ELSEWHERE)
     skipped = [part.id for part in parts if part.id not in chosen]
     if skipped:
-        only = enumerated(chosen) or "nothing"
-        notes.append(
-            f"a single URDF is graded on {only} only: {enumerated(skipped)} need the folder or archive it is in"
-        )
+        only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
+        notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
     return chosen, tuple(notes)
 
 

@@ -205,10 +205,14 @@ class Report:
 
 
 class Fix(NamedTuple):
-    """The files of a submission that the edits of all hints change, None for one that is gone, and the report on the result."""
+    """The files of a submission that all proven edits change, None for one that is gone, and the report on the result.
+
+    `why_nothing` says why there are none.
+    """
 
     files: Mapping[str, bytes | None]
     report: Report
+    why_nothing: str = ""
 
 
 def _sum(points: Iterable[Decimal]) -> Decimal:

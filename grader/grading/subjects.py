@@ -13,6 +13,7 @@ from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.selectors import is_selector, selected_link
+from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import enumerated, quoted
@@ -27,13 +28,14 @@ class Subjects:
         self.submission = submission
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
+        self.source: Source | None = None
         self._known: dict[Subject, object] = {"submission": submission}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
         if rubric.solution is not None and rubric.compares_with_reference:
             self._known["reference"] = rubric.solution.robot
         if isinstance(submission.urdf, Read):
             urdf = submission.urdf.reading
-            self.problems = urdf.problems
+            self.problems, self.source = urdf.problems, urdf.source
             self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
             self._known |= {"urdf": submission.urdf.loaded, "robot": self.robot}
 

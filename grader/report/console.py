@@ -37,19 +37,18 @@ def put(console: Console, text: Text) -> None:
     console.print(text, overflow="ignore", no_wrap=True, crop=False)
 
 
-def excerpt_block(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> Text:
-    """Return the source line of a location, and a line that underlines the marked part."""
+def excerpt_block(
+    console: Console, source: Source, where: Location, indent: int, style: str = "red", *, is_underlined: bool = True
+) -> Text:
+    """Return the source line of a location, and if wanted a line that underlines the marked part."""
     number = str(where.line)
     line = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = symbol(console, "\u2500", "-"), symbol(console, "\u2502", "|")
-    under = " " * line.start + mark * line.width
-    return Text.assemble(
-        (f"{' ' * indent}{number} {bar} ", "dim"),
-        line.text,
-        "\n",
-        (f"{' ' * (indent + len(number))} {bar} ", "dim"),
-        (under, style),
-    )
+    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), line.text)
+    if is_underlined:
+        under = " " * line.start + mark * line.width
+        text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
+    return text
 
 
 def show_problems(

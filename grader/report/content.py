@@ -8,7 +8,7 @@ from grader.grading.report import Report, Result
 from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report.details import sentence
-from grader.report.order import Failure, failures
+from grader.report.order import Failure, alike, failures
 from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted, signed_points
 
@@ -202,10 +202,11 @@ def pending_reason(result: Result) -> str:
     return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 
 
-def carried_text(results: tuple[Result, ...]) -> str:
+def carried_text(results: Iterable[Result]) -> str:
     """Return which criteria fail only because of a mistake that is counted elsewhere, and have their points."""
-    names = enumerated([result.criterion.id for result in results])
-    return printable(f"{names} {'fails' if len(results) == 1 else 'fail'}. {results[0].why_given}")
+    causes = alike(results, lambda result: result.carried)
+    texts = (f"{enumerated([one.criterion.id for one in some])} (caused by {cause})" for cause, some in causes)
+    return printable(f"Not deducted: {', '.join(texts)}.")
 
 
 def skipped_text(cause: str, results: tuple[Result, ...]) -> str:

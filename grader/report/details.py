@@ -1,13 +1,12 @@
 """The content of a report on one criterion, sentence by sentence, for every format to lay out. All of it is printable text."""
 
-from decimal import Decimal
 from typing import NamedTuple
 
 from grader.grading.report import Hint, Report, Result
 from grader.report.locations import calls_text
 from grader.report.order import Group, hints_of, is_failure
 from grader.source import Location
-from grader.text import by_name, enumerated, printable, signed_points
+from grader.text import by_name, printable
 
 SYMBOLS = {
     "passed": "\u2713",
@@ -18,7 +17,6 @@ SYMBOLS = {
     "adjusted": "=",
     "partial": "~",
 }  # of each status
-_MAX_NAMED = 2
 
 
 class Details(NamedTuple):
@@ -139,12 +137,3 @@ def sentence(message: str) -> str:
 def location_text(where: Location) -> str:
     """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
     return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
-
-
-def short_hint(hint: Hint) -> str:
-    """Return a hint without its edits: what it changes, and which criteria pass with it."""
-    points = signed_points(sum(hint.gains.values(), Decimal(0)))
-    passes = (
-        f"{enumerated(list(hint.gains), _MAX_NAMED)} {'passes' if len(hint.gains) == 1 else 'pass'}, {points} points"
-    )
-    return sentence(f"{hint.action}: {passes}. Run with --verbose to see the edit") if hint.action else hint.message

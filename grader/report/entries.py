@@ -1,7 +1,7 @@
 """One criterion in the report for a terminal: a failure with what to do, or what needs manual grading."""
 
-import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from rich.console import Console
@@ -10,7 +10,7 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import SYMBOLS, Details, location_text, result_details, short_hint, status_of
+from grader.report.details import SYMBOLS, Details, location_text, result_details, sentence, status_of
 from grader.report.diff import diff_lines
 from grader.report.order import Failure
 from grader.text import printable
@@ -27,16 +27,26 @@ STYLES = {
 _ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
 _CHANGES = {"-": "red", "+": "green"}
 INDENT = 2
-_MAX_LINES, _MIN_MESSAGE = 9, 2  # lines of a failure, besides the empty one before it, and of its message
+_MAX_FIRST = 3  # failures with their source line
+_MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 
 
 class Page(NamedTuple):
-    """The report, the console, whether everything is shown, and the feedback that is printed already."""
+    """The report, the console, whether everything is shown, the feedback that is printed already, and how roomy it is.
+
+    A page of 24 rows is filled: the `room` is 2 as long as everything fits, then 1 without titles and groups, then 0 without empty rows.
+    """
 
     report: Report
     console: Console
     is_verbose: bool
     shown: set[str]
+    room: int
+
+    def leave_row(self) -> None:
+        """Print an empty row if there is room for it."""
+        if self.room:
+            self.console.print()
 
 
 def mark(status: str, console: Console) -> Text:
@@ -44,33 +54,41 @@ def mark(status: str, console: Console) -> Text:
     return Text(symbol(console, SYMBOLS[status], _ASCII[status]), STYLES[status])
 
 
-def show_failure(failure: Failure, page: Page) -> None:
+def show_failure(failure: Failure, page: Page, number: int) -> None:
     """Print a criterion that failed: what it costs, what is and what should be, where, and what to do.
 
-    Unless everything is shown, it takes at most ten lines, with the empty one before it: texts that do not fit are cut, but no hint.
+    Unless everything is shown, only the first failures have their source line, and long texts are cut.
     """
     result, console = failure.result, page.console
     details = result_details(result, page.report)
-    head, excerpt = [_head(failure, details, console)], [*_excerpt(details, page)]
-    excerpt += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
-    skipped = [_skipped(failure, page)] if failure.skipped else []
-    room = sys.maxsize if page.is_verbose else _MAX_LINES - _height(*head, *excerpt, *skipped)
-    hints = [*_hints(details, room - _MIN_MESSAGE, page)]
-    message = _fitted([_message(details, result)], max(room - _height(*hints), _MIN_MESSAGE), console)
-    reasons = _fitted(_reasons(details, result, page), room - _height(*hints, *message), console)
-    page.shown.update(" ".join(text.plain.split()) for text in reasons)  # one that is cut is shown again
-    console.print()
-    put(console, Text("\n").join((*head, *message, *excerpt, *hints, *reasons, *skipped)))
+    head, message = _head(failure, details, page), _message(details, result)
+    texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
+    is_first = page.is_verbose or number < _MAX_FIRST
+    if not page.room:
+        texts = [
+            block(console, Text(": ").join((head, message)), INDENT, Text(), _MAX_ROWS if is_first else _MAX_REASON)
+        ]
+    texts += _excerpt(details, page) if is_first else ()
+    texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
+    texts += _hints(details, page)
+    reasons = [*_reasons(details, result, page)] if page.room or is_first else []
+    page.shown.update(text.plain for text in reasons)
+    skipped = [_skipped(failure)] if failure.skipped and (page.room or is_first) else []
+    most = None if page.room else _MAX_REASON
+    texts += [block(console, text, INDENT, most=most) for text in (*reasons, *skipped)]
+    page.leave_row()
+    put(console, Text("\n").join(texts))
 
 
-def _head(failure: Failure, details: Details, console: Console) -> Text:
+def _head(failure: Failure, details: Details, page: Page) -> Text:
     result = failure.result
     status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
-    text = Text.assemble(mark(status, console), " ", (printable(result.criterion.id), "bold"))
+    text = Text.assemble(mark(status, page.console), " ", (printable(result.criterion.id), "bold"))
     text.append(f"  {content.cost_text(failure)}", STYLES[status])
     if details.location is not None:
-        text.append(f"  {location_text(details.location)}", "dim")
-    return block(console, text, INDENT, Text())
+        where = details.location if page.room else replace(details.location, calls=())
+        text.append(f"  {location_text(where)}", "dim")
+    return text
 
 
 def _message(details: Details, result: Result) -> Text:
@@ -85,49 +103,38 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
     where = details.location
     source = page.report.submission.source(where.path) if where is not None else None
     if where is not None and source is not None and source.line(where.line).strip():
-        yield excerpt_block(page.console, source, where, INDENT)
+        yield excerpt_block(page.console, source, where, INDENT, is_underlined=bool(page.room))
 
 
-def _hints(details: Details, room: int, page: Page) -> Iterator[Text]:
-    """Yield the first hint, without its edits if there is no room for them; on a full page all hints, with the lines that change."""
+def _hints(details: Details, page: Page) -> Iterator[Text]:
+    """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
     for hint in details.hints[: None if page.is_verbose else 1]:
         whole = block(page.console, Text(hint.message, "bold"), INDENT)
-        is_short = _height(whole) > room and bool(hint.edits and hint.action)
-        yield block(page.console, Text(short_hint(hint), "bold"), INDENT) if is_short else whole
+        is_long = not page.is_verbose and hint.action and _height(whole) >= _MAX_ROWS
+        short = f"{sentence(hint.action)} --verbose shows the edits."
+        yield block(page.console, Text(short, "bold"), INDENT) if is_long else whole
         if page.is_verbose:
             lines = diff_lines(hint.edits, page.report.submission.source)
             yield from (block(page.console, Text(line, _CHANGES.get(line[0], "dim")), 2 * INDENT) for line in lines)
 
 
 def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
-    """Yield the feedback where there is no hint, and what should be where the message does not say it; on a full page both."""
+    """Yield the feedback where there is no hint, and what should be where the message does not say it; with room for it both."""
     if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
         yield Text(details.feedback, "italic")
-    if details.expected and (page.is_verbose or result.outcome.expected is None):
+    is_clear = result.outcome.expected is not None or (not page.room and bool(details.advice))
+    if details.expected and (page.room > 1 or not is_clear):
         yield Text(details.expected, "dim")
 
 
-def _skipped(failure: Failure, page: Page) -> Text:
+def _skipped(failure: Failure) -> Text:
     number, points = len(failure.skipped), content.points_of(failure.skipped)
     words = "criterion is" if number == 1 else "criteria are"
-    return block(page.console, Text(f"{number} {words} skipped because of it ({points}).", "yellow"), INDENT)
+    return Text(f"{number} {words} skipped because of it ({points}).", "yellow")
 
 
-def _fitted(texts: Iterable[Text], room: int, console: Console) -> list[Text]:
-    """Return texts in as many lines as there is room for; one is cut only if two lines of it remain."""
-    fitted: list[Text] = []
-    for text in texts:
-        left = room - _height(*fitted)
-        whole = block(console, text, INDENT)
-        if _height(whole) <= left:
-            fitted.append(whole)
-        elif left > 1:
-            fitted.append(block(console, text, INDENT, most=left))
-    return fitted
-
-
-def _height(*texts: Text) -> int:
-    return sum(text.plain.count("\n") + 1 for text in texts)
+def _height(text: Text) -> int:
+    return text.plain.count("\n") + 1
 
 
 def show_answer(result: Result, page: Page) -> None:

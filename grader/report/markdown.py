@@ -77,7 +77,7 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
     order, shown = in_order(report), set[str]()
     if order.failures:
         yield "## Failed"
-    for result, skipped in order.failures:
+    for result, skipped, *_ in order.failures:
         item = _item(result, report, shown, answers=answers)
         text = escaped(content.skipped_text(result.criterion.id, skipped)) if skipped else ""
         yield f"{item}\n\n{indent(text, '  ')}" if text else item

@@ -6,15 +6,22 @@ from itertools import groupby
 from typing import NamedTuple, TypeVar
 
 from grader.grading.report import Hint, Report, Result
+from grader.text import enumerated, signed_points
 
 T = TypeVar("T")
+_MAX_NAMED = 3
 
 
 class Failure(NamedTuple):
-    """A criterion that failed or lost points, with the criteria that are skipped because of it."""
+    """A criterion that failed or lost points, with the criteria that are skipped because of it.
+
+    `also` are the failures that the same edit fixes; each of them names this criterion as `first`.
+    """
 
     result: Result
     skipped: tuple[Result, ...] = ()
+    also: tuple["Failure", ...] = ()
+    first: str = ""
 
     @property
     def lost(self) -> Decimal:
@@ -26,7 +33,7 @@ class Failure(NamedTuple):
 class Order(NamedTuple):
     """All criteria of a report, each once, except that skipped criteria with a comment are in two groups.
 
-    `failures` has the costliest first, and those whose error is carried forward last. `skipped` are those whose cause is not a
+    `failures` is in the order of the function of that name. `skipped` are those whose cause is not a
     failure: a manual mark overrides it, or it is adjusted. `marked` have all their points by a manual mark. `commented` are the
     others with a grader's comment.
     """
@@ -72,14 +79,46 @@ def in_order(report: Report) -> Order:
 
 
 def failures(report: Report) -> tuple[Failure, ...]:
-    """Return the criteria that failed or lost points, costliest first; equally costly ones in the rubric's order."""
+    """Return the criteria that failed or lost points; those that one edit fixes follow each other, the one at its place first.
+
+    What keeps ROS 2 from loading the file comes first, then the costliest mistake. What is about a package that was not submitted,
+    and then what is carried forward, comes last. Equals are in the rubric's order.
+    """
     skipped = [result for result in report.results if _is_skipped(result)]
     found = [
         Failure(result, tuple(other for other in skipped if other.because == result.criterion.id))
         for result in report.results
         if is_failure(result)
     ]
-    return tuple(sorted(found, key=lambda failure: (bool(failure.result.why_given), -failure.lost)))
+    mistakes = [_together(some) for _, some in alike(found, _edit)]
+    is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
+
+    def rank(mistake: tuple[Failure, ...]) -> tuple[bool, bool, bool, Decimal]:
+        subjects = [failure.result.criterion.check.subject for failure in mistake]
+        is_last = not has_package and "package" in subjects
+        lost = sum((failure.lost for failure in mistake), Decimal(0))
+        return bool(mistake[0].result.why_given), is_last, not (is_rejected and "urdf" in subjects), -lost
+
+    return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
+
+
+def _edit(failure: Failure) -> str:
+    """Return what failures have in common that one edit fixes."""
+    result = failure.result
+    hint = next(iter(result.hints), None)
+    return repr((hint.message, hint.at, [*hint.gains])) if hint and not result.why_given else result.criterion.id
+
+
+def _together(some: tuple[Failure, ...]) -> tuple[Failure, ...]:
+    """Return failures that one edit fixes: first the one at the line that is edited, of the file before the robot, else the costliest."""
+
+    def rank(failure: Failure) -> tuple[bool, bool, Decimal]:
+        where, at = failure.result.outcome.location, failure.result.hints[0].at
+        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
+        return not is_there, failure.result.criterion.check.subject != "urdf", -failure.lost
+
+    first, *also = sorted(some, key=rank) if len(some) > 1 else some
+    return first._replace(also=tuple(also)), *(one._replace(first=first.result.criterion.id) for one in also)
 
 
 def is_failure(result: Result) -> bool:
@@ -119,13 +158,22 @@ def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[
 
 
 def hints_of(result: Result, report: Report) -> tuple[Hint, ...]:
-    """Return the hints of a criterion; one that an earlier failure has names that failure, and has no edits."""
-    order = failures(report) if result.hints else ()
-    return tuple(_named(hint, result, order) for hint in result.hints)
+    """Return the hints of a criterion, which say what they fix besides; one that an earlier failure has names that failure."""
+    found = (
+        (failure for failure in failures(report) if failure.result.criterion.id == result.criterion.id)
+        if result.hints
+        else ()
+    )
+    return tuple(_named(hint, failure) for failure in found for hint in result.hints)
 
 
-def _named(hint: Hint, result: Result, order: tuple[Failure, ...]) -> Hint:
-    first = next((failure.result for failure in order if hint in failure.result.hints), result)
-    if first.criterion.id == result.criterion.id:
-        return hint
-    return hint._replace(message=f"Fixed by the same edit as {first.criterion.id}.", edits=())
+def _named(hint: Hint, failure: Failure) -> Hint:
+    if failure.first:
+        return hint._replace(message=f"Fixed by the same edit as {failure.first}.", edits=())
+    also = [f"{other.result.criterion.id}, {signed_points(-other.lost)}" for other in failure.also]
+    skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
+    left = [name for name in skipped if name not in hint.gains]
+    fixes = f" Also fixes {enumerated(also)}." if also else ""
+    return hint._replace(
+        message=hint.message + fixes + (f" Then look at {enumerated(left, _MAX_NAMED)}." if left else "")
+    )

@@ -26,20 +26,22 @@ def show_groups(page: Page) -> None:
     shown = [
         group for group in groups(report) if page.is_verbose or not all(result.is_open for result in group.results)
     ]
-    if shown and not page.is_verbose:
-        console.print()
+    if not page.is_verbose:
+        kinds = [kind for kind in alike(shown, group_status) if page.room > 1 or kind[0] != "passed"]
+        if kinds:
+            page.leave_row()
+        for status, some in sorted(kinds, key=lambda kind: kind[0] == "passed"):
+            names = (f"{printable(group.title)} {content.earned_text(group.results)}" for group in some)
+            wrapped(console, Text(", ".join(names)), INDENT, mark(status, console) + Text(" "))
+        return
     for part, of_part in groupby(shown, key=lambda group: group.part):
         found = list(of_part)
-        if page.is_verbose and len(report.parts) > 1:
+        if len(report.parts) > 1:
             console.print()
             points = content.earned_text(tuple(result for group in found for result in group.results))
             wrapped(console, Text(f"{printable(titles[part])}  {points}", "bold underline"), 0)
         for group in found:
-            if page.is_verbose:
-                _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
-            else:
-                start = mark(group_status(group), console) + Text(" ")
-                wrapped(console, Text(f"{printable(group.title)} {content.earned_text(group.results)}"), INDENT, start)
+            _show_criteria(group, page, has_title=len(found) > 1 or group.title != titles[part])
 
 
 def _show_criteria(group: Group, page: Page, *, has_title: bool) -> None:
@@ -67,7 +69,7 @@ def show_evidence(page: Page) -> None:
     """Print the evidence that was found, and what is missing."""
     console = page.console
     if not page.is_verbose:
-        if line := evidence_line(page.report):
+        if page.room and (line := evidence_line(page.report)):
             wrapped(console, Text(line, "dim"), INDENT, Text())
         return
     for number, (title, lines) in enumerate(evidence(page.report)):
@@ -87,14 +89,14 @@ def show_other_problems(page: Page) -> None:
     problems = tuple(content.other_problems(report))
     listed = problems if page.is_verbose else tuple(found for found in problems if found.severity != "note")
     if listed:
-        console.print()
+        page.leave_row()
     if page.is_verbose and listed:
         wrapped(console, Text(content.other_problems_title(report), "bold"), 0)
         show_problems(console, problems, report.submission.source, report.submission.path)
         return
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
     for _, some in kinds[:_MAX_KINDS]:
-        put(console, _kind_block(some, console))
+        put(console, _kind_block(some, console, most=2 if page.room else 1))
     rest = len(problems) - sum(len(some) for _, some in kinds[:_MAX_KINDS])
     if rest:
         noun = "problem" if len(kinds) > _MAX_KINDS else "note"
@@ -102,13 +104,13 @@ def show_other_problems(page: Page) -> None:
         wrapped(console, Text(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim"), 0)
 
 
-def _kind_block(problems: Sequence[Problem], console: Console) -> Text:
-    """Return problems of one kind in one file in at most two lines: code, place and message of the first, and how many more."""
+def _kind_block(problems: Sequence[Problem], console: Console, most: int) -> Text:
+    """Return problems of one kind in one file in few lines: code, place and message of the first, and how many more."""
     first, more = problems[0], len(problems) - 1
     where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
     text = Text.assemble((f"{first.code} {first.severity} ", SEVERITY_STYLES[first.severity]), (where, "dim"))
     text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
-    return block(console, text, INDENT, Text(), most=2)
+    return block(console, text, INDENT, Text(), most=most)
 
 
 def show_notes(page: Page) -> None:

@@ -1,4 +1,4 @@
-"""A report for a person at a terminal: failures first, costliest first; the score last, where the eye is when the command ends."""
+"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends."""
 
 from rich.console import Console
 from rich.text import Text
@@ -14,16 +14,29 @@ from grader.report.overview import show_evidence, show_groups, show_notes, show_
 from grader.text import enumerated, printable
 
 _MAX_NAMED = 3
+_ROWS = 24  # of a common terminal
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
-    """Print a report, with `verbose` everything in it. Text of the submission is never interpreted as markup or control codes."""
-    page, order = Page(report, console, verbose, set()), in_order(report)
-    for line in filter(None, (content.graded_line(report), _package_line(page))):
-        wrapped(console, Text(line, "dim"), INDENT, Text())
-    for failure in order.failures:
-        if verbose or not failure.result.why_given:
-            show_failure(failure, page)
+    """Print a report, with `verbose` everything in it, else in 24 rows as far as possible.
+
+    Text of the submission is never interpreted as markup or control codes.
+    """
+    order = in_order(report)
+    for room in (2, 1, 0):
+        with console.capture() as captured:
+            _show(Page(report, console, verbose, set(), room), order)
+        if verbose or captured.get().count("\n") <= _ROWS:
+            break
+    console.file.write(captured.get())
+
+
+def _show(page: Page, order: Order) -> None:
+    for line in filter(None, (content.graded_line(page.report), _package_line(page))):
+        wrapped(page.console, Text(line, "dim"), INDENT, Text())
+    shown = (one for one in order.failures if page.is_verbose or not (one.result.why_given or one.first))
+    for number, failure in enumerate(shown):
+        show_failure(failure, page, number)
     _show_consequences(order, page)
     _show_pending(order, page)
     _show_remarks(order, page)
@@ -45,11 +58,11 @@ def _package_line(page: Page) -> str:
 def _show_consequences(order: Order, page: Page) -> None:
     """Print the failures whose error is carried forward, unless they are shown, and what is skipped although nothing failed."""
     carried = [failure.result for failure in order.failures if failure.result.why_given and not page.is_verbose]
-    lines = [content.carried_text(some) for _, some in alike(carried, lambda result: result.carried)]
+    lines = [content.carried_text(carried)] if carried else []
     skipped = alike(order.skipped, lambda result: result.because or "")
     lines += [content.skipped_text(cause, some) for cause, some in skipped]
     if lines:
-        page.console.print()
+        page.leave_row()
     for line in lines:
         wrapped(page.console, Text(line, "yellow"), INDENT, Text())
 
@@ -58,7 +71,7 @@ def _show_pending(order: Order, page: Page) -> None:
     """Print what needs manual grading: where each answer and picture was found, and why a check cannot decide."""
     if not order.pending:
         return
-    page.console.print()
+    page.leave_row()
     wrapped(
         page.console, Text(content.pending_points(page.report) if page.report.open_points else "Not graded", "bold"), 0
     )
@@ -79,7 +92,7 @@ def _show_pending(order: Order, page: Page) -> None:
 def _show_remarks(order: Order, page: Page) -> None:
     """Print what has all points by a manual mark, what is adjusted, and comments without points."""
     for _, results in order.remarks:
-        page.console.print()
+        page.leave_row()
         for result in results:
             details, start = result_details(result, page.report), mark(status_of(result), page.console) + Text(" ")
             if page.is_verbose and not result.is_adjusted:
@@ -93,18 +106,18 @@ def _show_remarks(order: Order, page: Page) -> None:
 
 
 def _show_end(page: Page) -> None:
-    """Print the score, whether ROS 2 loads the URDF, and the next command: the last lines of a report."""
+    """Print the next command, whether ROS 2 loads the URDF, and the score: the last lines of a report."""
     report, console = page.report, page.console
-    console.print()
+    page.leave_row()
     if page.is_verbose and report.submission.has_urdf:
         wrapped(console, Text("grader inspect shows the whole robot.", "dim"), 0)
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
     score = Text(content.headline(report), "bold green" if is_full else "bold")
-    wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)
     command = content.next_command(report)
-    end = f"Next: {command}" if command else content.what_is_left(report)
-    for line in filter(
-        None, (content.grade_line(report), content.verdict_and_counts(report), content.bonus_line(report), end)
-    ):
+    next_step = f"Next: {command}" if command else content.what_is_left(report)
+    verdict = content.verdict_and_counts(report)
+    lines = (verdict, next_step) if page.room else (f"{verdict}. {next_step}",)
+    for line in filter(None, (*lines, content.bonus_line(report), content.grade_line(report))):
         wrapped(console, Text(line), INDENT, Text())
+    wrapped(console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)

@@ -6,19 +6,21 @@ from pathlib import Path
 
 from grader.errors import InputError, OutOfTime
 from grader.grading.hints.hinting import fixed, hinted
+from grader.grading.hints.record import INCOMPLETE
 from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.writing import make_folder, refuse_inputs, refuse_symlinks, save_bytes
+from grader.usecases.writing import ROBOT_FILES, make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
 _MAX_NAMED = 6
+_FILES = (*ROBOT_FILES, ".zip")  # endings that no folder has
 
 
 def with_hints(
     report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
-) -> tuple[Report, Fix | None]:
+) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
 
     The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report do not show the reference. Raises
@@ -33,16 +35,17 @@ def with_hints(
         warn(f"--hints {wanted}: the rubric {report.rubric.id} allows hints up to the level {allowed}")
     if level != allowed:
         report = replace(report, rubric=replace(report.rubric, hints=level))
-    if level == "none" or not (report.has_failures or is_fixed):
-        return report, None
+    fix = Fix({}, report, "no criterion failed")
+    if level == "none" or not report.has_failures:
+        return report, fix
     try:
         found = hinted(report, submission, level)
     except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
         warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
-        return report, None
+        return report, fix._replace(why_nothing="the search for edits failed")
     if found.faults:
         warn(f"some hints are missing: the grader itself failed ({found.faults[0]}); please report it")
-    return found.report, fixed(found, submission) if is_fixed else None
+    return found.report, fixed(found, submission) if is_fixed else fix
 
 
 def files_to_fix(
@@ -50,17 +53,18 @@ def files_to_fix(
 ) -> dict[Path, bytes]:
     """Return the files to write that edits change. Raises InputError if one of them may not be written.
 
-    A target that is a folder gets each file under its path; any other is the one file that changes.
+    A folder gets each file under its path; of a submission that is one file, the target may be a file.
     `besides` are the files that were read besides a single one, `others` what else the run reads or writes.
     """
     files = {path: data for path, data in fix.files.items() if data is not None}
-    is_folder = target.is_dir()
-    if len(files) > 1 and not is_folder:
+    own, is_folder = report.submission.path, _is_folder(target, report)
+    if is_folder and (target.is_file() or (target.suffix.lower() in _FILES and not target.exists())):
+        raise InputError(f"--fix: {printable_path(target)} names a file: of a folder or an archive name a folder")
+    if not is_folder and (len(files) > 1 or (files and besides and own not in files)):
         names = ", ".join(map(printable, files))
-        raise InputError(f"--fix: the edits change {len(files)} files ({names}): name a folder that exists")
-    own = report.submission.path
-    if files and besides and not is_folder and own not in files:
-        raise InputError(f"--fix: the edits change {printable(*files)}, not {own}: name a folder that exists")
+        raise InputError(
+            f"--fix: the edits change {names}, not only the file that is graded: name a folder that exists"
+        )
     written = {(target / path if is_folder else target): data for path, data in files.items()}
     for file in written:
         refuse_symlinks(file, (graded,))
@@ -68,15 +72,21 @@ def files_to_fix(
     return written
 
 
+def _is_folder(target: Path, report: Report) -> bool:
+    """Return whether a target is to be a folder: always, unless the submission is one file."""
+    return target.is_dir() or not report.submission.is_single
+
+
 def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapping[Path, bytes]) -> str:
     """Write the files that edits change, and return what was done in a sentence. Raises InputError."""
     if not written:
-        return "--fix: there is no edit to make, so nothing was written"
+        return f"--fix: nothing was written: {fix.why_nothing}"
     for file, data in written.items():
-        if target.is_dir():
+        if _is_folder(target, report):
             make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
+    gone += [f"; {INCOMPLETE}"] * (INCOMPLETE in report.notes)
     names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
     score = f"{format_points(report.score)} -> {format_points(fix.report.score)} of {format_points(report.max_score)} points"
     return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"

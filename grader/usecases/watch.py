@@ -1,4 +1,4 @@
-"""grader grade --watch: grade again whenever a file changes, and show first what changed in the report."""
+"""grader grade --watch: grade again whenever a file changes, and show last what changed in the report."""
 
 import gc
 import os
@@ -11,7 +11,7 @@ from rich.text import Text
 from grader.errors import GraderError, InputError, RubricError
 from grader.grading.report import Report
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.comparison import applied_hints, comparison_lines, unchanged_line
+from grader.report.comparison import applied_hints, comparison_lines, hinted_texts, unchanged_line
 from grader.report.console import wrapped
 from grader.report.formats import Format, render
 from grader.report.screen import draw
@@ -20,7 +20,8 @@ from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
-_Shown = tuple[Report, str]  # the report that was shown last, and all of its text, whatever the terminal's width
+# The report that was shown last, all of its text, whatever the terminal's width, and the texts of files that its hints change.
+_Shown = tuple[Report, str, dict[str, str]]
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -102,16 +103,16 @@ def _show_error(path: str, error: GraderError, warn: Warn) -> None:
 
 
 def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool, has_changed: bool) -> _Shown:
-    """Show what changed, then the whole report; of a report that is the same, one line at most."""
-    shown = report, render(report, Format.TERMINAL, verbose=True)
+    """Show the whole report, then what changed; of a report that is the same, one line at most."""
+    shown = report, render(report, Format.TERMINAL, verbose=True), hinted_texts(report)
     if last is not None and shown[1] == last[1]:
         if has_changed:
             terminal.show(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
-    lines = [*comparison_lines(last[0], report), *applied_hints(last[0], report)] if last is not None else []
+    lines = [*comparison_lines(last[0], report), *applied_hints(last[0], last[2], report)] if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
-    terminal.show(changes + render(report, Format.TERMINAL, screen=screen, verbose=verbose))
+    terminal.show(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
     return shown
 
 
@@ -119,4 +120,3 @@ def _print_lines(lines: list[str], console: Console) -> None:
     console.print()
     for line in lines:
         wrapped(console, Text(line, style="bold"), 0)
-    console.print()

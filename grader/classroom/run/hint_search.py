@@ -17,7 +17,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric, read_rubric
 
 _AHEAD = 3  # tasks for each worker: one at work, the others ready
-_NONE = "[]"
+_NONE = "[null]"  # of a search that was not complete
 _NO_DOCUMENTS = "hints are about the URDF and the package"
 
 Group = Callable[[Mistaken], tuple[str, ...]]

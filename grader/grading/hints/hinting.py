@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.grade import grade
+from grader.grading.hints.record import INCOMPLETE
 from grader.grading.hints.search import Found, Search
 from grader.grading.hints.trials import Edits, Trials, costs_of
 from grader.grading.hints.words import message
@@ -50,17 +51,23 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
         result._replace(hints=(hints[result.criterion.id],)) if result.criterion.id in hints else result
         for result in report.results
     ]
-    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits, trials.faults, search.is_complete)
+    notes = report.notes if search.is_complete or submission.is_costly else (*report.notes, INCOMPLETE)
+    report = replace(report, results=tuple(with_hints), notes=notes)
+    return Hinted(report, search.final.edits, trials.faults, search.is_complete)
 
 
 def fixed(found: Hinted, submission: Submission) -> Fix:
-    """Return the files with the edits of all hints that fit together, graded again."""
+    """Return the files with all proven edits that fit together, graded again."""
+    report, why_nothing = found.report, "no edit that was tried gains points"
+    if not found.is_complete:
+        why_nothing = "the search for edits ended at its limit before it found one"
+    if found.faults:
+        why_nothing = "the search for edits failed"
+    if submission.is_costly:
+        why_nothing = "the submission is too large to search for edits"
     files = edited_files(submission, found.edits) or {}
-    report = found.report
-    return Fix(
-        files,
-        grade(report.rubric, with_files(submission, files), report.parts, is_one_of_class=not submission.is_single),
-    )
+    after = with_files(submission, files)
+    return Fix(files, grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single), why_nothing)
 
 
 def _hint(

@@ -1,6 +1,7 @@
 """Hints as JSON text, which a gradebook stores, and back.
 
 The graded URDF is stored without its path, so that two submissions whose files differ only in their names have the same hints.
+A null at the end stands for a search that was not complete.
 """
 
 import json
@@ -12,6 +13,7 @@ from typing import NamedTuple
 from grader.grading.report import Hint, Report
 from grader.source import Edit, Location
 
+INCOMPLETE = "the search for hints ended at its limit: there may be more"
 _MAIN = ""  # the path of the graded URDF
 
 
@@ -39,7 +41,8 @@ def hints_to_record(report: Report) -> str:
                 found.append(([result.criterion.id], hint))
             else:
                 names.append(result.criterion.id)
-    return json.dumps([_stored(names, hint, main) for names, hint in found], separators=(",", ":"))
+    stored = [_stored(names, hint, main) for names, hint in found] + [None] * (INCOMPLETE in report.notes)
+    return json.dumps(stored, separators=(",", ":"))
 
 
 def hints_from_record(text: str) -> tuple[StoredHint, ...]:
@@ -58,7 +61,8 @@ def with_hints(report: Report, text: str) -> Report:
         at = replace(hint.at, path=hint.at.path or main)
         hints |= dict.fromkeys(names, (hint._replace(at=at, edits=edits),))
     results = (result._replace(hints=hints.get(result.criterion.id, ())) for result in report.results)
-    return replace(report, results=tuple(results))
+    notes = (*report.notes, INCOMPLETE) if None in json.loads(text) else report.notes
+    return replace(report, results=tuple(results), notes=notes)
 
 
 def _moved(edit: Edit, main: str) -> Edit:
@@ -73,7 +77,7 @@ def _stored(names: list[str], hint: Hint, main: str | None) -> object:
 
 
 def _read(text: str) -> Iterator[StoredHint]:
-    for names, message, at, gains, edits, action in json.loads(text):
+    for names, message, at, gains, edits, action in filter(None, json.loads(text)):
         points = {name: Decimal(value) for name, value in gains.items()}
         hint = Hint(message, Location(*at), points, tuple(Edit(*edit) for edit in edits), action)
         yield StoredHint(tuple(names), hint)

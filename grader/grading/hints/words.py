@@ -6,10 +6,10 @@ from decimal import Decimal
 from grader.grading.hints.search import Found
 from grader.grading.levels import Level
 from grader.source import Edit, Location, Source
-from grader.submission.editing import creates
+from grader.submission.editing import content, creates
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from grader.text import counted_points, enumerated
+from grader.text import enumerated
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_LINES = 6
@@ -17,33 +17,29 @@ _MAX_TEXT = 240  # characters of a changed text
 
 
 def message(found: Found, level: Level, submission: Submission, costs: Mapping[str, Decimal]) -> str:
-    """Return the hint in one or two sentences; the name of the URDF needs no mention.
+    """Return the hint in a sentence; the name of the URDF needs no mention.
 
-    `costs` are the points that failed criteria cost: a hint is shown at the costliest one, and named after it.
+    `costs` are the points that failed criteria cost: an earlier hint is named by the costliest that it gains.
     """
-    own = _own_edits(found)
-    before = {name for earlier in found.after for name in earlier.gains}
-    more = {name: points for name, points in found.gains.items() if name not in before}
-    passes = _outcome(more or found.gains, costs, also=bool(found.after))
-    earlier = f"the edit{'s' if len(found.after) > 1 else ''} for {_after(found, costs)}" if found.after else ""
+    own, names = _own_edits(found), list(dict.fromkeys(_costliest(before.gains, costs) for before in found.after))
+    earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
     if not own:
-        return f"With {earlier}, {passes}."
-    if level != "edit":
-        where = _places(own, submission) if level == "cause" else _marked(own, submission)
-        cause = f": {found.proposal.cause}" if level == "cause" else ""
-        first = f"After {earlier}, check" if earlier else "Check"
-        return f"{first} {where}{cause}. Fixing this makes {_outcome(more or found.gains, costs, verb='pass')}."
-    changes = _moves(own, submission.path) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
-    changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
-    text = enumerated(changes, _MAX_NAMED + 1)
-    text = f"After {earlier}, {text}" if earlier else text[0].upper() + text[1:]
-    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
-    return f"{text}{_calls(own, source) if source is not None else ''}: {passes}."
+        return f"Make {earlier}."
+    if level == "edit":
+        changes = _moves(own, submission) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
+        changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
+        source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+        text = enumerated(changes, _MAX_NAMED + 1) + (_calls(own, source) if source is not None else "")
+    elif level == "cause":
+        text = f"check {_places(own, submission)}: {found.proposal.cause}"
+    else:
+        text = f"check {_marked(own, submission)}"
+    return f"After {earlier}, {text}." if names else f"{text[0].upper()}{text[1:]}."
 
 
 def _marked(edits: list[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
-    texts = [f"{_quoted(edit.old)} ({_where(edit, submission.path)})" for edit in edits if edit.old]
+    texts = [f"{_quoted(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
 
 
@@ -73,7 +69,7 @@ def _calls(edits: list[Edit], source: Source) -> str:
     return f" ({'; '.join(uses)})" if uses else ""
 
 
-def _at(place: Location, main: str | None) -> str:
+def _at(place: Location | Edit, main: str | None) -> str:
     return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
 
 
@@ -85,49 +81,42 @@ def _own_edits(found: Found) -> list[Edit]:
     return [edit for edit in found.edits if edit not in earlier]
 
 
-def _after(found: Found, costs: Mapping[str, Decimal]) -> str:
-    """Return earlier hints, each named by the criterion at which it is shown."""
-    names = dict.fromkeys(_ordered(before.gains, costs)[0] for before in found.after)
-    return enumerated(list(names), _MAX_NAMED)
+def _costliest(gains: Mapping[str, Decimal], costs: Mapping[str, Decimal]) -> str:
+    return min(gains, key=lambda name: (name not in costs, -costs.get(name, gains[name])))
 
 
-def _ordered(gains: Mapping[str, Decimal], costs: Mapping[str, Decimal]) -> list[str]:
-    """Return criteria, the one at which a hint is shown first."""
-    return sorted(gains, key=lambda name: (name not in costs, -costs.get(name, gains[name])))
-
-
-def _outcome(gains: Mapping[str, Decimal], costs: Mapping[str, Decimal], *, also: bool = False, verb: str = "") -> str:
-    points = sum(gains.values(), Decimal(0))
-    gain = f", +{counted_points(points)}" if points else ""
-    passes = verb or f"{'also ' if also else ''}{'passes' if len(gains) == 1 else 'pass'}"
-    return f"{enumerated(_ordered(gains, costs), _MAX_NAMED)} {passes}{gain}"
-
-
-def _moves(edits: list[Edit], main: str | None) -> list[str]:
+def _moves(edits: list[Edit], submission: Submission) -> list[str]:
     """Return the change in words if a text is moved: removed at one place, and inserted at another one."""
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
     if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
-    return [f"move {_quoted(old.old)} ({_where(old, main)}) to after {_where(new, main)}"]
+    return [f"move {_quoted(old.old)} ({_where(old, submission)}) to after {_at(new, submission.path)}"]
 
 
 def _change(edit: Edit, submission: Submission) -> str:
-    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, submission.path)
+    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, submission)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
     if creates(submission, edit):
         return f"create {'' if edit.new else 'the empty file '}`{edit.path}` (--fix writes it)"
     if not edit.old:
         is_line, is_below = edit.new.endswith("\n"), edit.new.lstrip(" \r").startswith("\n")
-        return f"insert {new} ({'before ' if is_line else 'after ' if is_below else ''}{where})"
+        side = "before" if is_line else "after" if is_below else ""
+        return f"insert {new} ({f'{side} {_at(edit, submission.path)}' if side else f'{where}, column {edit.column}'})"
     if not edit.new:
         return f"remove {old} ({where})"
     return f"change {old} to {new} ({where})"
 
 
-def _where(edit: Edit, main: str | None) -> str:
-    return _at(Location(edit.path, edit.line, edit.column), main)
+def _where(edit: Edit, submission: Submission) -> str:
+    """Return the line of an edit; the column too if its text is there several times."""
+    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
+    line = lines[edit.line - 1].removeprefix("\ufeff") if edit.line <= len(lines) else ""
+    number = line.count(edit.old) if edit.old else 0
+    nth = line.count(edit.old, 0, edit.column - 1) + 1
+    which = f", column {edit.column}: number {nth} of {number}" if number > 1 else ""
+    return f"{_at(edit, submission.path)}{which}"
 
 
 def _quoted(text: str) -> str:

@@ -51,7 +51,7 @@ class Card(NamedTuple):
 
 def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
     """Return a failed criterion, with what is skipped because of it. Feedback is included once, and only without hints."""
-    result, skipped = failure
+    result, skipped, *_ = failure
     card = card_of(result, report)
     feedback = "" if card.details.hints or card.details.feedback in shown else card.details.feedback
     shown.add(feedback)
