@@ -55,7 +55,7 @@ class Proposing:
         if any(criterion.check.subject not in ("urdf", "robot") for criterion in criteria):
             from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
 
-            wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
+            wanted = [(criterion.check.looks_at, criterion.arguments) for criterion in criteria]
             found += package_proposals(state.submission.package, self._package(), wanted, self._trials.isolated)
         with self._trials.isolated():
             found += raw_xacro_proposals(state.submission) if about_urdf else ()

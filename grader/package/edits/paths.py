@@ -1,10 +1,17 @@
-"""Paths that are put together from texts of a file: the edits of one text with which a path becomes another."""
+"""Paths that name no file: one text of a file changes, with which the path becomes the most similar one that exists."""
 
+import posixpath
 import re
-from collections.abc import Iterator
-from itertools import islice
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+from fnmatch import fnmatch
+from itertools import islice, product
 
+from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
+from grader.package.edits.task import Task, proposal
+from grader.package.launch.model import Launch, Reference
+from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
@@ -13,6 +20,118 @@ _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
+_SHARE_FUNCTION = "get_package_share_directory"
+_EXPANDUSER = re.compile(r"(?:os\.path\.)?expanduser\(\s*$")
+_MAX_PATHS = 8  # that are wrong in one file
+_MAX_EDITS = 3  # of one path
+_MAX_FILES = 200
+_SETUP, _LAUNCH = "setup.py", "the launch file"
+
+
+def setup_paths(task: Task) -> Iterator[Proposal]:
+    """Yield edits of the paths and patterns in setup.py that name no file, and of files that it installs elsewhere."""
+    file, setup = task.setup, task.package.setup
+    if file is None or setup is None:
+        return
+    tree, share = task.package.tree, f"share/{task.package.name}"
+    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern.replace("\\", "/"), it.at.line) for it in setup.empty]
+    for path, line in wrong[:_MAX_PATHS]:
+        above = posixpath.dirname(path)
+        is_folder = path in tree.folders
+        for actual in (path, f"{above}/*") if is_folder else (path,):
+            known = _patterns(task, path.rpartition("/")[2])
+            known = [it for it in known if posixpath.dirname(it) == posixpath.dirname(actual)] if is_folder else known
+            for wanted in _similar(actual, known)[:_MAX_EDITS]:
+                for edit in moved(file.source, actual, wanted, line)[:2]:
+                    yield proposal([edit], "set", "a path", _SETUP)
+    installed = task.reference.installed if task.reference is not None else {}
+    for copy in [it for it in setup.copies if not it.target.startswith(f"{share}/")][:_MAX_PATHS]:
+        like = _similar(copy.source, [source for target, source in installed.items() if target.startswith("share/")])[:1]
+        inside = next((target.split("/", 2)[2] for target, source in installed.items() if source in like), posixpath.basename(copy.source))
+        wanted = posixpath.join(share, posixpath.dirname(inside), posixpath.basename(copy.source))
+        for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
+            yield proposal([edit], "set", "a folder of data_files", _SETUP)
+
+
+def _patterns(task: Task, name: str) -> list[str]:
+    """Return the paths of files, and the patterns that match some: with this name, with an ending, all of a folder."""
+    files = [*islice(task.files, _MAX_FILES)]
+    names = dict.fromkeys([name, "*", *(f"*{posixpath.splitext(path)[1]}" for path in files)])
+    folders = dict.fromkeys(map(posixpath.dirname, files))
+    found = (posixpath.join(*pair) for pair in islice(product(folders, names), _MAX_FILES))
+    return [*files, *(it for it in found if it not in task.files and any(fnmatch(path, it) for path in files))]
+
+
+def _similar(path: str, known: Iterable[str]) -> list[str]:
+    """Return known paths, the most similar first: those of the same name, in the same folder, then by their letters."""
+    matcher = SequenceMatcher(None, "", path, autojunk=False)
+
+    def order(other: str) -> tuple[bool, float]:
+        matcher.set_seq1(other)
+        return posixpath.basename(other) != posixpath.basename(path), -matcher.ratio()
+
+    return sorted((it for it in dict.fromkeys(known) if it != path), key=order)
+
+
+def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
+    """Yield edits with which a launch file finds its files: of all together, then of one path each."""
+    wrong = [it for it in launch.references[:_MAX_PATHS] if it.path is not None and not _is_found(task, it.path)]
+    ways = [way for way in (_found_at(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
+    if len(ways) > 1:
+        yield proposal([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
+    for way in ways:
+        yield from (proposal(edits, "set", "a path", _LAUNCH) for edits in way)
+
+
+def _is_found(task: Task, path: str) -> bool:
+    return posixpath.normpath(path).removeprefix(f"{PREFIX}/") in task.package.installed
+
+
+def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
+    """Return the edits with which a path becomes the one that the file is installed at, or the file is installed there."""
+    package, actual, line = task.package, named.path or "", named.location.line
+    share = f"share/{package.name}/"
+    targets = [it for it in package.installed if it.startswith(share) and it.lower().endswith(_ENDINGS[named.purpose])]
+    looked = actual.removeprefix(f"{PREFIX}/")
+    found: list[list[Edit]] = []
+    for target in _similar(looked, targets)[:1]:
+        below = target.removeprefix(share)
+        if actual.startswith(PREFIX):
+            found += [[edit] for edit in moved(source, actual, f"{PREFIX}/{target}", line)]
+        elif source.path.endswith(".py"):
+            found += _of_one_machine(package.name, PythonFile(source), actual, below)
+        else:
+            short = actual.removeprefix(f"{WORKING_FOLDER}/")
+            found += [[edit] for edit in moved(source, short, f"$(find-pkg-share {package.name})/{below}", line)]
+        if actual.startswith("/"):
+            found += [[edit] for edit in moved(source, actual, below, line)[:1]]
+        if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
+            found[1:1] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
+    return found
+
+
+def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> list[list[Edit]]:
+    """Return the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
+
+    No general difference knows it where the student's file is built in another way: launch-home-path, sensors-launch-home-path.
+    """
+    share = f"{_SHARE_FUNCTION}({name!r})"
+    found: list[list[Edit]] = []
+    for literal in file.literals:
+        text = literal.text.rstrip("/")
+        for path in (text, text.replace("~", HOME, 1), f"{WORKING_FOLDER}/{text}"):
+            if not text or not (actual == path or actual.startswith(f"{path}/")):
+                continue
+            rest = actual.removeprefix(path).strip("/")
+            call = _EXPANDUSER.search(file.text[: literal.outer_start])
+            start, end = (call.start(), file.text.find(")", literal.outer_end) + 1) if call else literal[3:]
+            new = share if rest else f"os.path.join({share}, {target!r})"
+            others = moved(file.source, rest, target)[:1] if rest and rest != target else []
+            if rest in ("", target) or others:
+                imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
+                found.append([*imports, file.source.edit(start, end, new), *others])
+    return found
 
 
 def pieces(source: Source) -> Iterator[tuple[int, int]]:

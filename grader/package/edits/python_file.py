@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,6 +17,8 @@ _TOKEN = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_MAX_DEPTH = 4  # of names that are replaced by their values
+_MAX_CODE = 2000  # characters
 _USE = re.compile(r"\bglob\.glob\b")
 
 
@@ -94,10 +96,48 @@ class PythonFile:
         """Return the edit that replaces a node."""
         return self.source.edit(*self.span(node), new)
 
-    def word_at(self, line: int, column: int) -> str:
-        """Return the name at a place, counted in characters from 1."""
-        found = re.compile(r"\w+").match(self.text, self.source.offset(line, column))
-        return found[0] if found else ""
+    @cached_property
+    def values(self) -> dict[str, ast.expr]:
+        """The expressions that are bound to names."""
+        found: dict[str, ast.expr] = {}
+        for node in self.nodes:
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                    found[name] = value
+                case ast.withitem(context_expr=value, optional_vars=ast.Name(id=name)):
+                    found[name] = value
+        return found
+
+    def meant(self, node: ast.expr) -> ast.expr:
+        """Return the expression that a name is bound to; any other expression itself."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name) or node.id not in self.values:
+                break
+            node = self.values[node.id]
+        return node
+
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> tuple[str, set[str]]:
+        """Return an expression in which the names that are not `bound` have their values, and the names that it still has."""
+        start, _ = self.span(node)
+        text = self.segment(node)
+        needed: set[str] = set()
+        names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
+            if name.id in bound or name.id not in self.values or not depth or len(text) > _MAX_CODE:
+                needed.add(name.id)
+                continue
+            at, end = (offset - start for offset in self.span(name))
+            code, others = self.written(self.values[name.id], bound, depth - 1)
+            text, needed = text[:at] + code + text[end:], needed | others
+        return text, needed
+
+    def plain(self, node: ast.expr) -> str:
+        """Return the code of an expression without names for its parts and in one style, to compare it."""
+        code, _ = self.written(node)
+        try:
+            return ast.unparse(ast.parse(code.strip(), mode="eval"))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return code
 
     @cached_property
     def bound(self) -> frozenset[str]:

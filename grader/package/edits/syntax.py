@@ -1,55 +1,32 @@
-"""Syntax errors of Python: edits of one token after which Python can read the file, or else of several."""
+"""Syntax errors of Python: a search over edits of one token near the parser's error, or else of several."""
 
 import re
 from collections.abc import Iterator
 from itertools import islice
+from keyword import kwlist
 
 from grader.edits import Proposal, composed, edited
 from grader.names import closest
-from grader.package.edits.brackets import unbalanced, unmatched
 from grader.package.edits.python_file import PythonFile, Token
 from grader.package.edits.task import proposal
 from grader.source import Edit, Source
 from grader.static_python.parse import SyntaxFault
 
-_NAMES = {",": "comma", ":": "colon", "'": "quote", '"': "quote", "=": "equals sign", ".": "dot"}
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-_MAX_TRIES = 120  # edits that are parsed
-_MAX_FOUND = 6
-_MAX_DEPTH = 3  # errors in one file
+_OPENING = {closing: opening for opening, closing in _CLOSING.items()}
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
-_KEYWORDS = (
-    "import",
-    "from",
-    "def",
-    "return",
-    "with",
-    "open",
-    "as",
-    "for",
-    "in",
-    "if",
-    "else",
-    "not",
-    "class",
-    "lambda",
-)
-_BLOCK = re.compile(r"\s*(def|with|if|elif|else|for|while|class|try|except|finally)\b")
-_LINE_END = re.compile(r"[\s,;:)\]}+]*(#.*)?$")
+_BETWEEN = ",:=.("
+_LINE_END = re.compile(r"[\s,:]*(#.*)?$")
+_MAX_TRIES = 160  # edits that are parsed
+_MAX_FOUND = 8
+_MAX_ENDS = 40  # places for a bracket or a quote
+_MAX_DEPTH = 3  # errors in one file
 
 
 def repaired(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits after which Python can read a file, the most plausible first."""
     for edits in islice(_repairs(file, _MAX_DEPTH), _MAX_FOUND):
-        yield proposal(edits, f"a syntax error in {what}", _action(edits, what))
-
-
-def _action(edits: tuple[Edit, ...], what: str) -> str:
-    first = edits[0]
-    if len(edits) == 1 and not first.old.strip() and len(first.new.strip()) == 1:
-        name = _NAMES.get(first.new.strip(), "bracket")
-        return f"add the missing {name} in {what}"
-    return f"correct the syntax of {what}"
+        yield proposal(edits, "syntax", "", what)
 
 
 def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
@@ -71,101 +48,76 @@ def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
 
 
 def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
-    """Yield edits of one token that are plausible for an error, the most plausible first."""
+    """Yield edits of one token: of quotes and brackets that have no other one, then what is missing between two tokens."""
     if (plain := file.text.translate(_QUOTES)) != file.text:
-        yield from _plain_quotes(file, plain)
-    line = fault.location.line
-    yield from _keywords(file, line)
-    yield from _colons(file, (line, line - 1))
-    odd = next((number for number in range(1, line) if _is_odd(file.source.line(number))), line)
-    for number in dict.fromkeys((line, odd)):
-        yield from _quotes(file, number)
-    for number in (line, line - 1):
-        yield from unbalanced(file, number)
-    yield from missing_commas(file)
-    yield from unmatched(file)
-    yield from _indents(file, line)
-    for number in (line, line - 1):
-        yield from _operators(file, number)
+        changed = [index for index, pair in enumerate(zip(file.text, plain, strict=True)) if pair[0] != pair[1]]
+        yield file.source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
+    at = file.source.offset(fault.location.line, fault.location.column)
+    lone = [token for token in file.tokens if token.kind == "op" and token.text in ("'", '"')]
+    for token in lone[:1]:
+        line = file.source.at(token.start).line
+        near = [other for other in file.tokens if file.source.at(other.start).line == line]
+        ends = dict.fromkeys(place for other in near for place in (other.start, other.end))
+        for place in sorted(ends, key=lambda place: abs(place - token.start) if place < token.start else len(file.text) - place)[:_MAX_ENDS]:
+            yield file.source.edit(place, place, token.text)
+    yield from _brackets(file)
+    lines = (fault.location.line, fault.location.line - 1)
+    near = [token for token in file.tokens if file.source.at(token.start).line in lines]
+    near.sort(key=lambda token: min(abs(token.start - at), abs(token.end - at)))
+    for token in near:
+        guess = closest(token.text, kwlist) if token.kind == "name" and token.text not in kwlist and len(token.text) > 1 else None
+        if guess is not None:
+            yield file.source.edit(token.start, token.end, guess)
+    yield from _indents(file, lines)
+    for token in near:
+        yield from (file.source.edit(token.end, token.end, char) for char in _BETWEEN)
+        if token.kind == "op":
+            yield file.source.edit(token.start, token.end, "")
 
 
-def _is_odd(text: str) -> bool:
-    """Return whether a line has a quote that is not closed."""
-    return not text.lstrip().startswith("#") and any(text.count(quote) % 2 for quote in "'\"")
-
-
-def _plain_quotes(file: PythonFile, plain: str) -> Iterator[Edit]:
-    changed = [index for index, pair in enumerate(zip(file.text, plain, strict=True)) if pair[0] != pair[1]]
-    yield file.source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-
-
-def _keywords(file: PythonFile, line: int) -> Iterator[Edit]:
+def _brackets(file: PythonFile) -> Iterator[Edit]:
+    """Yield edits that close the bracket which is open where another one is closed, or open, change or remove that one."""
+    opened: list[Token] = []
+    last: Token | None = None
     for token in file.tokens:
-        if (
-            token.kind == "name"
-            and token.text not in _KEYWORDS
-            and file.source.at(token.start).line in (line, line - 1)
-        ):
-            guess = closest(token.text, _KEYWORDS) if len(token.text) > 1 else None
-            if guess is not None:
-                yield file.source.edit(token.start, token.end, guess)
+        if token.text in _CLOSING:
+            opened.append(token)
+        elif token.text in _OPENING:
+            if not opened or _CLOSING[opened[-1].text] != token.text:
+                last = token
+                break
+            opened.pop()
+    end = last.end if last is not None else len(file.text)
+    if opened:
+        closing = _CLOSING[opened[-1].text]
+        inside = [token for token in file.tokens if opened[-1].end <= token.end <= end]
+        for token in sorted(inside[::-1], key=lambda token: not _is_open(file, token))[:_MAX_ENDS]:
+            for place in dict.fromkeys((token.start, token.end) if token.text in (",", ":", last and last.text) else (token.end,)):
+                if not file.text[place : place + 1].isalnum() and opened[-1].end <= place:
+                    yield file.source.edit(place, place, closing)
+        if last is not None:
+            yield file.source.edit(last.start, last.end, closing)
+    if last is not None:
+        line = file.source.at(last.start).line
+        yield file.source.edit(last.start, last.end, "")
+        for token in [token for token in file.tokens if token.start < last.start and line - file.source.at(token.start).line < 2][::-1]:
+            for place in (token.end, token.start):
+                yield file.source.edit(place, place, _OPENING[last.text])
+    elif opened:
+        yield file.source.edit(opened[-1].start, opened[-1].end, "")
 
 
-def _colons(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
-    for number in lines:
-        text = file.source.line(number).partition("#")[0].rstrip()
-        if _BLOCK.match(text) and not text.endswith(":"):
-            end = file.source.offset(number, len(text) + 1)
-            yield file.source.edit(end, end, ":")
+def _is_open(file: PythonFile, last: Token) -> bool:
+    """Return whether a token is the last one of a line that opens a bracket and does not close it."""
+    line, after = file.source.at(last.start).line, file.source.at(last.end).column - 1
+    text = file.source.line(line).partition("#")[0]
+    balance = sum((char in _CLOSING) - (char in _OPENING) for char in text)
+    return balance > 0 and bool(_LINE_END.match(text, after)) and not text.rstrip().endswith(tuple(_CLOSING))
 
 
-def _quotes(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add the quote that is missing at the start or the end of a string, first next to a word."""
-    text = file.source.line(line)
-    for quote in "'\"":
-        if text.count(quote) % 2:
-            beside = rf"(?<=[\s(\[,{{=])(?=[\w./*-]+{quote})|(?<={quote})[\w./*-]+(?=[,)\]}}:])"
-            end = _LINE_END.search(text)
-            ends = range(end.start() if end is not None else len(text), len(text) + 1)
-            words = re.finditer(r"(?<=[\s=(\[,{])(?=\w)|(?<=\w)(?=[,)\]}])", text)
-            near = [match.end() for match in re.finditer(beside, text)]
-            for place in dict.fromkeys([*near, *ends, *(match.end() for match in words)]):
-                at = file.source.offset(line, place + 1)
-                yield file.source.edit(at, at, quote)
-
-
-def _operators(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add what is missing between two words of a line: a comma, an equals sign, a dot, a bracket."""
-    start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
-    for match in re.finditer(r"(?<=[\w'\")\]])\s*(?=['\"(\[\w])", text):
-        for char in ",=.(":
-            yield file.source.edit(start + match.start(), start + match.start(), char)
-
-
-def missing_commas(file: PythonFile) -> Iterator[Edit]:
-    """Yield edits that add a comma between two items of a list or of arguments."""
-    depth = 0
-    for before, after in zip(file.tokens, file.tokens[1:], strict=False):
-        depth += (before.text in _CLOSING) - (before.text in _CLOSING.values())
-        between = file.text[before.end : after.start]
-        if depth > 0 and _ends(before) and _starts(after):
-            both = before.kind == after.kind == "string"
-            if "\n" in between or both or (before.text in (")", "]", "}") and (after.kind != "op" or between)):
-                yield file.source.edit(before.end, before.end, ",")
-
-
-def _ends(token: Token) -> bool:
-    return token.kind in ("string", "name") or token.text in _CLOSING.values()
-
-
-def _starts(token: Token) -> bool:
-    words = ("if", "else", "for", "in", "and", "or", "not", "is", "as")
-    return token.kind == "string" or token.text in _CLOSING or (token.kind == "name" and token.text not in words)
-
-
-def _indents(file: PythonFile, line: int) -> Iterator[Edit]:
+def _indents(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
     """Yield edits that indent a line as the lines around it."""
-    for number in (line, line - 1):
+    for number in lines:
         text = file.source.line(number)
         indent = text[: len(text) - len(text.lstrip())]
         above = next((it for it in range(number - 1, 0, -1) if file.source.line(it).strip()), 0)

@@ -1,54 +1,76 @@
 """A package whose edits are searched, beside the package of the rubric's reference solution."""
 
+import posixpath
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, Literal
 
-from grader.edits import KNOWN, REWRITTEN, Proposal
+from grader.edits import KNOWN, Proposal
 from grader.errors import InputError
 from grader.package.edits.python_file import PythonFile
 from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
 
+Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
+# What is wrong and what to do, by the kind of the step; the first gives no answer away.
+_WORDS: Mapping[Verb, tuple[str, str]] = {
+    "set": ("the value of {}", "correct {}"),
+    "add": ("a missing part of {}", "complete {}"),
+    "remove": ("a part of {} too many", "remove {}"),
+    "rename": ("a misspelt name: {}", "correct the spelling of {}"),
+    "syntax": ("a syntax error{}", "correct the syntax{}"),
+    "create": ("{} is missing", "create {}"),
+    "file": ("the name of {}", "rename {}"),
+}
 _RVIZ_LIMIT = 512 * 1024
 
 
 @dataclass(frozen=True)
 class Task:
-    """A package, and the one of the reference solution, if there is one."""
+    """A package, the one of the reference solution, if there is one, and the texts that are given to checks."""
 
     package: Package
     reference: Package | None = None
-    _found: dict[str, list[Proposal]] = field(default_factory=dict, repr=False)
-
-    def once(self, name: str, make: Callable[[], Iterable[Proposal]]) -> list[Proposal]:
-        """Return proposals that several criteria need, made only once."""
-        if name not in self._found:
-            self._found[name] = list(make())
-        return self._found[name]
+    given: frozenset[str] = field(default=frozenset())
 
     def source(self, path: str) -> Source | None:
         """Return the text of a file of the package as it is; None where there is none that can be read."""
         text = _text(self.package, path)
         return Source(self.package.path(path), text) if text is not None else None
 
-    def python(self, path: str) -> PythonFile | None:
-        """Return a Python file of the package."""
-        source = self.source(path)
-        return PythonFile(source) if source is not None else None
-
     @cached_property
     def setup(self) -> PythonFile | None:
         """The package's setup.py."""
-        return self.python(SETUP)
+        source = self.source(SETUP)
+        return PythonFile(source) if source is not None else None
 
     def wanted(self, path: str | None) -> str | None:
-        """Return the text of a file of the reference, for a package of the student's name."""
+        """Return the text of a file of the reference, with the student's names of the package and of its folders."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
-        if text is None or self.reference is None or self.reference.name == self.package.name:
+        if text is None or self.reference is None:
+            return text
+        for old, new in self._folders.items():
+            text = re.sub(rf"(?<=['\"]){re.escape(old)}(?=['\"/])", new, text) if path == SETUP else text
+        return self.named(text)
+
+    def named(self, text: str) -> str:
+        """Return a text of the reference, or a path in it, with the student's name of the package."""
+        if self.reference is None or self.reference.name == self.package.name:
             return text
         return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", self.package.name, text)
+
+    @cached_property
+    def _folders(self) -> dict[str, str]:
+        """The folders of the package that have the files of those folders of the reference which it does not have."""
+        found: dict[str, str] = {}
+        for path in self.reference.tree.files if self.reference is not None else ():
+            folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+            own = [posixpath.dirname(it) for it in self.files if it.endswith(ending)]
+            if folder and ending in (".urdf", ".xacro", ".rviz") and folder not in self.package.tree.folders and any(own):
+                found[folder] = next(filter(None, own))
+        return found
 
     def created(self, path: str, like: str | None) -> list[Edit]:
         """Return the edit that creates a file like one of the reference; nothing where it exists, or the reference has none."""
@@ -74,6 +96,8 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def proposal(edits: Iterable[Edit], cause: str, action: str, *, is_rewrite: bool = False) -> Proposal:
-    """Return a proposal that makes each edit once."""
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=REWRITTEN if is_rewrite else KNOWN)
+def proposal(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
+    """Return a proposal that makes each edit once; `name` is what changes, and `what` the file that it is in."""
+    place = " in ".join(filter(None, (name, what)))
+    cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=KNOWN)

@@ -1,0 +1,82 @@
+"""Files that are missing or have another name than in the reference, and the name of the package in all of its files."""
+
+import posixpath
+import re
+from collections.abc import Iterator
+
+from grader.edits import Proposal
+from grader.names import closest
+from grader.package.edits.task import Task, proposal
+from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch_named
+from grader.package.package import MANIFEST, SETUP
+from grader.source import Edit
+
+# The files that belong to each file that a check looks at, and whether they are created where they are missing: never a robot.
+_WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}
+_MAX_NAMES = 2  # of files that may be the one that is meant
+_MAX_LAUNCH_FILES = 3
+
+
+def kind_of(path: str) -> str:
+    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
+    if path.endswith((".rviz", ".urdf", ".xacro")):
+        return "rviz" if path.endswith(".rviz") else "urdf"
+    if path.endswith(ENDINGS) or is_in_launch_folder(path):
+        return "launch"
+    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
+
+
+def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
+    """Yield edits that give a file the name that it has in the reference or a check is given, or create it."""
+    likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
+    names = {posixpath.basename(path) for path in likes} | task.given
+    wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
+    is_named = {*map(posixpath.basename, wanted)}
+    wanted |= {f"{kind}/{name}": "" for name in sorted(task.given - is_named) if "." in name and kind_of(name) == kind}
+    for path, like in wanted.items():
+        folder, name = posixpath.split(path)
+        if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
+            continue
+        own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or posixpath.dirname(it) == folder != ""]
+        spare = {posixpath.basename(it): it for it in own if posixpath.basename(it) not in names}
+        similar = closest(name, spare)
+        for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
+            new = posixpath.join(posixpath.dirname(spare[other]), name)
+            yield proposal([task.renamed(spare[other], new), *_mentions(task, other, name)], "file", _WHAT.get(kind, "a file"))
+        if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
+            edits = task.created(path, like)
+            needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
+            edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
+            yield proposal(edits, "create", _WHAT.get(kind, kind if path == kind else "a file of the resource index"))
+    for folder in dict.fromkeys(map(posixpath.dirname, likes)):
+        other = closest(folder, task.package.tree.folders) if folder and folder not in task.package.tree.folders else None
+        paths = [path for path in task.files if other and path.startswith(f"{other}/") and other not in map(posixpath.dirname, likes)]
+        if paths and kind_of(likes.get(next((it for it in likes if posixpath.dirname(it) == folder), ""), "")) in (kind, "urdf"):
+            yield proposal([task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder")
+
+
+def _mentions(task: Task, old: str, new: str) -> list[Edit]:
+    """Return the edits of setup.py that name a file which gets another name."""
+    found = [it for it in task.setup.literals if posixpath.basename(it.text) == old] if task.setup is not None else []
+    return [task.setup.source.edit(it.start, it.end, it.text.removesuffix(old) + new) for it in found if task.setup]
+
+
+def package_names(task: Task, new: str) -> Iterator[Proposal]:
+    """Yield edits that give the package one name in all its files, for a package that has another or several."""
+    manifest, setup = task.package.manifest, task.package.setup
+    if manifest is None or manifest.name is None:
+        return
+    names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *task.package.registered])
+    names.pop(new, None)
+    word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
+    edits: list[Edit] = []
+    for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]) if names else ():
+        source = task.source(path)
+        edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
+    moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
+    edits += moved if f"resource/{new}" not in task.files else []
+    modules = [
+        task.renamed(path, path.replace(old, new, 1)) for path in task.files for old in names if path.startswith(f"{old}/")
+    ]
+    for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
+        yield proposal(several, "set", "the name of the package")

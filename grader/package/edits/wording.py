@@ -1,0 +1,102 @@
+"""Words and names: what a file spells in another way than the reference, uses without an import, or writes differently."""
+
+import ast
+import keyword
+import re
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+from itertools import islice
+
+from grader.edits import Proposal
+from grader.package.edits.python_file import PythonFile
+from grader.package.edits.task import proposal
+from grader.source import Edit, Location, Source
+from grader.static_python.imports import USUAL_NAMES
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_MAX_WORDS, _MAX_SUSPECTS = 8, 60
+_MAX_MORE = 2  # letters that one word has more than the other
+_LONG = 8
+_LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_MAX_DIFFERENCES, _MAX_TOKENS = 6, 6000
+_LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
+# Words of launch files in XML and YAML.
+_FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
+file let group find-pkg-share find-pkg-prefix var env eval command dirname true false screen robot_description remap"""
+_PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
+
+
+def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: str) -> Iterator[Proposal]:
+    """Yield edits that replace a misspelt word everywhere; words on these lines come first, then rare ones.
+
+    `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
+    """
+    places: dict[str, list[re.Match[str]]] = {}
+    for match in _WORD.finditer(source.text):
+        places.setdefault(match[0], []).append(match)
+    right = {word for text in (*known, _PYTHON if source.path.endswith(".py") else _FRONTEND) for word in _WORD.findall(text)}
+    right |= {word for word in places if len(places[word]) > 1}
+    near = set(lines)
+
+    def order(word: str) -> tuple[bool, int, int]:
+        first = places[word][0].start()
+        return source.at(first).line not in near, len(places[word]), first
+
+    suspects = sorted((word for word in places if word not in right and len(word) > 1), key=order)[:_MAX_SUSPECTS]
+    guesses = ((word, _nearest(word, right)) for word in suspects)
+    for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
+        yield proposal([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
+
+
+def _nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that a slip of the hand makes this one: a letter more, less or other, two that are swapped."""
+    lower, best = word.lower(), (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG, "")
+    matcher = SequenceMatcher(None, "", lower, autojunk=False)
+    for other in sorted(known):
+        same_end = other[:1].lower() == lower[:1] or other[-2:].lower() == lower[-2:]
+        if not same_end or abs(len(other) - len(word)) > _MAX_MORE:
+            continue
+        matcher.set_seq1(other.lower())
+        if matcher.quick_ratio() >= best[0]:
+            swapped = sorted(other.lower()) == sorted(lower)
+            best = max(best, (matcher.ratio() + 0.1 * swapped + 0.01 * (other[:1] == word[:1]), other))
+    return best[1] or None
+
+
+def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
+    start_of_text = int(source.text.startswith("\ufeff"))
+    own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
+    if len(own) + len(right) > _MAX_TOKENS:
+        return
+    changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
+    for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
+        offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
+        yield proposal([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
+
+
+def defined(file: PythonFile, faults: Iterable[Location], what: str) -> Iterator[Proposal]:
+    """Yield edits that import the names at the places of Python's errors, or as they are used; and missing commas."""
+    places = [file.source.offset(place.line, place.column) for place in faults]
+    words = [match[0] for place in places if (match := _WORD.match(file.text, place))]
+    if missing := file.with_imports(words):
+        yield proposal(missing, "add", "the imports", what)
+    for edit in _imported_otherwise(file):
+        yield proposal([edit], "set", "an import", what)
+    for node in file.nodes:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
+            end = file.span(node.func)[1]
+            yield proposal([file.source.edit(end, end, ",")], "syntax", "", what)
+
+
+def _imported_otherwise(file: PythonFile) -> Iterator[Edit]:
+    """Yield edits that import a function instead of the module of its name, or the reverse, as the file uses it."""
+    for node in file.imports:
+        name = node.names[0].name
+        calls = [call for call in file.calls(name) if len(node.names) == 1]
+        own = [call for call in calls if isinstance(call.func, ast.Name)]
+        if isinstance(node, ast.Import) and own:
+            yield file.replaced(node, f"from {name} import {name}")
+        elif isinstance(node, ast.ImportFrom) and node.module == name and len(own) < len(calls):
+            yield file.replaced(node, f"import {name}")
