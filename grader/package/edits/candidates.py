@@ -105,15 +105,17 @@ def _of_file(
     own, right = PythonFile(source), Source(source.path, wanted or "")
     is_python = not path.endswith((".xml", ".rviz", ".yaml", ".yml", ".launch"))
     is_like = like is not None and like.rpartition(".")[2] == path.rpartition(".")[2] or is_python
-    yield from reworded(source, right.text, what) if wanted and is_like else ()
+    if wanted and is_like:
+        if not is_broken and is_python:
+            yield from PythonDifference(own, PythonFile(right), what).proposals()
+        elif not is_broken:
+            yield from tree_proposals(source, right, task.given, what)
+        yield from reworded(source, wanted, what)
     if is_broken:
         yield from repaired(own, what) if is_python else repaired_xml(source, what)
     else:
         if is_python:
             yield from defined(own, [it for it in faults if it.path == source.path], what)
         yield from launch_paths(task, launch, source) if launch is not None else setup_paths(task) if path == SETUP else ()
-        if wanted and is_like:
-            compared = PythonDifference(own, PythonFile(right), what).proposals() if is_python else None
-            yield from compared if compared is not None else tree_proposals(source, right, task.given, what)
     lines = [place.line for place in faults if place.path == source.path]
     yield from respelt(source, [wanted or "", *(task.files if path == SETUP else task.package.installed)], lines, what)

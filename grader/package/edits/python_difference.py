@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from grader.difference import Node, paired
 from grader.edits import Proposal
-from grader.names import closest
 from grader.package.edits.python_file import PythonFile, called, keyword
 from grader.package.edits.task import Verb, proposal
+from grader.package.edits.wording import nearest
 from grader.source import Edit
 
 _ROOTS = ("setup", "LaunchDescription")
@@ -31,7 +31,8 @@ class PythonDifference(NamedTuple):
                 yield from self._compared(*pair, name)
 
     def _made(self, verb: Verb, name: str, edits: Sequence[Edit], needed: set[str] = frozenset()) -> Proposal:  # type: ignore[assignment]
-        return proposal([*self.own.with_imports(sorted(needed)), *edits], verb, f"`{name}`", self.what)
+        name = f"the value of `{name}`" if verb == "set" else f"`{name}`"
+        return proposal([*self.own.with_imports(sorted(needed)), *edits], verb, name, self.what)
 
     def _compared(self, own: ast.expr, like: ast.expr, name: str) -> Iterator[Proposal]:
         """Yield the edits that make an expression the one of the reference: of one of its parts, else of the whole."""
@@ -69,10 +70,9 @@ class PythonDifference(NamedTuple):
         pairs = paired(
             [_node(self.own, item) for item in mine[:_MAX_ITEMS]], [_node(self.like, item) for item in its[:_MAX_ITEMS]]
         )
-        far = [pair for pair in pairs.both if not _is_near(*pair)]
-        near = [pair for pair in pairs.both if pair not in far]
-        yield from chain.from_iterable(self._compared(one.of, other.of, name) for one, other in near)
-        missing = [self._item(node) for node in (*(other for _, other in far), *pairs.missing)]
+        yield from chain.from_iterable(self._compared(one.of, other.of, name) for one, other in pairs.both)
+        far = [other for one, other in pairs.both if one.keys[1] != other.keys[1] and not nearest(one.keys[1], [other.keys[1]])]
+        missing = [self._item(node) for node in (*far, *pairs.missing)]
         for several in (missing, *([item] for item in missing[1:] or ())) if missing else ():
             edits = _added(self.own, own, [code for code, _ in several])
             if edits:
@@ -120,12 +120,6 @@ def _node(file: PythonFile, item: ast.expr) -> Node:
     values = {name: file.plain(value) for name, value in _parts(meant).items()}
     key = next((values[name] for name in _IDENTIFYING if name in values), "")
     return Node(_tag(meant), (file.plain(meant), key), values, (), item)
-
-
-def _is_near(own: Node, like: Node) -> bool:
-    """Return whether an item is the other one with a mistake: it has some of its values, or what identifies it is alike."""
-    same = any(own.values.get(name) == value for name, value in like.values.items())
-    return same or own.keys[1] == like.keys[1] or closest(own.keys[1], [like.keys[1]]) is not None
 
 
 def _added(file: PythonFile, own: ast.expr, codes: Sequence[str]) -> list[Edit]:

@@ -16,7 +16,7 @@ from grader.source import Edit, Source
 Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
 # What is wrong and what to do, by the kind of the step; the first gives no answer away.
 _WORDS: Mapping[Verb, tuple[str, str]] = {
-    "set": ("the value of {}", "correct {}"),
+    "set": ("{}", "correct {}"),
     "add": ("a missing part of {}", "complete {}"),
     "remove": ("a part of {} too many", "remove {}"),
     "rename": ("a misspelt name: {}", "correct the spelling of {}"),

@@ -43,7 +43,8 @@ _VERBS: dict[str, Verb] = {"add": "add", "unset": "remove", "rename": "rename"}
 def _place(step: Step) -> str:
     node = step.like or step.own
     tag = f"<{node.tag}>" if node.of.__class__ is int else node.tag
-    return f"`{step.other or step.name}` of {tag}" if step.name else tag
+    name = f"`{step.other or step.name}` of {tag}" if step.name else tag
+    return f"the value of {name}" if step.verb == "set" else name
 
 
 def _xml_tree(source: Source) -> Node | None:

@@ -44,12 +44,12 @@ def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: st
         return source.at(first).line not in near, len(places[word]), first
 
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=order)[:_MAX_SUSPECTS]
-    guesses = ((word, _nearest(word, right)) for word in suspects)
+    guesses = ((word, nearest(word, right)) for word in suspects)
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield proposal([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
 
 
-def _nearest(word: str, known: Iterable[str]) -> str | None:
+def nearest(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that a slip of the hand makes this one: a letter more, less or other, two that are swapped."""
     lower, best = word.lower(), (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG, "")
     matcher = SequenceMatcher(None, "", lower, autojunk=False)
