@@ -19,7 +19,7 @@ from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Location, Source
 
-_MAX_PROPOSALS = 24  # for one kind of files
+_MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 
 
 def package_proposals(
@@ -43,9 +43,10 @@ def package_proposals(
     makers += [lambda kind=kind: _of_kind(task, kind) for kind in kinds]  # type: ignore[misc]
     for make in makers:
         with isolated():
-            own = dict.fromkeys(it.edits for it in found.values())
-            for proposal in islice((it for it in make() if it.edits and it.edits not in own), _MAX_PROPOSALS):
-                found.setdefault(_result(task, proposal.edits), proposal)
+            own = {
+                _result(task, it.edits): it for it in islice(make(), _MAX_MADE) if it.edits
+            }  # a later one says better what changes
+            found |= {result: own[result] for result in sorted(own, key=lambda it: own[it].size)[:_MAX_PROPOSALS]}
     return list(found.values())
 
 
@@ -56,10 +57,16 @@ def _texts(arguments: Mapping[str, Any]) -> Iterator[str]:
 
 def _result(task: Task, edits: tuple[Edit, ...]) -> tuple[object, ...]:
     """Return what is the same for edits that make the same change: the text after them."""
-    sources = {path: task.source(path.removeprefix(task.package.path(""))) for path in dict.fromkeys(it.path for it in edits)}
+    sources = {
+        path: task.source(path.removeprefix(task.package.path(""))) for path in dict.fromkeys(it.path for it in edits)
+    }
     if any(it.renamed for it in edits) or None in sources.values():
         return edits
-    return tuple((path, edited(it.text, path, [edit for edit in edits if edit.path == path])) for path, it in sources.items() if it)
+    return tuple(
+        (path, edited(it.text, path, [edit for edit in edits if edit.path == path]))
+        for path, it in sources.items()
+        if it
+    )
 
 
 def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
@@ -85,18 +92,29 @@ def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
             launch = package.launch(path) if path is not None else None
             if path is not None and launch is not None:
                 faults = [it.location for it in (*filter(None, [launch.syntax]), *launch.faults)]
-                yield from _of_file(task, path, other, "the launch file", faults, is_broken=launch.syntax is not None, launch=launch)
+                yield from _of_file(
+                    task, path, other, "the launch file", faults, is_broken=launch.syntax is not None, launch=launch
+                )
     elif kind == "rviz":
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
         path = package.rviz_file(next((name for name in sorted(task.given) if name.endswith(".rviz")), ""), launch)
         if path is not None:
             fault = package.rviz(path).fault
             other = like.rviz_file("", None) if like is not None else None
-            yield from _of_file(task, path, other, "the RViz file", [fault.location] if fault else [], is_broken=fault is not None)
+            yield from _of_file(
+                task, path, other, "the RViz file", [fault.location] if fault else [], is_broken=fault is not None
+            )
 
 
 def _of_file(
-    task: Task, path: str, like: str | None, what: str, faults: list[Location], *, is_broken: bool, launch: Launch | None = None
+    task: Task,
+    path: str,
+    like: str | None,
+    what: str,
+    faults: list[Location],
+    *,
+    is_broken: bool,
+    launch: Launch | None = None,
 ) -> Iterator[Proposal]:
     """Yield the edits of a file: of its syntax, its names, its paths, its difference to the reference, and its words."""
     source, wanted = task.source(path), task.wanted(like)
@@ -106,16 +124,18 @@ def _of_file(
     is_python = not path.endswith((".xml", ".rviz", ".yaml", ".yml", ".launch"))
     is_like = like is not None and like.rpartition(".")[2] == path.rpartition(".")[2] or is_python
     if wanted and is_like:
+        yield from reworded(source, wanted, what)
         if not is_broken and is_python:
             yield from PythonDifference(own, PythonFile(right), what).proposals()
         elif not is_broken:
             yield from tree_proposals(source, right, task.given, what)
-        yield from reworded(source, wanted, what)
     if is_broken:
         yield from repaired(own, what) if is_python else repaired_xml(source, what)
     else:
         if is_python:
             yield from defined(own, [it for it in faults if it.path == source.path], what)
-        yield from launch_paths(task, launch, source) if launch is not None else setup_paths(task) if path == SETUP else ()
+        yield from (
+            launch_paths(task, launch, source) if launch is not None else setup_paths(task) if path == SETUP else ()
+        )
     lines = [place.line for place in faults if place.path == source.path]
     yield from respelt(source, [wanted or "", *(task.files if path == SETUP else task.package.installed)], lines, what)

@@ -37,22 +37,39 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         folder, name = posixpath.split(path)
         if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
             continue
-        own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or posixpath.dirname(it) == folder != ""]
+        own = [
+            it
+            for it in task.files
+            if kind in (kind_of(it), posixpath.dirname(it)) or posixpath.dirname(it) == folder != ""
+        ]
         spare = {posixpath.basename(it): it for it in own if posixpath.basename(it) not in names}
         similar = closest(name, spare)
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
             new = posixpath.join(posixpath.dirname(spare[other]), name)
-            yield proposal([task.renamed(spare[other], new), *_mentions(task, other, name)], "file", _WHAT.get(kind, "a file"))
+            yield proposal(
+                [task.renamed(spare[other], new), *_mentions(task, other, name)], "file", _WHAT.get(kind, "a file")
+            )
         if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
             yield proposal(edits, "create", _WHAT.get(kind, kind if path == kind else "a file of the resource index"))
     for folder in dict.fromkeys(map(posixpath.dirname, likes)):
-        other = closest(folder, task.package.tree.folders) if folder and folder not in task.package.tree.folders else None
-        paths = [path for path in task.files if other and path.startswith(f"{other}/") and other not in map(posixpath.dirname, likes)]
-        if paths and kind_of(likes.get(next((it for it in likes if posixpath.dirname(it) == folder), ""), "")) in (kind, "urdf"):
-            yield proposal([task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder")
+        other = (
+            closest(folder, task.package.tree.folders) if folder and folder not in task.package.tree.folders else None
+        )
+        paths = [
+            path
+            for path in task.files
+            if other and path.startswith(f"{other}/") and other not in map(posixpath.dirname, likes)
+        ]
+        if paths and kind_of(likes.get(next((it for it in likes if posixpath.dirname(it) == folder), ""), "")) in (
+            kind,
+            "urdf",
+        ):
+            yield proposal(
+                [task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder"
+            )
 
 
 def _mentions(task: Task, old: str, new: str) -> list[Edit]:
@@ -76,7 +93,10 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
     moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
     edits += moved if f"resource/{new}" not in task.files else []
     modules = [
-        task.renamed(path, path.replace(old, new, 1)) for path in task.files for old in names if path.startswith(f"{old}/")
+        task.renamed(path, path.replace(old, new, 1))
+        for path in task.files
+        for old in names
+        if path.startswith(f"{old}/")
     ]
     for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
         yield proposal(several, "set", "the name of the package")

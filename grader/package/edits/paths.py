@@ -35,7 +35,9 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
     if file is None or setup is None:
         return
     tree, share = task.package.tree, f"share/{task.package.name}"
-    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern.replace("\\", "/"), it.at.line) for it in setup.empty]
+    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [
+        (it.pattern.replace("\\", "/"), it.at.line) for it in setup.empty
+    ]
     for path, line in wrong[:_MAX_PATHS]:
         above = posixpath.dirname(path)
         is_folder = path in tree.folders
@@ -47,8 +49,13 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
                     yield proposal([edit], "set", "a path", _SETUP)
     installed = task.reference.installed if task.reference is not None else {}
     for copy in [it for it in setup.copies if not it.target.startswith(f"{share}/")][:_MAX_PATHS]:
-        like = _similar(copy.source, [source for target, source in installed.items() if target.startswith("share/")])[:1]
-        inside = next((target.split("/", 2)[2] for target, source in installed.items() if source in like), posixpath.basename(copy.source))
+        like = _similar(copy.source, [source for target, source in installed.items() if target.startswith("share/")])[
+            :1
+        ]
+        inside = next(
+            (target.split("/", 2)[2] for target, source in installed.items() if source in like),
+            posixpath.basename(copy.source),
+        )
         wanted = posixpath.join(share, posixpath.dirname(inside), posixpath.basename(copy.source))
         for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
             yield proposal([edit], "set", "a folder of data_files", _SETUP)

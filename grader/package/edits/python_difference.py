@@ -13,7 +13,11 @@ from grader.package.edits.wording import nearest
 from grader.source import Edit
 
 _ROOTS = ("setup", "LaunchDescription")
-_IDENTIFYING = ("executable", "1", "0")  # arguments: of a node, else the files of an entry of data_files, else the first
+_IDENTIFYING = (
+    "executable",
+    "1",
+    "0",
+)  # arguments: of a node, else the files of an entry of data_files, else the first
 _MAX_ITEMS = 100
 
 
@@ -71,7 +75,11 @@ class PythonDifference(NamedTuple):
             [_node(self.own, item) for item in mine[:_MAX_ITEMS]], [_node(self.like, item) for item in its[:_MAX_ITEMS]]
         )
         yield from chain.from_iterable(self._compared(one.of, other.of, name) for one, other in pairs.both)
-        far = [other for one, other in pairs.both if one.keys[1] != other.keys[1] and not nearest(one.keys[1], [other.keys[1]])]
+        far = [
+            other
+            for one, other in pairs.both
+            if one.keys[1] != other.keys[1] and not nearest(one.keys[1], [other.keys[1]])
+        ]
         missing = [self._item(node) for node in (*far, *pairs.missing)]
         for several in (missing, *([item] for item in missing[1:] or ())) if missing else ():
             edits = _added(self.own, own, [code for code, _ in several])
@@ -83,7 +91,11 @@ class PythonDifference(NamedTuple):
     def _item(self, like: Node) -> tuple[str, set[str]]:
         """Return the code of an item of the reference and the names that it needs; a name that the file has for it and forgot."""
         for name, value in self.own.values.items():
-            if _tag(value) == like.tag and isinstance(value, ast.Call) and _node(self.own, value).keys[1] == like.keys[1]:
+            if (
+                _tag(value) == like.tag
+                and isinstance(value, ast.Call)
+                and _node(self.own, value).keys[1] == like.keys[1]
+            ):
                 return name, set()
         return self.like.written(self.like.meant(like.of), self.own.bound)
 
@@ -128,7 +140,9 @@ def _added(file: PythonFile, own: ast.expr, codes: Sequence[str]) -> list[Edit]:
         start, end = file.span(own.elts[-1])
         line = file.text[file.text.rfind("\n", 0, start) + 1 : start]
         space = " " if line.strip() else f"{file.newline}{line}"
-        return [file.source.edit(end, end, "".join(f",{space}{_at_indent(code, space, file.newline)}" for code in codes))]
+        return [
+            file.source.edit(end, end, "".join(f",{space}{_at_indent(code, space, file.newline)}" for code in codes))
+        ]
     if isinstance(own, ast.List):
         return [file.replaced(own, f"[{', '.join(codes)}]")]
     for call in file.calls("add_action")[-1:]:

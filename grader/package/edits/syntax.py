@@ -58,14 +58,20 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
         line = file.source.at(token.start).line
         near = [other for other in file.tokens if file.source.at(other.start).line == line]
         ends = dict.fromkeys(place for other in near for place in (other.start, other.end))
-        for place in sorted(ends, key=lambda place: abs(place - token.start) if place < token.start else len(file.text) - place)[:_MAX_ENDS]:
+        for place in sorted(
+            ends, key=lambda place: abs(place - token.start) if place < token.start else len(file.text) - place
+        )[:_MAX_ENDS]:
             yield file.source.edit(place, place, token.text)
     yield from _brackets(file)
     lines = (fault.location.line, fault.location.line - 1)
     near = [token for token in file.tokens if file.source.at(token.start).line in lines]
     near.sort(key=lambda token: min(abs(token.start - at), abs(token.end - at)))
     for token in near:
-        guess = closest(token.text, kwlist) if token.kind == "name" and token.text not in kwlist and len(token.text) > 1 else None
+        guess = (
+            closest(token.text, kwlist)
+            if token.kind == "name" and token.text not in kwlist and len(token.text) > 1
+            else None
+        )
         if guess is not None:
             yield file.source.edit(token.start, token.end, guess)
     yield from _indents(file, lines)
@@ -92,7 +98,9 @@ def _brackets(file: PythonFile) -> Iterator[Edit]:
         closing = _CLOSING[opened[-1].text]
         inside = [token for token in file.tokens if opened[-1].end <= token.end <= end]
         for token in sorted(inside[::-1], key=lambda token: not _is_open(file, token))[:_MAX_ENDS]:
-            for place in dict.fromkeys((token.start, token.end) if token.text in (",", ":", last and last.text) else (token.end,)):
+            for place in dict.fromkeys(
+                (token.start, token.end) if token.text in (",", ":", last and last.text) else (token.end,)
+            ):
                 if not file.text[place : place + 1].isalnum() and opened[-1].end <= place:
                     yield file.source.edit(place, place, closing)
         if last is not None:
@@ -100,7 +108,9 @@ def _brackets(file: PythonFile) -> Iterator[Edit]:
     if last is not None:
         line = file.source.at(last.start).line
         yield file.source.edit(last.start, last.end, "")
-        for token in [token for token in file.tokens if token.start < last.start and line - file.source.at(token.start).line < 2][::-1]:
+        for token in [
+            token for token in file.tokens if token.start < last.start and line - file.source.at(token.start).line < 2
+        ][::-1]:
             for place in (token.end, token.start):
                 yield file.source.edit(place, place, _OPENING[last.text])
     elif opened:

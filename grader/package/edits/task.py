@@ -19,7 +19,7 @@ _WORDS: Mapping[Verb, tuple[str, str]] = {
     "set": ("{}", "correct {}"),
     "add": ("a missing part of {}", "complete {}"),
     "remove": ("a part of {} too many", "remove {}"),
-    "rename": ("a misspelt name: {}", "correct the spelling of {}"),
+    "rename": ("the spelling of {}", "correct the spelling of {}"),
     "syntax": ("a syntax error{}", "correct the syntax{}"),
     "create": ("{} is missing", "create {}"),
     "file": ("the name of {}", "rename {}"),
@@ -68,7 +68,12 @@ class Task:
         for path in self.reference.tree.files if self.reference is not None else ():
             folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
             own = [posixpath.dirname(it) for it in self.files if it.endswith(ending)]
-            if folder and ending in (".urdf", ".xacro", ".rviz") and folder not in self.package.tree.folders and any(own):
+            if (
+                folder
+                and ending in (".urdf", ".xacro", ".rviz")
+                and folder not in self.package.tree.folders
+                and any(own)
+            ):
                 found[folder] = next(filter(None, own))
         return found
 

@@ -24,7 +24,9 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
     found = steps(mine, its) if mine is not None and its is not None else []
 
     def order(step: Step) -> bool:
-        return step.like is None or not given.intersection(node.values.get(name, "") for node in step.like.walk() for name in node.values)
+        return step.like is None or not given.intersection(
+            node.values.get(name, "") for node in step.like.walk() for name in node.values
+        )
 
     same: dict[tuple[str, str], list[Edit]] = {}
     for step in sorted(found, key=order):
@@ -58,7 +60,13 @@ def _xml_tree(source: Source) -> Node | None:
         values = {**{str(name): str(value) for name, value in element.attrib.items()}, **({"": text} if text else {})}
         key = next((values[name] for name in (*_IDENTIFYING, "") if name in values), "")
         place = file.location(element)
-        return Node(str(element.tag), (key,), values, [*map(node, element.iterchildren("*"))], source.offset(place.line, place.column))
+        return Node(
+            str(element.tag),
+            (key,),
+            values,
+            [*map(node, element.iterchildren("*"))],
+            source.offset(place.line, place.column),
+        )
 
     return node(file.root)
 
@@ -118,7 +126,9 @@ def _yaml_edit(source: Source, like: Source, step: Step) -> Edit | None:
             return source.edit(start, start + len(step.name), step.other)
         case Step(verb="add") if its is not None:
             text = _block(like, its)
-            return _inserted(source, mine, f"- {text}" if isinstance(mine.value, list) else f"{step.like.tag}:\n  {text}")
+            return _inserted(
+                source, mine, f"- {text}" if isinstance(mine.value, list) else f"{step.like.tag}:\n  {text}"
+            )
     return None
 
 

@@ -35,7 +35,9 @@ def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: st
     places: dict[str, list[re.Match[str]]] = {}
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
-    right = {word for text in (*known, _PYTHON if source.path.endswith(".py") else _FRONTEND) for word in _WORD.findall(text)}
+    right = {
+        word for text in (*known, _PYTHON if source.path.endswith(".py") else _FRONTEND) for word in _WORD.findall(text)
+    }
     right |= {word for word in places if len(places[word]) > 1}
     near = set(lines)
 
