@@ -122,7 +122,7 @@ def _of_file(
         return
     own, right = PythonFile(source), Source(source.path, wanted or "")
     is_python = not path.endswith((".xml", ".rviz", ".yaml", ".yml", ".launch"))
-    is_like = like is not None and like.rpartition(".")[2] == path.rpartition(".")[2] or is_python
+    is_like = (like is not None and like.rpartition(".")[2] == path.rpartition(".")[2]) or is_python
     if wanted and is_like:
         yield from reworded(source, wanted, what)
         if not is_broken and is_python:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from grader.edits import Proposal
 from grader.names import closest
-from grader.package.edits.task import Task, proposal
+from grader.package.edits.task import Task, change
 from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch_named
 from grader.package.package import MANIFEST, SETUP
 from grader.source import Edit
@@ -46,14 +46,14 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         similar = closest(name, spare)
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
             new = posixpath.join(posixpath.dirname(spare[other]), name)
-            yield proposal(
+            yield change(
                 [task.renamed(spare[other], new), *_mentions(task, other, name)], "file", _WHAT.get(kind, "a file")
             )
         if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
-            yield proposal(edits, "create", _WHAT.get(kind, kind if path == kind else "a file of the resource index"))
+            yield change(edits, "create", _WHAT.get(kind, kind if path == kind else "a file of the resource index"))
     for folder in dict.fromkeys(map(posixpath.dirname, likes)):
         other = (
             closest(folder, task.package.tree.folders) if folder and folder not in task.package.tree.folders else None
@@ -67,9 +67,7 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
             kind,
             "urdf",
         ):
-            yield proposal(
-                [task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder"
-            )
+            yield change([task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder")
 
 
 def _mentions(task: Task, old: str, new: str) -> list[Edit]:
@@ -99,4 +97,4 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
         if path.startswith(f"{old}/")
     ]
     for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
-        yield proposal(several, "set", "the name of the package")
+        yield change(several, "set", "the name of the package")

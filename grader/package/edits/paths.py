@@ -9,9 +9,9 @@ from itertools import islice, product
 
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
-from grader.package.edits.task import Task, proposal
+from grader.package.edits.task import Task, change
 from grader.package.launch.model import Launch, Reference
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
+from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
@@ -46,7 +46,7 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
             known = [it for it in known if posixpath.dirname(it) == posixpath.dirname(actual)] if is_folder else known
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 for edit in moved(file.source, actual, wanted, line)[:2]:
-                    yield proposal([edit], "set", "a path", _SETUP)
+                    yield change([edit], "set", "a path", _SETUP)
     installed = task.reference.installed if task.reference is not None else {}
     for copy in [it for it in setup.copies if not it.target.startswith(f"{share}/")][:_MAX_PATHS]:
         like = _similar(copy.source, [source for target, source in installed.items() if target.startswith("share/")])[
@@ -58,7 +58,7 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
         )
         wanted = posixpath.join(share, posixpath.dirname(inside), posixpath.basename(copy.source))
         for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
-            yield proposal([edit], "set", "a folder of data_files", _SETUP)
+            yield change([edit], "set", "a folder of data_files", _SETUP)
 
 
 def _patterns(task: Task, name: str) -> list[str]:
@@ -86,9 +86,9 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
     wrong = [it for it in launch.references[:_MAX_PATHS] if it.path is not None and not _is_found(task, it.path)]
     ways = [way for way in (_found_at(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
     if len(ways) > 1:
-        yield proposal([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
+        yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
     for way in ways:
-        yield from (proposal(edits, "set", "a path", _LAUNCH) for edits in way)
+        yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
 
 
 def _is_found(task: Task, path: str) -> bool:

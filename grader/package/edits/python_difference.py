@@ -8,7 +8,7 @@ from typing import NamedTuple
 from grader.difference import Node, paired
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile, called, keyword
-from grader.package.edits.task import Verb, proposal
+from grader.package.edits.task import Verb, change
 from grader.package.edits.wording import nearest
 from grader.source import Edit
 
@@ -36,7 +36,7 @@ class PythonDifference(NamedTuple):
 
     def _made(self, verb: Verb, name: str, edits: Sequence[Edit], needed: set[str] = frozenset()) -> Proposal:  # type: ignore[assignment]
         name = f"the value of `{name}`" if verb == "set" else f"`{name}`"
-        return proposal([*self.own.with_imports(sorted(needed)), *edits], verb, name, self.what)
+        return change([*self.own.with_imports(sorted(needed)), *edits], verb, name, self.what)
 
     def _compared(self, own: ast.expr, like: ast.expr, name: str) -> Iterator[Proposal]:
         """Yield the edits that make an expression the one of the reference: of one of its parts, else of the whole."""

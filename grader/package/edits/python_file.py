@@ -156,34 +156,23 @@ class PythonFile:
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
-        """Return the edits that import those of these names that have a usual meaning and are not bound."""
-        wanted = (name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound)
-        at: dict[int, list[str]] = {}
-        for statement in sorted(map(self._import, wanted), key=_import_order):
-            at.setdefault(self._place(statement), []).append(statement)
-        return [self.source.edit(start, start, "".join(line + self.newline for line in it)) for start, it in at.items()]
+        """Return the edit that imports those of these names that have a usual meaning and are not bound."""
+        wanted = [name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound]
+        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
+        start = next((self.span(node)[0] for node in body if not _is_first(node)), len(self.text))
+        text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
+        return [self.source.edit(start, start, text)] if wanted else []
 
     def _import(self, name: str) -> str:
         module, _, own = USUAL_NAMES[name].rpartition(".")
         if own == "?glob":
             module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
-        return f"from {module} import {own}" if module else f"import {own}"
+        return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
 
-    def _place(self, statement: str) -> int:
-        """Return the offset of the line before which an import is added: the first later one in the usual order, or the end of the imports."""
-        top = [node for node in self.imports if node.col_offset == 0]
-        for node in top:
-            if _import_order(self.segment(node)) > _import_order(statement):
-                return self.span(node)[0]
-        if top:
-            return self._next_line(self.span(top[-1])[1])
-        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        is_docstring = bool(body) and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
-        return self._next_line(self.span(body[0])[1]) if is_docstring else self.source.offset(1, 1)
 
-    def _next_line(self, offset: int) -> int:
-        end = self.text.find("\n", offset)
-        return end + 1 if end >= 0 else len(self.text)
+def _is_first(node: ast.stmt) -> bool:
+    """Return whether a statement has to stay before imports: the docstring, or an import from the future."""
+    return isinstance(node, ast.Expr) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
 
 
 def called(call: ast.Call) -> str:
@@ -194,12 +183,6 @@ def called(call: ast.Call) -> str:
 def keyword(call: ast.Call, name: str) -> ast.keyword | None:
     """Return a keyword argument of a call."""
     return next((keyword for keyword in call.keywords if keyword.arg == name), None)
-
-
-def _import_order(statement: str) -> tuple[bool, str]:
-    """Return the order of the lab's files: what is imported as a whole comes first, setuptools last."""
-    words = statement.split()
-    return words[1] == "setuptools", "" if words[0] == "import" else words[1]
 
 
 def _bound(nodes: Iterable[ast.AST]) -> Iterator[str]:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 from grader.edits import KNOWN, Proposal
 from grader.errors import InputError
@@ -101,8 +101,13 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def proposal(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
-    """Return a proposal that makes each edit once; `name` is what changes, and `what` the file that it is in."""
+def proposal(edits: Iterable[Edit], cause: str, action: str) -> Proposal:
+    """Return a proposal that makes each edit once."""
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=KNOWN)
+
+
+def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
+    """Return the proposal of a step; `name` is what changes, and `what` the file that it is in."""
     place = " in ".join(filter(None, (name, what)))
     cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=KNOWN)
+    return proposal(edits, cause, action)

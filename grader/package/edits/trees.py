@@ -1,12 +1,12 @@
 """The difference between two files of XML or YAML: their elements and settings, as edits of the text."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from grader.difference import Node, Step, steps
 from grader.edits import Proposal, text_of, with_attribute, with_child
 from grader.markup import attribute, head_end
-from grader.package.edits.task import Verb, proposal
+from grader.package.edits.task import Verb, change
 from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node as YamlNode
 from grader.package.yaml_nodes import YamlFault, read_yaml
@@ -32,11 +32,11 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
     for step in sorted(found, key=order):
         edit = write(own, like, step)
         if edit is not None:
-            yield proposal([edit], _VERBS.get(step.verb, "set"), _place(step), what)
+            yield change([edit], _VERBS.get(step.verb, "set"), _place(step), what)
             same.setdefault((edit.old.rpartition("/")[0], edit.new.rpartition("/")[0]), []).append(edit)
     for (old, _), edits in same.items():  # one mistake that is made everywhere, such as classes of ROS 1
         if old and len(edits) > 1:
-            yield proposal(edits, "set", "the same value in several places", what)
+            yield change(edits, "set", "the same value in several places", what)
 
 
 _VERBS: dict[str, Verb] = {"add": "add", "unset": "remove", "rename": "rename"}

@@ -9,7 +9,7 @@ from itertools import islice
 
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
-from grader.package.edits.task import proposal
+from grader.package.edits.task import change
 from grader.source import Edit, Location, Source
 from grader.static_python.imports import USUAL_NAMES
 
@@ -48,7 +48,7 @@ def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: st
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=order)[:_MAX_SUSPECTS]
     guesses = ((word, nearest(word, right)) for word in suspects)
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
-        yield proposal([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
+        yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
@@ -75,7 +75,7 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
     for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
         offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
-        yield proposal([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
+        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
 
 
 def defined(file: PythonFile, faults: Iterable[Location], what: str) -> Iterator[Proposal]:
@@ -83,13 +83,13 @@ def defined(file: PythonFile, faults: Iterable[Location], what: str) -> Iterator
     places = [file.source.offset(place.line, place.column) for place in faults]
     words = [match[0] for place in places if (match := _WORD.match(file.text, place))]
     if missing := file.with_imports(words):
-        yield proposal(missing, "add", "the imports", what)
+        yield change(missing, "add", "the imports", what)
     for edit in _imported_otherwise(file):
-        yield proposal([edit], "set", "an import", what)
+        yield change([edit], "set", "an import", what)
     for node in file.nodes:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
             end = file.span(node.func)[1]
-            yield proposal([file.source.edit(end, end, ",")], "syntax", "", what)
+            yield change([file.source.edit(end, end, ",")], "syntax", "", what)
 
 
 def _imported_otherwise(file: PythonFile) -> Iterator[Edit]:
