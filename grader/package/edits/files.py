@@ -6,24 +6,14 @@ from collections.abc import Iterator
 
 from grader.edits import Proposal
 from grader.names import closest
-from grader.package.edits.task import Task, change
-from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch_named
+from grader.package.edits.task import Task, change, kind_of
+from grader.package.launch.places import is_launch_named
 from grader.package.package import MANIFEST, SETUP
 from grader.source import Edit
 
-# The files that belong to each file that a check looks at, and whether they are created where they are missing: never a robot.
-_WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}
+WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}
 _MAX_NAMES = 2  # of files that may be the one that is meant
 _MAX_LAUNCH_FILES = 3
-
-
-def kind_of(path: str) -> str:
-    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
-    if path.endswith((".rviz", ".urdf", ".xacro")):
-        return "rviz" if path.endswith(".rviz") else "urdf"
-    if path.endswith(ENDINGS) or is_in_launch_folder(path):
-        return "launch"
-    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
 
 
 def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
@@ -46,34 +36,12 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         similar = closest(name, spare)
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
             new = posixpath.join(posixpath.dirname(spare[other]), name)
-            yield change(
-                [task.renamed(spare[other], new), *_mentions(task, other, name)], "file", _WHAT.get(kind, "a file")
-            )
+            yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
         if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
-            yield change(edits, "create", _WHAT.get(kind, kind if path == kind else "a file of the resource index"))
-    for folder in dict.fromkeys(map(posixpath.dirname, likes)):
-        other = (
-            closest(folder, task.package.tree.folders) if folder and folder not in task.package.tree.folders else None
-        )
-        paths = [
-            path
-            for path in task.files
-            if other and path.startswith(f"{other}/") and other not in map(posixpath.dirname, likes)
-        ]
-        if paths and kind_of(likes.get(next((it for it in likes if posixpath.dirname(it) == folder), ""), "")) in (
-            kind,
-            "urdf",
-        ):
-            yield change([task.renamed(it, folder + it.removeprefix(other or "")) for it in paths], "file", "a folder")
-
-
-def _mentions(task: Task, old: str, new: str) -> list[Edit]:
-    """Return the edits of setup.py that name a file which gets another name."""
-    found = [it for it in task.setup.literals if posixpath.basename(it.text) == old] if task.setup is not None else []
-    return [task.setup.source.edit(it.start, it.end, it.text.removesuffix(old) + new) for it in found if task.setup]
+            yield change(edits, "create", WHAT.get(kind, kind if path == kind else "a file of the resource index"))
 
 
 def package_names(task: Task, new: str) -> Iterator[Proposal]:

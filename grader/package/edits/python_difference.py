@@ -9,7 +9,7 @@ from grader.difference import Node, paired
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile, called, keyword
 from grader.package.edits.task import Verb, change
-from grader.package.edits.wording import nearest
+from grader.package.edits.wording import slip
 from grader.source import Edit
 
 _ROOTS = ("setup", "LaunchDescription")
@@ -78,7 +78,7 @@ class PythonDifference(NamedTuple):
         far = [
             other
             for one, other in pairs.both
-            if one.keys[1] != other.keys[1] and not nearest(one.keys[1], [other.keys[1]])
+            if one.keys[1] != other.keys[1] and not slip(one.keys[1], [other.keys[1]])
         ]
         missing = [self._item(node) for node in (*far, *pairs.missing)]
         for several in (missing, *([item] for item in missing[1:] or ())) if missing else ():

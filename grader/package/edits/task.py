@@ -10,6 +10,7 @@ from typing import Literal
 from grader.edits import KNOWN, Proposal
 from grader.errors import InputError
 from grader.package.edits.python_file import PythonFile
+from grader.package.launch.places import ENDINGS, is_in_launch_folder
 from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
 
@@ -35,10 +36,22 @@ class Task:
     reference: Package | None = None
     given: frozenset[str] = field(default=frozenset())
 
-    def source(self, path: str) -> Source | None:
+    def source(self, path: str | None) -> Source | None:
         """Return the text of a file of the package as it is; None where there is none that can be read."""
-        text = _text(self.package, path)
-        return Source(self.package.path(path), text) if text is not None else None
+        text = _text(self.package, path) if path is not None else None
+        return Source(self.package.path(path or ""), text) if text is not None else None
+
+    def file(self, package: Package | None, kind: str) -> str | None:
+        """Return the path of the file of a kind in a package: the one that a check names, else another one."""
+        if package is None or kind not in ("launch", "rviz"):
+            return kind
+        names = sorted(name for name in self.given if kind_of(name) == kind)
+        launch = next((package.launch(path) for path in package.launch_files[:1]), None)
+        return (
+            package.launch_file("".join(names[:1]))
+            if kind == "launch"
+            else package.rviz_file("".join(names[:1]), launch)
+        )
 
     @cached_property
     def setup(self) -> PythonFile | None:
@@ -90,6 +103,15 @@ class Task:
     def files(self) -> Iterable[str]:
         """The paths of the package's files."""
         return self.package.tree.files
+
+
+def kind_of(path: str) -> str:
+    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
+    if path.endswith((".rviz", ".urdf", ".xacro")):
+        return "rviz" if path.endswith(".rviz") else "urdf"
+    if path.endswith(ENDINGS) or is_in_launch_folder(path):
+        return "launch"
+    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
 
 
 def _text(package: Package, path: str) -> str | None:

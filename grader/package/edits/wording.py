@@ -8,9 +8,10 @@ from difflib import SequenceMatcher
 from itertools import islice
 
 from grader.edits import Proposal
+from grader.names import closest
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import change
-from grader.source import Edit, Location, Source
+from grader.source import Edit, Source
 from grader.static_python.imports import USUAL_NAMES
 
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -27,43 +28,28 @@ file let group find-pkg-share find-pkg-prefix var env eval command dirname true 
 _PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
 
 
-def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: str) -> Iterator[Proposal]:
-    """Yield edits that replace a misspelt word everywhere; words on these lines come first, then rare ones.
+def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+    """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
     """
     places: dict[str, list[re.Match[str]]] = {}
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
-    right = {
-        word for text in (*known, _PYTHON if source.path.endswith(".py") else _FRONTEND) for word in _WORD.findall(text)
-    }
+    usual = _PYTHON if source.path.endswith(".py") else _FRONTEND
+    right = {word for text in (*known, usual) for word in _WORD.findall(text)}
     right |= {word for word in places if len(places[word]) > 1}
-    near = set(lines)
-
-    def order(word: str) -> tuple[bool, int, int]:
-        first = places[word][0].start()
-        return source.at(first).line not in near, len(places[word]), first
-
-    suspects = sorted((word for word in places if word not in right and len(word) > 1), key=order)[:_MAX_SUSPECTS]
-    guesses = ((word, nearest(word, right)) for word in suspects)
+    suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
+    guesses = ((word, slip(word, right)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
 
 
-def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that a slip of the hand makes this one: a letter more, less or other, two that are swapped."""
-    lower, best = word.lower(), (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG, "")
-    matcher = SequenceMatcher(None, "", lower, autojunk=False)
-    for other in sorted(known):
-        same_end = other[:1].lower() == lower[:1] or other[-2:].lower() == lower[-2:]
-        if not same_end or abs(len(other) - len(word)) > _MAX_MORE:
-            continue
-        matcher.set_seq1(other.lower())
-        if matcher.quick_ratio() >= best[0]:
-            swapped = sorted(other.lower()) == sorted(lower)
-            best = max(best, (matcher.ratio() + 0.1 * swapped + 0.01 * (other[:1] == word[:1]), other))
-    return best[1] or None
+def slip(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that a slip of the hand makes this one: a letter or two more, less, other or swapped."""
+    guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
+    same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
+    return guess if same >= (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG) else None
 
 
 def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
@@ -78,12 +64,10 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
 
 
-def defined(file: PythonFile, faults: Iterable[Location], what: str) -> Iterator[Proposal]:
-    """Yield edits that import the names at the places of Python's errors, or as they are used; and missing commas."""
-    places = [file.source.offset(place.line, place.column) for place in faults]
-    words = [match[0] for place in places if (match := _WORD.match(file.text, place))]
-    if missing := file.with_imports(words):
-        yield change(missing, "add", "the imports", what)
+def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that import the names which are used without it, or as they are used; and missing commas."""
+    used = sorted({node.id for node in file.nodes if isinstance(node, ast.Name)})
+    yield change(file.with_imports(used), "add", "the imports", what)
     for edit in _imported_otherwise(file):
         yield change([edit], "set", "an import", what)
     for node in file.nodes:
