@@ -16,7 +16,7 @@ from grader.package.edits.task import Task
 from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import defined, respelt, reworded
 from grader.package.edits.xml_syntax import repaired as repaired_xml
-from grader.package.package import SETUP, Package
+from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Source
 
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
@@ -72,6 +72,15 @@ def _result(task: Task, edits: tuple[Edit, ...]) -> tuple[object, ...]:
 def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
     """Yield the edits of the file of a kind, and those that rename or create files of the kind."""
     yield from file_proposals(task, kind)
+    if kind == MANIFEST and SETUP not in task.files:  # with the build type alone, the package could not be built
+        needed = tuple(edit for it in file_proposals(task, SETUP) for edit in it.edits)
+        yield from (it._replace(edits=(*it.edits, *needed)) for it in _of_file(task, kind))
+    else:
+        yield from _of_file(task, kind)
+
+
+def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
     source, wanted = task.source(path), task.wanted(like)

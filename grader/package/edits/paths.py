@@ -34,7 +34,7 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
     file, setup = task.setup, task.package.setup
     if file is None or setup is None:
         return
-    tree, share = task.package.tree, f"share/{task.package.name}"
+    tree = task.package.tree
     wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [
         (it.pattern.replace("\\", "/"), it.at.line) for it in setup.empty
     ]
@@ -47,18 +47,6 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 for edit in moved(file.source, actual, wanted, line)[:2]:
                     yield change([edit], "set", "a path", _SETUP)
-    installed = task.reference.installed if task.reference is not None else {}
-    for copy in [it for it in setup.copies if not it.target.startswith(f"{share}/")][:_MAX_PATHS]:
-        like = _similar(copy.source, [source for target, source in installed.items() if target.startswith("share/")])[
-            :1
-        ]
-        inside = next(
-            (target.split("/", 2)[2] for target, source in installed.items() if source in like),
-            posixpath.basename(copy.source),
-        )
-        wanted = posixpath.join(share, posixpath.dirname(inside), posixpath.basename(copy.source))
-        for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
-            yield change([edit], "set", "a folder of data_files", _SETUP)
 
 
 def _patterns(task: Task, name: str) -> list[str]:

@@ -39,13 +39,13 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
             yield change(edits, "set", "the same value in several places", what)
 
 
-_VERBS: dict[str, Verb] = {"add": "add", "unset": "remove", "rename": "rename"}
+_VERBS: dict[str, Verb] = {"add": "add", "unset": "remove"}
 
 
 def _place(step: Step) -> str:
     node = step.like or step.own
     tag = f"<{node.tag}>" if node.of.__class__ is int else node.tag
-    name = f"`{step.other or step.name}` of {tag}" if step.name else tag
+    name = f"`{step.name}` of {tag}" if step.name else tag
     return f"the value of {name}" if step.verb == "set" else name
 
 
@@ -82,8 +82,6 @@ def _xml_edit(source: Source, like: Source, step: Step) -> Edit | None:
             return None if is_empty else source.edit(first, first + len(text.strip()), values[""])
         case Step(verb="set", like=Node(values=values)):
             return with_attribute(source, start, step.name, values[step.name])
-        case Step(verb="rename") if found is not None:
-            return source.edit(found.start, found.start + len(step.name), step.other)
         case Step(verb="unset") if found is not None:
             return source.edit(found.start - 1, found.end, "")
         case Step(verb="add", like=Node(of=place)):
@@ -120,10 +118,6 @@ def _yaml_edit(source: Source, like: Source, step: Step) -> Edit | None:
                 gap = " " if not text and source.text[start - 1 : start].strip() else ""
                 return source.edit(start, start + len(text), gap + new)
             return _inserted(source, mine, f"{step.name}: {new}")
-        case Step(verb="rename") if step.name in mine.value:
-            line = mine.value[step.name].location.line
-            start = source.offset(line, source.line(line).find(step.name) + 1)
-            return source.edit(start, start + len(step.name), step.other)
         case Step(verb="add") if its is not None:
             text = _block(like, its)
             return _inserted(
