@@ -2,12 +2,11 @@
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 from typing import NamedTuple
 
 from grader.difference import Node, paired
 from grader.edits import Proposal
-from grader.package.edits.python_file import PythonFile, called, keyword
+from grader.package.edits.python_file import PythonFile, called
 from grader.package.edits.task import Verb, change
 from grader.package.edits.wording import slip
 from grader.source import Edit
@@ -19,6 +18,8 @@ _IDENTIFYING = (
     "0",
 )  # arguments: of a node, else the files of an entry of data_files, else the first
 _MAX_ITEMS = 100
+
+Code = tuple[str, set[str]]  # and the names in it
 
 
 class PythonDifference(NamedTuple):
@@ -34,75 +35,73 @@ class PythonDifference(NamedTuple):
             for pair in zip(self.own.calls(name), self.like.calls(name), strict=False):
                 yield from self._compared(*pair, name)
 
-    def _made(self, verb: Verb, name: str, edits: Sequence[Edit], needed: set[str] = frozenset()) -> Proposal:  # type: ignore[assignment]
+    def _change(self, verb: Verb, name: str, edits: Sequence[Edit], *codes: Code) -> Proposal:
+        imports = self.own.with_imports(sorted(set().union(*(names for _, names in codes))))
         name = f"the value of `{name}`" if verb == "set" else f"`{name}`"
-        return change([*self.own.with_imports(sorted(needed)), *edits], verb, name, self.what)
+        return change([*imports, *edits], verb, name, self.what)
 
     def _compared(self, own: ast.expr, like: ast.expr, name: str) -> Iterator[Proposal]:
         """Yield the edits that make an expression the one of the reference: of one of its parts, else of the whole."""
         own, like = self.own.meant(own), self.like.meant(like)
+        mine, its = _parts(own), _parts(like)
+        is_root = name in _ROOTS and isinstance(own, ast.Call)
         if self.own.plain(own) == self.like.plain(like):
             return
-        if isinstance(own, ast.List) and isinstance(like, ast.List):
-            yield from self._items(own, own.elts, like.elts, name)
-            return
-        mine, its = _parts(own), _parts(like)
-        if _tag(own) != _tag(like) or [*filter(str.isdigit, mine)] != [*filter(str.isdigit, its)] or not (mine and its):
-            if not (isinstance(own, ast.Call) and called(own) in _ROOTS):
-                code, needed = self.like.written(like, self.own.bound)
-                yield self._made("set", name, [self.own.replaced(own, code)], needed)
-            elif isinstance(own, ast.Call):
-                given = self.like.meant(like.args[0]) if isinstance(like, ast.Call) and like.args else None
-                yield from self._items(own, [], given.elts if isinstance(given, ast.List) else [], name)
-            return
-        for part, value in its.items():
-            inner = name if part.isdigit() else part
-            if part in mine:
-                yield from self._compared(mine[part], value, inner)
-            elif isinstance(own, ast.Call):
-                code, needed = self.like.written(value, self.own.bound)
-                yield self._made("add", inner, [_with_keyword(self.own, own, f"{part}={code}")], needed)
-        for part in [part for part in mine if part not in its and isinstance(own, ast.Call)]:
-            argument = keyword(own, part) if isinstance(own, ast.Call) else None
-            if argument is not None:
-                yield self._made("remove", part, [_without(self.own, argument)])
+        if isinstance(like, ast.List) and (isinstance(own, ast.List) or is_root):
+            yield from self._items(own, like, name)
+        elif is_root and set(mine) < {"0"} == set(its):  # actions are added later
+            yield from self._compared(own, its["0"], name)
+        elif _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
+            code = self.like.written(like, self.own.bound)
+            yield self._change("set", name, [self.own.replaced(own, code[0])], code)
+        else:
+            for part in [part for part in its if part in mine]:
+                yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
+            arguments = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
+            for part in [part for part in its if part not in mine and arguments]:
+                code = self.like.written(its[part], self.own.bound)
+                yield self._change("add", part, [_appended(self.own, arguments, [f"{part}={code[0]}"])], code)
+            for argument in own.keywords if isinstance(own, ast.Call) else ():
+                if argument.arg and argument.arg not in its:
+                    yield self._change("remove", argument.arg, [_without(self.own, argument)])
 
-    def _items(self, own: ast.expr, mine: Sequence[ast.expr], its: Sequence[ast.expr], name: str) -> Iterator[Proposal]:
+    def _items(self, own: ast.expr, like: ast.List, name: str) -> Iterator[Proposal]:
         """Yield the edits of the items of a list, and those that add missing ones: all together, then each."""
-        if called_root(own) or name == "LaunchDescription":
-            mine = [*mine, *(call.args[0] for call in self.own.calls("add_action") if call.args)]
+        actions = [call.args[0] for call in self.own.calls("add_action") if call.args] if name in _ROOTS else []
+        listed = own.elts if isinstance(own, ast.List) else []
         pairs = paired(
-            [_node(self.own, item) for item in mine[:_MAX_ITEMS]], [_node(self.like, item) for item in its[:_MAX_ITEMS]]
+            [_node(self.own, item) for item in (*listed, *actions)[:_MAX_ITEMS]],
+            [_node(self.like, item) for item in like.elts[:_MAX_ITEMS]],
         )
-        yield from chain.from_iterable(self._compared(one.of, other.of, name) for one, other in pairs.both)
-        far = [
-            other
-            for one, other in pairs.both
-            if one.keys[1] != other.keys[1] and not slip(one.keys[1], [other.keys[1]])
-        ]
-        missing = [self._item(node) for node in (*far, *pairs.missing)]
-        for several in (missing, *([item] for item in missing[1:] or ())) if missing else ():
-            edits = _added(self.own, own, [code for code, _ in several])
-            if edits:
-                yield self._made("add", name, edits, set().union(*(needed for _, needed in several)))
-        if len(missing) > 1 and (edits := _added(self.own, own, [missing[0][0]])):
-            yield self._made("add", name, edits, missing[0][1])
+        missing = [self._item(node) for node in pairs.missing]
+        for one, other in pairs.both:
+            yield from self._compared(one.of, other.of, name)
+            if one.keys[1] != other.keys[1] and not slip(one.keys[1], [other.keys[1]]):
+                missing.append(self._item(other))
+        for several in (missing, *([item] for item in missing)) if missing else ():
+            codes = [code for code, _ in several]
+            if listed:
+                edits = [_appended(self.own, listed, codes)]
+            elif actions:
+                call = self.own.calls("add_action")[-1]
+                codes = [f"{self.own.segment(call.func)}({code})" for code in codes]
+                edits = [_appended(self.own, [call], codes, comma="")]
+            else:
+                start, end = self.own.span(own)
+                start, end = (start, end) if isinstance(own, ast.List) else (end - 1, end - 1)  # in an empty call
+                edits = [self.own.source.edit(start, end, f"[{', '.join(codes)}]")]
+            yield self._change("add", name, edits, *several)
 
-    def _item(self, like: Node) -> tuple[str, set[str]]:
-        """Return the code of an item of the reference and the names that it needs; a name that the file has for it and forgot."""
+    def _item(self, like: Node) -> Code:
+        """Return the code of an item of the reference; the name that the file has for it, where it does not use it."""
         for name, value in self.own.values.items():
             if (
-                _tag(value) == like.tag
-                and isinstance(value, ast.Call)
+                isinstance(value, ast.Call)
+                and called(value) == like.tag
                 and _node(self.own, value).keys[1] == like.keys[1]
             ):
                 return name, set()
         return self.like.written(self.like.meant(like.of), self.own.bound)
-
-
-def called_root(node: ast.expr) -> bool:
-    """Return whether an expression is a call of LaunchDescription, whose actions may be added later."""
-    return isinstance(node, ast.Call) and called(node) == _ROOTS[1]
 
 
 def _tag(node: ast.expr) -> str:
@@ -112,18 +111,15 @@ def _tag(node: ast.expr) -> str:
 def _parts(node: ast.expr) -> Mapping[str, ast.expr]:
     """Return the parts of an expression by their names or numbers."""
     match node:
-        case ast.Call():
-            return _numbered(node.args) | {it.arg: it.value for it in node.keywords if it.arg}
-        case ast.Tuple():
-            return _numbered(node.elts)
-        case ast.Dict():
-            return {ast.unparse(key): value for key, value in zip(node.keys, node.values, strict=True) if key}
+        case ast.Call(args=items):
+            named = {it.arg: it.value for it in node.keywords if it.arg}
+        case ast.Tuple(elts=items):
+            named = {}
+        case ast.Dict(keys=keys, values=values):
+            items, named = [], {ast.unparse(key): value for key, value in zip(keys, values, strict=True) if key}
         case _:
             return {}
-
-
-def _numbered(items: Sequence[ast.expr]) -> dict[str, ast.expr]:
-    return {str(number): item for number, item in enumerate(items)}
+    return {str(number): item for number, item in enumerate(items)} | named
 
 
 def _node(file: PythonFile, item: ast.expr) -> Node:
@@ -134,42 +130,20 @@ def _node(file: PythonFile, item: ast.expr) -> Node:
     return Node(_tag(meant), (file.plain(meant), key), values, (), item)
 
 
-def _added(file: PythonFile, own: ast.expr, codes: Sequence[str]) -> list[Edit]:
-    """Return the edit that adds items at the end of a list, or actions where the file adds actions."""
-    if isinstance(own, ast.List) and own.elts:
-        start, end = file.span(own.elts[-1])
-        line = file.text[file.text.rfind("\n", 0, start) + 1 : start]
-        space = " " if line.strip() else f"{file.newline}{line}"
-        return [
-            file.source.edit(end, end, "".join(f",{space}{_at_indent(code, space, file.newline)}" for code in codes))
-        ]
-    if isinstance(own, ast.List):
-        return [file.replaced(own, f"[{', '.join(codes)}]")]
-    for call in file.calls("add_action")[-1:]:
-        start, end = file.span(call)
-        space = file.newline + file.text[file.text.rfind("\n", 0, start) + 1 : start]
-        lines = (f"{space}{file.segment(call.func)}({_at_indent(code, space, file.newline)})" for code in codes)
-        return [file.source.edit(end, end, "".join(lines))]
-    if isinstance(own, ast.Call) and not own.args:
-        end = file.span(own)[1] - 1
-        return [file.source.edit(end, end, f"[{', '.join(codes)}]")]
-    return []
-
-
-def _at_indent(code: str, space: str, newline: str) -> str:
-    """Return the lines of an expression, whose first one stands after this space."""
-    first, *others = code.split("\n")
-    least = min((len(line) - len(line.lstrip()) for line in others if line.strip()), default=0)
-    return newline.join([first, *(space.lstrip("\r\n") + line[least:] if line.strip() else line for line in others)])
-
-
-def _with_keyword(file: PythonFile, call: ast.Call, code: str) -> Edit:
-    """Return the edit that adds an argument to a call."""
-    last = [*call.args, *call.keywords][-1:]
-    start, end = file.span(last[0]) if last else (0, file.span(call)[1] - 1)
+def _appended(
+    file: PythonFile, nodes: Sequence[ast.expr | ast.keyword], codes: Sequence[str], comma: str = ","
+) -> Edit:
+    """Return the edit that adds code after the last of some nodes, in lines of their own if that has one."""
+    start, end = file.span(nodes[-1])
     line = file.text[file.text.rfind("\n", 0, start) + 1 : start]
     space = " " if line.strip() else f"{file.newline}{line}"
-    return file.source.edit(end, end, f",{space}{code}" if last else code)
+    text = ""
+    for code in codes:
+        first, *others = code.split("\n")
+        least = min((len(other) - len(other.lstrip()) for other in others if other.strip()), default=0)
+        lines = (space.lstrip("\r\n") + other[least:] if other.strip() else other for other in others)
+        text += f"{comma}{space}{file.newline.join([first, *lines])}"
+    return file.source.edit(end, end, text)
 
 
 def _without(file: PythonFile, argument: ast.keyword) -> Edit:
