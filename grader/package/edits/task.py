@@ -1,6 +1,5 @@
 """A package whose edits are searched, beside the package of the rubric's reference solution."""
 
-import posixpath
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -62,33 +61,13 @@ class Task:
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, with the student's names of the package and of its folders."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
-        if text is None or self.reference is None:
-            return text
-        for old, new in self._folders.items():
-            text = re.sub(rf"(?<=['\"]){re.escape(old)}(?=['\"/])", new, text) if path == SETUP else text
-        return self.named(text)
+        return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
         """Return a text of the reference, or a path in it, with the student's name of the package."""
         if self.reference is None or self.reference.name == self.package.name:
             return text
         return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", self.package.name, text)
-
-    @cached_property
-    def _folders(self) -> dict[str, str]:
-        """The folders of the package that have the files of those folders of the reference which it does not have."""
-        found: dict[str, str] = {}
-        for path in self.reference.tree.files if self.reference is not None else ():
-            folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
-            own = [posixpath.dirname(it) for it in self.files if it.endswith(ending)]
-            if (
-                folder
-                and ending in (".urdf", ".xacro", ".rviz")
-                and folder not in self.package.tree.folders
-                and any(own)
-            ):
-                found[folder] = next(filter(None, own))
-        return found
 
     def created(self, path: str, like: str | None) -> list[Edit]:
         """Return the edit that creates a file like one of the reference; nothing where it exists, or the reference has none."""
