@@ -38,14 +38,10 @@ def package_proposals(
     kinds = dict.fromkeys(kind for looks_at, _ in wanted for kind in looks_at)
     task = Task(package, reference, frozenset(chain.from_iterable(_texts(arguments) for _, arguments in wanted)))
     found: dict[tuple[object, ...], Proposal] = {}
-    names = dict.fromkeys([package.share.split("/")[1], *filter(None, [package.wanted])])
-    makers = [lambda: chain.from_iterable(package_names(task, name) for name in names)]
-    makers += [lambda kind=kind: _of_kind(task, kind) for kind in kinds]  # type: ignore[misc]
-    for make in makers:
+    for kind in ("", *kinds):
         with isolated():
-            own = {
-                _result(task, it.edits): it for it in islice(make(), _MAX_MADE) if it.edits
-            }  # a later one says better what changes
+            # Of equal ones, a later one says better what changes.
+            own = {_result(task, it.edits): it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
             found |= {result: own[result] for result in sorted(own, key=lambda it: own[it].size)[:_MAX_PROPOSALS]}
     return list(found.values())
 
@@ -56,21 +52,18 @@ def _texts(arguments: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _result(task: Task, edits: tuple[Edit, ...]) -> tuple[object, ...]:
-    """Return what is the same for edits that make the same change: the text after them."""
-    sources = {
-        path: task.source(path.removeprefix(task.package.path(""))) for path in dict.fromkeys(it.path for it in edits)
-    }
-    if any(it.renamed for it in edits) or None in sources.values():
+    """Return what is the same for edits that make the same change: the text after them, of one file."""
+    source = task.source(edits[0].path.removeprefix(task.package.path("")))
+    if source is None or any(it.renamed or it.path != source.path for it in edits):
         return edits
-    return tuple(
-        (path, edited(it.text, path, [edit for edit in edits if edit.path == path]))
-        for path, it in sources.items()
-        if it
-    )
+    return source.path, edited(source.text, source.path, edits)
 
 
 def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield the edits of the file of a kind, and those that rename or create files of the kind."""
+    """Yield the edits of the file of a kind, and those that rename or create files of the kind; without a kind, of its name."""
+    if not kind:
+        yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
+        return
     yield from file_proposals(task, kind)
     if kind == MANIFEST and SETUP not in task.files:  # with the build type alone, the package could not be built
         needed = tuple(edit for it in file_proposals(task, SETUP) for edit in it.edits)

@@ -27,11 +27,7 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         folder, name = posixpath.split(path)
         if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
             continue
-        own = [
-            it
-            for it in task.files
-            if kind in (kind_of(it), posixpath.dirname(it)) or posixpath.dirname(it) == folder != ""
-        ]
+        own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         spare = {posixpath.basename(it): it for it in own if posixpath.basename(it) not in names}
         similar = closest(name, spare)
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
@@ -58,11 +54,7 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
         edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
     moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
     edits += moved if f"resource/{new}" not in task.files else []
-    modules = [
-        task.renamed(path, path.replace(old, new, 1))
-        for path in task.files
-        for old in names
-        if path.startswith(f"{old}/")
-    ]
+    own = [(path, old) for path in task.files for old in names if path.startswith(f"{old}/")]
+    modules = [task.renamed(path, path.replace(old, new, 1)) for path, old in own]
     for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
         yield change(several, "set", "the name of the package")

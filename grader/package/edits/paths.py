@@ -4,8 +4,7 @@ import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from difflib import SequenceMatcher
-from fnmatch import fnmatch
-from itertools import islice, product
+from itertools import islice
 
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
@@ -22,7 +21,6 @@ _MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
 _SHARE_FUNCTION = "get_package_share_directory"
-_EXPANDUSER = re.compile(r"(?:os\.path\.)?expanduser\(\s*$")
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
@@ -30,32 +28,20 @@ _SETUP, _LAUNCH = "setup.py", "the launch file"
 
 
 def setup_paths(task: Task) -> Iterator[Proposal]:
-    """Yield edits of the paths and patterns in setup.py that name no file, and of files that it installs elsewhere."""
+    """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     file, setup = task.setup, task.package.setup
     if file is None or setup is None:
         return
-    tree = task.package.tree
-    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [
-        (it.pattern.replace("\\", "/"), it.at.line) for it in setup.empty
-    ]
+    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
+    files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
+    patterns = [f"{folder}/*{end}" for path, folder in files.items() for end in ("", posixpath.splitext(path)[1])]
     for path, line in wrong[:_MAX_PATHS]:
-        above = posixpath.dirname(path)
-        is_folder = path in tree.folders
-        for actual in (path, f"{above}/*") if is_folder else (path,):
-            known = _patterns(task, path.rpartition("/")[2])
-            known = [it for it in known if posixpath.dirname(it) == posixpath.dirname(actual)] if is_folder else known
+        is_folder, above = path in task.package.tree.folders, posixpath.dirname(path)
+        known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
+        for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
-                for edit in moved(file.source, actual, wanted, line)[:2]:
-                    yield change([edit], "set", "a path", _SETUP)
-
-
-def _patterns(task: Task, name: str) -> list[str]:
-    """Return the paths of files, and the patterns that match some: with this name, with an ending, all of a folder."""
-    files = [*islice(task.files, _MAX_FILES)]
-    names = dict.fromkeys([name, "*", *(f"*{posixpath.splitext(path)[1]}" for path in files)])
-    folders = dict.fromkeys(map(posixpath.dirname, files))
-    found = (posixpath.join(*pair) for pair in islice(product(folders, names), _MAX_FILES))
-    return [*files, *(it for it in found if it not in task.files and any(fnmatch(path, it) for path in files))]
+                edits = moved(file.source, actual, wanted, line)[:2]
+                yield from (change([edit], "set", "a path", _SETUP) for edit in edits)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -71,16 +57,14 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
 
 def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
     """Yield edits with which a launch file finds its files: of all together, then of one path each."""
-    wrong = [it for it in launch.references[:_MAX_PATHS] if it.path is not None and not _is_found(task, it.path)]
+    installed = task.package.installed
+    named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
+    wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
     ways = [way for way in (_found_at(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
     if len(ways) > 1:
         yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
     for way in ways:
         yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
-
-
-def _is_found(task: Task, path: str) -> bool:
-    return posixpath.normpath(path).removeprefix(f"{PREFIX}/") in task.package.installed
 
 
 def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
@@ -106,27 +90,22 @@ def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
     return found
 
 
-def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> list[list[Edit]]:
-    """Return the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
+def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
+    """Yield the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
 
-    No general difference knows it where the student's file is built in another way: launch-home-path, sensors-launch-home-path.
+    The difference to the reference has no answer where the file is built in another way: launch-home-path, sensors-launch-home-path.
     """
     share = f"{_SHARE_FUNCTION}({name!r})"
-    found: list[list[Edit]] = []
     for literal in file.literals:
-        text = literal.text.rstrip("/")
-        for path in (text, text.replace("~", HOME, 1), f"{WORKING_FOLDER}/{text}"):
-            if not text or not (actual == path or actual.startswith(f"{path}/")):
-                continue
-            rest = actual.removeprefix(path).strip("/")
-            call = _EXPANDUSER.search(file.text[: literal.outer_start])
-            start, end = (call.start(), file.text.find(")", literal.outer_end) + 1) if call else literal[3:]
-            new = share if rest else f"os.path.join({share}, {target!r})"
+        for path in (literal.text.rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.text}"):
+            rest = (
+                actual.removeprefix(path).strip("/") if literal.text and f"{actual}/".startswith(f"{path}/") else None
+            )
             others = moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
+                new = share if rest else f"os.path.join({share}, {target!r})"
                 imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
-                found.append([*imports, file.source.edit(start, end, new), *others])
-    return found
+                yield [*imports, file.source.edit(literal.outer_start, literal.outer_end, new), *others]
 
 
 def pieces(source: Source) -> Iterator[tuple[int, int]]:

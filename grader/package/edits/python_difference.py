@@ -57,7 +57,7 @@ class PythonDifference(NamedTuple):
         else:
             for part in [part for part in its if part in mine]:
                 yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
-            arguments = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
+            arguments: list[ast.expr | ast.keyword] = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
             for part in [part for part in its if part not in mine and arguments]:
                 code = self.like.written(its[part], self.own.bound)
                 yield self._change("add", part, [_appended(self.own, arguments, [f"{part}={code[0]}"])], code)

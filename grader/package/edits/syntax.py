@@ -57,13 +57,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
         is_lone = token.kind == "op" and token.text in odd
         balance[line] = balance.get(line, 0) + is_lone * (-1 if token.text in _BRACKETS.values() else 1)
     last = fault.location.line
-    tokens.sort(
-        key=lambda pair: (
-            not balance[pair[1]],
-            abs(pair[1] - last),
-            min(abs(pair[0].start - at), abs(pair[0].end - at)),
-        )
-    )
+    tokens.sort(key=lambda it: (not balance[it[1]], abs(it[1] - last), min(abs(it[0].start - at), abs(it[0].end - at))))
     near = [token for token, line in tokens if line in (last, last - 1)]
     for token, line in tokens if odd else ():
         if token.text in odd and token.kind == "op" and (token in near or line == last):

@@ -44,13 +44,9 @@ class Task:
         """Return the path of the file of a kind in a package: the one that a check names, else another one."""
         if package is None or kind not in ("launch", "rviz"):
             return kind
-        names = sorted(name for name in self.given if kind_of(name) == kind)
+        name = min((name for name in self.given if kind_of(name) == kind), default="")
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
-        return (
-            package.launch_file("".join(names[:1]))
-            if kind == "launch"
-            else package.rviz_file("".join(names[:1]), launch)
-        )
+        return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
 
     @cached_property
     def setup(self) -> PythonFile | None:

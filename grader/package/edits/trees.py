@@ -14,6 +14,7 @@ from grader.source import Edit, Location, Source
 from grader.xml.parsing import Element
 
 _SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
+_MAX_DEPTH, _MAX_CHILDREN = 8, 200
 _IDENTIFYING = ("exec", "name", "pkg", "file")  # attributes of an element
 
 
@@ -24,9 +25,7 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
     found = steps(mine, its) if mine is not None and its is not None else []
 
     def order(step: Step) -> bool:
-        return step.like is None or not given.intersection(
-            node.values.get(name, "") for node in step.like.walk() for name in node.values
-        )
+        return not any(given.intersection(node.values.values()) for node in (step.like.walk() if step.like else ()))
 
     same: dict[tuple[str, str], list[Edit]] = {}
     for step in sorted(found, key=order):
@@ -55,20 +54,15 @@ def _xml_tree(source: Source) -> Node | None:
     except XmlFault:
         return None
 
-    def node(element: Element) -> Node:
+    def node(element: Element, depth: int) -> Node:
         text = (element.text or "").strip()
         values = {**{str(name): str(value) for name, value in element.attrib.items()}, **({"": text} if text else {})}
         key = next((values[name] for name in (*_IDENTIFYING, "") if name in values), "")
         place = file.location(element)
-        return Node(
-            str(element.tag),
-            (key,),
-            values,
-            [*map(node, element.iterchildren("*"))],
-            source.offset(place.line, place.column),
-        )
+        children = [node(child, depth - 1) for child in element.iterchildren("*") if depth][:_MAX_CHILDREN]
+        return Node(str(element.tag), (key,), values, children, source.offset(place.line, place.column))
 
-    return node(file.root)
+    return node(file.root, _MAX_DEPTH)
 
 
 def _xml_edit(source: Source, like: Source, step: Step) -> Edit | None:
@@ -98,11 +92,13 @@ def _yaml_tree(source: Source) -> Node | None:
     return _yaml_node("Visualization Manager", manager) if manager is not None else None
 
 
-def _yaml_node(tag: str, node: YamlNode, depth: int = 8) -> Node:
+def _yaml_node(tag: str, node: YamlNode, depth: int = _MAX_DEPTH) -> Node:
     items = node.value.items() if isinstance(node.value, dict) else [("-", item) for item in node.items]
     values = {name: item.text for name, item in items if item.text is not None}
     kind = values.get("Class", "").rpartition("/")[2]
-    children = [_yaml_node(name, item, depth - 1) for name, item in items if item.text is None and depth]
+    children = [_yaml_node(name, item, depth - 1) for name, item in items if item.text is None and depth][
+        :_MAX_CHILDREN
+    ]
     return Node(kind or tag, (tag, values.get("Name", "")), values, children, node)
 
 
@@ -118,11 +114,9 @@ def _yaml_edit(source: Source, like: Source, step: Step) -> Edit | None:
                 gap = " " if not text and source.text[start - 1 : start].strip() else ""
                 return source.edit(start, start + len(text), gap + new)
             return _inserted(source, mine, f"{step.name}: {new}")
-        case Step(verb="add") if its is not None:
+        case Step(verb="add", like=Node(tag=tag)) if its is not None:
             text = _block(like, its)
-            return _inserted(
-                source, mine, f"- {text}" if isinstance(mine.value, list) else f"{step.like.tag}:\n  {text}"
-            )
+            return _inserted(source, mine, f"- {text}" if isinstance(mine.value, list) else f"{tag}:\n  {text}")
     return None
 
 

@@ -11,7 +11,7 @@ from grader.edits import Proposal
 from grader.names import closest
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import change
-from grader.source import Edit, Source
+from grader.source import Source
 from grader.static_python.imports import USUAL_NAMES
 
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -68,21 +68,11 @@ def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import the names which are used without it, or as they are used; and missing commas."""
     used = sorted({node.id for node in file.nodes if isinstance(node, ast.Name)})
     yield change(file.with_imports(used), "add", "the imports", what)
-    for edit in _imported_otherwise(file):
-        yield change([edit], "set", "an import", what)
+    for statement in file.imports:  # the function glob instead of the module, or the reverse
+        if [alias.name for alias in statement.names] == ["glob"]:
+            new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
+            yield change([file.replaced(statement, new)], "set", "an import", what)
     for node in file.nodes:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
             end = file.span(node.func)[1]
             yield change([file.source.edit(end, end, ",")], "syntax", "", what)
-
-
-def _imported_otherwise(file: PythonFile) -> Iterator[Edit]:
-    """Yield edits that import a function instead of the module of its name, or the reverse, as the file uses it."""
-    for node in file.imports:
-        name = node.names[0].name
-        calls = [call for call in file.calls(name) if len(node.names) == 1]
-        own = [call for call in calls if isinstance(call.func, ast.Name)]
-        if isinstance(node, ast.Import) and own:
-            yield file.replaced(node, f"from {name} import {name}")
-        elif isinstance(node, ast.ImportFrom) and node.module == name and len(own) < len(calls):
-            yield file.replaced(node, f"import {name}")
