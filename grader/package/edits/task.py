@@ -55,8 +55,13 @@ class Task:
         return PythonFile(source) if source is not None else None
 
     def wanted(self, path: str | None) -> str | None:
-        """Return the text of a file of the reference, with the student's names of the package and of its folders."""
+        """Return the text of a file of the reference, with the student's names of the package and of its frames."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
+        launch = next((self.package.launch(it) for it in self.package.launch_files[:1]), None)
+        if text is not None and launch is not None and path is not None and path.endswith(".rviz"):
+            for link in sorted(self.given):
+                frame = launch.frames_of(link)[0] or link
+                text = re.sub(rf"(Frame: ){re.escape(link)}$", "\\g<1>" + frame.replace("\\", r"\\"), text, flags=re.MULTILINE)
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
