@@ -45,7 +45,9 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
     manifest, setup = task.package.manifest, task.package.setup
     if manifest is None or manifest.name is None:
         return
-    names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *task.package.registered])
+    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
+    others = [*task.package.registered, *(name for name in shares if closest(name, [new]))]
+    names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *others])
     names.pop(new, None)
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
     edits: list[Edit] = []

@@ -61,14 +61,14 @@ class Task:
         if text is not None and launch is not None and path is not None and path.endswith(".rviz"):
             for link in sorted(self.given):
                 frame = launch.frames_of(link)[0] or link
-                text = re.sub(rf"(Frame: ){re.escape(link)}$", "\\g<1>" + frame.replace("\\", r"\\"), text, flags=re.MULTILINE)
+                text = text.replace(f"Frame: {link}\n", f"Frame: {frame}\n")
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
         """Return a text of the reference, or a path in it, with the student's name of the package."""
         if self.reference is None or self.reference.name == self.package.name:
             return text
-        return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", self.package.name, text)
+        return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
 
     def created(self, path: str, like: str | None) -> list[Edit]:
         """Return the edit that creates a file like one of the reference; nothing where it exists, or the reference has none."""
