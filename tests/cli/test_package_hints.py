@@ -30,7 +30,7 @@ MISTAKES = {
         [("import glob", "from glob import glob")],
     ),
     "name of the package in its paths": (
-        "equivalent-literal-lists", SETUP, "share/my_robot", "share/my-robot", [("my-robot", "my_robot")] * 4,
+        "equivalent-literal-lists", SETUP, "share/my_robot", "share/my-robot", [("my-robot", "my_robot")] * 2,
     ),
 }  # fmt: skip
 
