@@ -150,12 +150,7 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
 def _without(source: Source, start: int, end: int) -> Edit:
     """Return the edit that removes a text, as an argument with its quotes and comma where it is one."""
     text = source.text
-    if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start]:
-        after = _REST_OF_ARGUMENT.match(text, end + 1)
-        if after is not None:
-            return source.edit(start - 1, after.end(), "")
-        before = re.search(r",\s*$", text[: start - 1])
-        if before is not None:
-            return source.edit(before.start(), end + 1, "")
-    slash = text[end : end + 1] == "/"
-    return source.edit(start, end + slash, "")
+    after = _REST_OF_ARGUMENT.match(text, end + 1)
+    if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start] and after is not None:
+        return source.edit(start - 1, after.end(), "")
+    return source.edit(start, end + (text[end : end + 1] == "/"), "")

@@ -18,6 +18,7 @@ _IDENTIFYING = (
     "0",
 )  # arguments: of a node, else the files of an entry of data_files, else the first
 _MAX_ITEMS = 100
+_MAX_TEXT = 12 * 1024  # characters of a file that is compared
 
 Code = tuple[str, set[str]]  # and the names in it
 
@@ -31,7 +32,7 @@ class PythonDifference(NamedTuple):
 
     def proposals(self) -> Iterator[Proposal]:
         """Yield the edits that undo one difference each."""
-        for name in _ROOTS:
+        for name in _ROOTS if len(self.own.text) <= _MAX_TEXT else ():
             for pair in zip(self.own.calls(name), self.like.calls(name), strict=False):
                 yield from self._compared(*pair, name)
 

@@ -78,8 +78,9 @@ class PythonFile:
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
-        text = self.source.line(line).encode("utf-8", "surrogateescape")[:byte]
-        return self.source.offset(line, len(text.decode("utf-8", "surrogateescape")) + 1)
+        start = self.source.offset(line, 1)
+        text = self.text[start : start + byte].encode("utf-8", "surrogateescape")[:byte]
+        return start + len(text.decode("utf-8", "surrogateescape"))
 
     def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
         """Return the offsets of the start and the end of a node."""

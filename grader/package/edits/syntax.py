@@ -13,7 +13,7 @@ from grader.static_python.parse import SyntaxFault
 
 _BRACKETS = {"(": ")", "[": "]", "{": "}"}
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
-_MAX_TRIES = 250  # edits that are parsed
+_MAX_TRIES, _MAX_PARSED = 250, 512 * 1024  # edits that are parsed, and characters
 _MAX_FOUND = 10
 _MAX_DEPTH = 3  # errors in one file
 
@@ -30,7 +30,8 @@ def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
         return
     furthest: tuple[int, Edit, PythonFile] | None = None
     some = False
-    for edit in islice(dict.fromkeys(_edits(file, fault)), _MAX_TRIES):
+    tries = min(_MAX_TRIES, _MAX_PARSED // len(file.text))
+    for edit in dict.fromkeys(islice(_edits(file, fault), tries)):
         after = PythonFile(Source(file.source.path, edited(file.text, file.source.path, [edit]) or ""))
         if not isinstance(after.parsed, SyntaxFault):
             some = True
@@ -60,7 +61,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     tokens.sort(key=lambda it: (not balance[it[1]], abs(it[1] - last), min(abs(it[0].start - at), abs(it[0].end - at))))
     near = [token for token, line in tokens if line in (last, last - 1)]
     for token, line in tokens if odd else ():
-        if token.text in odd and token.kind == "op" and (token in near or line == last):
+        if token.text in odd and token.kind == "op" and line in (last, last - 1):
             yield source.edit(token.start, token.end, "")
     for token, _ in tokens if odd else ():
         for place in (token.end, token.start):

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 
 from grader.difference import Node, Step, steps
 from grader.edits import Proposal, text_of, with_attribute, with_child
-from grader.markup import attribute, head_end
-from grader.package.edits.task import Verb, change
+from grader.markup import head_end
+from grader.package.edits.task import change
 from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node as YamlNode
 from grader.package.yaml_nodes import YamlFault, read_yaml
-from grader.source import Edit, Location, Source
+from grader.source import Edit, Source
 from grader.xml.parsing import Element
 
 _SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
@@ -31,14 +31,11 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
     for step in sorted(found, key=order):
         edit = write(own, like, step)
         if edit is not None:
-            yield change([edit], _VERBS.get(step.verb, "set"), _place(step), what)
+            yield change([edit], "add" if step.verb == "add" else "set", _place(step), what)
             same.setdefault((edit.old.rpartition("/")[0], edit.new.rpartition("/")[0]), []).append(edit)
     for (old, _), edits in same.items():  # one mistake that is made everywhere, such as classes of ROS 1
         if old and len(edits) > 1:
             yield change(edits, "set", "the same value in several places", what)
-
-
-_VERBS: dict[str, Verb] = {"add": "add", "unset": "remove"}
 
 
 def _place(step: Step) -> str:
@@ -67,7 +64,6 @@ def _xml_tree(source: Source) -> Node | None:
 
 def _xml_edit(source: Source, like: Source, step: Step) -> Edit | None:
     start = step.own.of
-    found = attribute(source.text, start, step.name) if step.name else None
     match step:
         case Step(verb="set", name="", like=Node(values=values)):
             end, is_empty = head_end(source.text, start)
@@ -76,8 +72,6 @@ def _xml_edit(source: Source, like: Source, step: Step) -> Edit | None:
             return None if is_empty else source.edit(first, first + len(text.strip()), values[""])
         case Step(verb="set", like=Node(values=values)):
             return with_attribute(source, start, step.name, values[step.name])
-        case Step(verb="unset") if found is not None:
-            return source.edit(found.start - 1, found.end, "")
         case Step(verb="add", like=Node(of=place)):
             return with_child(source, start, text_of(like, place))
     return None
@@ -89,16 +83,16 @@ def _yaml_tree(source: Source) -> Node | None:
     except YamlFault:
         return None
     manager = root.get("Visualization Manager")
-    return _yaml_node("Visualization Manager", manager) if manager is not None else None
+    return _yaml_node("Visualization Manager", manager, []) if manager is not None else None
 
 
-def _yaml_node(tag: str, node: YamlNode, depth: int = _MAX_DEPTH) -> Node:
+def _yaml_node(tag: str, node: YamlNode, seen: list[YamlNode], depth: int = _MAX_DEPTH) -> Node:
     items = node.value.items() if isinstance(node.value, dict) else [("-", item) for item in node.items]
     values = {name: item.text for name, item in items if item.text is not None}
     kind = values.get("Class", "").rpartition("/")[2]
-    children = [_yaml_node(name, item, depth - 1) for name, item in items if item.text is None and depth][
-        :_MAX_CHILDREN
-    ]
+    inner = [(name, item) for name, item in items if item.text is None and depth and item not in seen][:_MAX_CHILDREN]
+    seen += [item for _, item in inner]
+    children = [_yaml_node(name, item, seen, depth - 1) for name, item in inner]
     return Node(kind or tag, (tag, values.get("Name", "")), values, children, node)
 
 
@@ -106,13 +100,12 @@ def _yaml_edit(source: Source, like: Source, step: Step) -> Edit | None:
     mine, its = step.own.of, step.like.of if step.like is not None else None
     match step:
         case Step(verb="set") if its is not None and step.name in its.value:
-            new = _scalar(like, its.value[step.name].location)
-            old = mine.get(step.name)
+            start, end = scalar_span(like, its.value[step.name])
+            new, old = like.text[start:end], mine.get(step.name)
             if old is not None:
-                start = source.offset(old.location.line, old.location.column)
-                text = _scalar(source, old.location)
-                gap = " " if not text and source.text[start - 1 : start].strip() else ""
-                return source.edit(start, start + len(text), gap + new)
+                start, end = scalar_span(source, old)
+                gap = " " if start == end and source.text[start - 1 : start].strip() else ""
+                return source.edit(start, end, gap + new)
             return _inserted(source, mine, f"{step.name}: {new}")
         case Step(verb="add", like=Node(tag=tag)) if its is not None:
             text = _block(like, its)
@@ -120,26 +113,32 @@ def _yaml_edit(source: Source, like: Source, step: Step) -> Edit | None:
     return None
 
 
-def _scalar(source: Source, at: Location) -> str:
-    """Return the text of a value at a place, with its quotes."""
-    found = _SCALAR.match(source.text, source.offset(at.line, at.column))
-    return found[0] if found is not None else ""
+def scalar_span(source: Source, node: YamlNode) -> tuple[int, int]:
+    """Return the offsets of the text of a value, with its quotes."""
+    start = source.offset(node.location.line, node.location.column)
+    found = _SCALAR.match(source.text, start)
+    return start, found.end() if found is not None else start
 
 
-def _inserted(source: Source, into: YamlNode, text: str) -> Edit | None:
+def _inserted(source: Source, into: YamlNode, text: str) -> Edit:
     """Return the edit that adds lines at the start of a mapping or list."""
     at = into.location
     start, indent = source.offset(at.line, at.column), " " * (at.column - 1)
-    if not into.value:
-        text = f"\n{' ' * (len(source.line(at.line)) - len(source.line(at.line).lstrip()) + 2)}{text}"
-        return source.edit(start, start + 2, text) if source.text[start : start + 2] in ("[]", "{}") else None
     newline = "\r\n" if "\r\n" in source.text else "\n"
     return source.edit(start, start, f"{text}\n".replace("\n", newline + indent))
 
 
+def line_span(source: Source, node: YamlNode) -> tuple[int, int]:
+    """Return the offsets of the lines of a mapping: up to the next line that is not as deep as its keys."""
+    number, last = node.location.line + 1, source.text.count("\n") + 1
+    indent = " " * (node.location.column - 1)
+    while number <= last and (not source.line(number).strip() or source.line(number).startswith(indent)):
+        number += 1
+    return source.offset(node.location.line, 1), source.offset(number, 1) if number <= last else len(source.text)
+
+
 def _block(source: Source, node: YamlNode) -> str:
     """Return the lines of a mapping, the first one without its indentation, the others two deeper than it."""
-    first, depth = node.location.line, node.location.column - 1
-    lines = source.text.split("\n")[first - 1 :]
-    ends = (number for number, line in enumerate(lines[1:], 1) if line.strip() and not line.startswith(" " * depth))
-    return "\n  ".join(line[depth:].rstrip() for line in lines[: next(ends, len(lines))]).rstrip()
+    start, end = line_span(source, node)
+    lines = source.text[start:end].split("\n")
+    return "\n  ".join(line[node.location.column - 1 :].rstrip() for line in lines).rstrip()

@@ -20,7 +20,7 @@ _MAX_WORDS, _MAX_SUSPECTS = 8, 60
 _MAX_MORE = 2  # letters that one word has more than the other
 _LONG = 8
 _LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
-_MAX_DIFFERENCES, _MAX_TOKENS = 6, 6000
+_MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
 # Words of launch files in XML and YAML.
 _FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
