@@ -18,7 +18,7 @@ Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
 _WORDS: Mapping[Verb, tuple[str, str]] = {
     "set": ("{}", "correct {}"),
     "add": ("a missing part of {}", "complete {}"),
-    "remove": ("a part of {} too many", "remove {}"),
+    "remove": ("{}", "remove {}"),
     "rename": ("the spelling of {}", "correct the spelling of {}"),
     "syntax": ("a syntax error{}", "correct the syntax{}"),
     "create": ("{} is missing", "create {}"),
