@@ -14,7 +14,7 @@ ROOT = Path(__file__).parent.parent / "grader"
 LAYERS = (
     ("errors", "markup", "text"),
     ("source", "names"),
-    ("problems", "edits"),
+    ("problems", "edits", "difference"),
     ("files", "static_python", "xml"),
     ("xacro", "robot", "documents", "package"),
     ("submission",),

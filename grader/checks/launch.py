@@ -22,6 +22,9 @@ from grader.text import enumerated
 if TYPE_CHECKING:
     from grader.package.launch.model import Launch, Reference, StartedNode
 
+# What the edits for hints may change.
+LOOKS_AT = dict.fromkeys(("launch_found", "launch_starts", "launch_finds_files"), ("launch",))
+
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
 _UNKNOWN_FILES = "cannot determine statically which files it names"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
+from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
@@ -18,6 +18,15 @@ if TYPE_CHECKING:
     from grader.package.setup_py import Setup
 
 FileKind = Literal["urdf", "launch", "rviz"]
+
+# What the edits for hints may change.
+LOOKS_AT = {
+    "package_found": (MANIFEST, SETUP),
+    "package_type": (MANIFEST,),
+    "build_installs": (SETUP,),
+    "installs_files": (SETUP,),
+    "setup_imports": (SETUP,),
+}
 
 _ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 

@@ -1,6 +1,7 @@
 """The explicit list of checks that a rubric can name. Other packages add theirs by entry points."""
 
 import inspect
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
@@ -102,7 +103,8 @@ class Check:
 
     `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
     submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
-    for the grader's own.
+    for the grader's own. `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF
+    on which the result depends: hints propose edits of these.
     """
 
     name: str
@@ -110,6 +112,7 @@ class Check:
     examined: tuple[Subject, ...]
     parameters: Mapping[str, Parameter]
     distribution: str = ""
+    looks_at: tuple[str, ...] = ()
 
     @property
     def subject(self) -> Subject:
@@ -145,7 +148,8 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     examined = tuple(
         name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
     )
-    return Check(function.__name__, function, examined, parameters, distribution)
+    declared = getattr(sys.modules.get(function.__module__), "LOOKS_AT", {}).get(function.__name__, ())
+    return Check(function.__name__, function, examined, parameters, distribution, tuple(map(str, declared)))
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:

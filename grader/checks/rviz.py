@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from grader.package.launch.model import Launch
     from grader.package.rviz import Display, RvizFile
 
+# What the edits for hints may change.
+LOOKS_AT = dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"), ("rviz",))
+
 _PLUGINS = "rviz_default_plugins"
 
 

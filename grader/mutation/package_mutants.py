@@ -7,9 +7,10 @@ from itertools import chain
 from grader.mutation.elements import elements, text_of
 from grader.mutation.mutants import Change, Mutant, as_mutants, misspelt, mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
+from grader.package.edits.trees import line_span, scalar_span
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
-from grader.source import Location, Source
+from grader.source import Source
 
 # Files for people: without them the package does the same.
 _FOR_PEOPLE = (".md", ".rst", ".txt", ".pdf", ".docx", ".png", ".jpg", ".jpeg", ".gif", ".svg", ".mp4")
@@ -17,7 +18,6 @@ _FOR_PEOPLE_TOO = re.compile(r"(^|/)(test|tests|doc|docs|\.[^/]*)/|(^|/)(LICENSE
 _BUILD_TYPES = ("ament_python", "ament_cmake")
 _XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
-_SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
 
 Text = Callable[[str], str]  # returns the text of a file by its path in the submission
 
@@ -77,7 +77,7 @@ def _launch_yaml(path: str, label: str, text: str) -> Iterator[Change]:
     root, source = _yaml(path, text), Source(path, text)
     actions = root.get("launch") if root else None
     for number, item in enumerate(actions.items if actions else (), 1):
-        yield Change("action removed", f"{label} {number}", *_lines(source, item), "", tags=("launch",))
+        yield Change("action removed", f"{label} {number}", *line_span(source, item), "", tags=("launch",))
         for scalar in _scalars(item):
             yield from _misspelt(source, label, scalar, ("launch",))
 
@@ -96,17 +96,17 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Change
     root, source, tags = _yaml(path, text), Source(path, text), ("rviz",)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
-        start, end = _span(source, frame)
+        start, end = scalar_span(source, frame)
         yield Change("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
         yield from (Change("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         title = display.get("Name") or display.get("Class")
         place = f"{label} {title.text if title else ''}".rstrip()
-        yield Change("display deleted", place, *_lines(source, display), "", tags=tags)
+        yield Change("display deleted", place, *line_span(source, display), "", tags=tags)
         enabled = display.get("Enabled")
         if enabled is not None and enabled.text == "true":
-            yield Change("display disabled", place, *_span(source, enabled), "false", tags=tags)
+            yield Change("display disabled", place, *scalar_span(source, enabled), "false", tags=tags)
         for keys in _DISPLAY_TEXTS:
             node = display.get(*keys)
             if node is not None and node.text:
@@ -114,7 +114,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Change
 
 
 def _misspelt(source: Source, label: str, node: Node, tags: tuple[str, ...]) -> Iterator[Change]:
-    start, end = _span(source, node)
+    start, end = scalar_span(source, node)
     text = source.text[start:end].strip("'\"")
     if text:
         start = source.text.index(text, start)
@@ -136,28 +136,3 @@ def _scalars(node: Node) -> Iterator[Node]:
             yield from chain.from_iterable(map(_scalars, items))
         case dict(values):
             yield from chain.from_iterable(map(_scalars, values.values()))
-
-
-def _span(source: Source, node: Node) -> tuple[int, int]:
-    start = _offset(source, node.location)
-    scalar = _SCALAR.match(source.text, start)
-    return start, scalar.end() if scalar else start
-
-
-def _offset(source: Source, location: Location) -> int:
-    return source.offset(location.line, location.column)
-
-
-def _lines(source: Source, item: Node) -> tuple[int, int]:
-    """Return the offsets of the lines of an item of a list: up to the next line that is not as deep as its keys."""
-    start = source.offset(item.location.line, 1)
-    depth = item.location.column - 1  # that of its first key, behind the dash
-    number = item.location.line + 1
-    last = source.text.count("\n") + 1
-    while number <= last and (not source.line(number).strip() or _depth(source.line(number)) >= depth):
-        number += 1
-    return start, source.offset(number, 1) if number <= last else len(source.text)
-
-
-def _depth(line: str) -> int:
-    return len(line) - len(line.lstrip())

@@ -1,8 +1,12 @@
 """Properties of all checks of a submission: the cases, a grade run, and submissions without a package."""
 
+import sys
+
 import pytest
 
+from grader.checks.outcome import Outcome, passed
 from grader.checks.registry import describe
+from grader.package.package import Package
 from tests.checks.outcomes import ask, graded, missing
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase
 from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
@@ -104,3 +108,23 @@ def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
         first, second = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
         assert second.status == first.status
         assert second.message == first.message
+
+
+@every_case
+def test_a_check_of_a_package_declares_what_it_looks_at(case: PackageCase) -> None:
+    """Hints propose edits of these files."""
+    check = describe(case.check)
+    assert check.subject != "package" or check.looks_at
+    assert set(check.looks_at) <= {"setup.py", "package.xml", "launch", "rviz"}
+
+
+def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also one of a plug-in; without a declaration it looks at nothing."""
+
+    def has_driver(package: Package, *, name: str) -> Outcome:
+        """The package starts its driver."""
+        return passed(f"{package.name} starts {name}")
+
+    assert describe(has_driver).looks_at == ()
+    monkeypatch.setattr(sys.modules[__name__], "LOOKS_AT", {"has_driver": ("launch",)}, raising=False)
+    assert describe(has_driver).looks_at == ("launch",)

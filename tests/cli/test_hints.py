@@ -235,7 +235,7 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("place", "lost"),
     [
-        ("grader.package.edits.candidates.manifest_edits.one_name", ()),
+        ("grader.package.edits.candidates.package_names", ()),
         ("grader.grading.hints.proposing.proposals", ("base-green",)),
         ("grader.grading.hints.search.Search._load", ()),
         ("grader.grading.hints.search.Search._combine", ()),

@@ -1,52 +1,99 @@
-"""The edits of a package that may make criteria pass, by the check that decides each."""
+"""The edits of a package that may make criteria pass, by the files that their checks look at."""
 
+import posixpath
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
+from itertools import chain, islice
 from typing import Any
 
-from grader.edits import Proposal
-from grader.package.edits import launch_edits, manifest_edits, rviz_edits, setup_edits
+from grader.edits import Proposal, edited
+from grader.package.edits.files import WHAT, file_proposals, package_names
+from grader.package.edits.paths import launch_paths, setup_paths
+from grader.package.edits.python_difference import PythonDifference
+from grader.package.edits.python_file import PythonFile
+from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task
-from grader.package.package import Package
-from grader.source import Edit
+from grader.package.edits.trees import tree_proposals
+from grader.package.edits.wording import defined, respelt, reworded
+from grader.package.edits.xml_syntax import repaired as repaired_xml
+from grader.package.package import MANIFEST, SETUP, Package
+from grader.source import Edit, Source
 
-_MAX_PROPOSALS = 14  # for one criterion
-_BY_CHECK: Mapping[str, Callable[[Task, Mapping[str, Any]], Iterator[Proposal]]] = {
-    "package_found": manifest_edits.named,
-    "package_type": manifest_edits.typed,
-    "build_installs": setup_edits.installs,
-    "installs_files": setup_edits.installs_files,
-    "setup_imports": setup_edits.readable,
-    "launch_found": launch_edits.named,
-    "launch_starts": launch_edits.starts,
-    "launch_finds_files": launch_edits.finds_files,
-    "rviz_found": rviz_edits.named,
-    "rviz_fixed_frame": rviz_edits.fixed_frame,
-    "rviz_shows_robot": rviz_edits.shows_robot,
-    "rviz_display_on": rviz_edits.display_on,
-}
+_MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 
 
 def package_proposals(
     package: Package | None,
     reference: Package | None,
-    wanted: Iterable[tuple[str, Mapping[str, Any]]],
+    wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
     isolated: Callable[[], AbstractContextManager[None]],
 ) -> list[Proposal]:
-    """Return edits of a package for checks with their arguments, each edit once; of each check the smallest are first.
+    """Return edits of a package for checks: what each looks at, with its arguments. Each edit is made once.
 
-    The edits for each check are made in a context `isolated`, which keeps a fault from those for others.
+    The edits for each kind of files are made in a context `isolated`, which keeps a fault from those for others.
     """
     if package is None:
         return []
-    task = Task(package, reference)
-    found: dict[tuple[Edit, ...], Proposal] = {}
-    with isolated():
-        found |= {proposal.edits: proposal for proposal in manifest_edits.one_name(task, package.share.split("/")[1])}
-    for check, arguments in wanted:
-        family = _BY_CHECK.get(check)
+    wanted = list(wanted)
+    kinds = dict.fromkeys(kind for looks_at, _ in wanted for kind in looks_at)
+    task = Task(package, reference, frozenset(chain.from_iterable(_texts(arguments) for _, arguments in wanted)))
+    found: dict[tuple[object, ...], Proposal] = {}
+    for kind in ("", *kinds):
         with isolated():
-            own = [it for it in family(task, arguments) if it.edits] if family is not None else []
-            for proposal in sorted(own, key=lambda it: it.size)[:_MAX_PROPOSALS]:
-                found.setdefault(proposal.edits, proposal)
+            # Of equal ones, a later one says better what changes.
+            own = {_result(task, it.edits): it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
+            found |= {result: own[result] for result in sorted(own, key=lambda it: own[it].size)[:_MAX_PROPOSALS]}
     return list(found.values())
+
+
+def _texts(arguments: Mapping[str, Any]) -> Iterator[str]:
+    for value in arguments.values():
+        yield from (it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str))
+
+
+def _result(task: Task, edits: tuple[Edit, ...]) -> tuple[object, ...]:
+    """Return what is the same for edits that make the same change: the text after them, of one file."""
+    source = task.source(edits[0].path.removeprefix(task.package.path("")))
+    if source is None or any(it.renamed or it.path != source.path for it in edits):
+        return edits
+    return source.path, edited(source.text, source.path, edits)
+
+
+def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
+    """Yield the edits of the file of a kind, and those that rename or create files of the kind; without a kind, of its name."""
+    if not kind:
+        yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
+        return
+    yield from file_proposals(task, kind)
+    if kind == MANIFEST and SETUP not in task.files:  # with the build type alone, the package could not be built
+        needed = tuple(edit for it in file_proposals(task, SETUP) for edit in it.edits)
+        yield from (it._replace(edits=(*it.edits, *needed)) for it in _of_file(task, kind))
+    else:
+        yield from _of_file(task, kind)
+
+
+def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
+    path, like = task.file(task.package, kind), task.file(task.reference, kind)
+    source, wanted = task.source(path), task.wanted(like)
+    if source is None or path is None:
+        return
+    what = WHAT.get(kind, kind)
+    is_python = posixpath.splitext(path)[1] in (".py", "")
+    is_like = is_python or (like is not None and posixpath.splitext(path)[1] == posixpath.splitext(like)[1])
+    own, right = PythonFile(source), Source(source.path, wanted or "")
+    if wanted and is_like:
+        yield from reworded(source, wanted, what)
+        compared = PythonDifference(own, PythonFile(right), what).proposals()
+        yield from compared if is_python else tree_proposals(source, right, task.given, what)
+    if is_python:
+        yield from repaired(own, what)
+        yield from defined(own, what)
+    elif kind != "rviz":
+        yield from repaired_xml(source, what)
+    if kind == "launch":
+        yield from launch_paths(task, task.package.launch(path), source)
+    elif kind == SETUP:
+        yield from setup_paths(task)
+    yield from respelt(source, [wanted or "", *(task.files if kind == SETUP else task.package.installed)], what)

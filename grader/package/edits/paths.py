@@ -1,10 +1,16 @@
-"""Paths that are put together from texts of a file: the edits of one text with which a path becomes another."""
+"""Paths that name no file: one text of a file changes, with which the path becomes the most similar one that exists."""
 
+import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
 from itertools import islice
 
+from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
+from grader.package.edits.task import Task, change
+from grader.package.launch.model import Launch, Reference
+from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
@@ -13,6 +19,93 @@ _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
+_SHARE_FUNCTION = "get_package_share_directory"
+_MAX_PATHS = 8  # that are wrong in one file
+_MAX_EDITS = 3  # of one path
+_MAX_FILES = 200
+_SETUP, _LAUNCH = "setup.py", "the launch file"
+
+
+def setup_paths(task: Task) -> Iterator[Proposal]:
+    """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
+    file, setup = task.setup, task.package.setup
+    if file is None or setup is None:
+        return
+    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
+    files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
+    patterns = [f"{folder}/*{end}" for path, folder in files.items() for end in ("", posixpath.splitext(path)[1])]
+    for path, line in wrong[:_MAX_PATHS]:
+        is_folder, above = path in task.package.tree.folders, posixpath.dirname(path)
+        known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
+        for actual in (path, f"{above}/*")[: 1 + is_folder]:
+            for wanted in _similar(actual, known)[:_MAX_EDITS]:
+                edits = moved(file.source, actual, wanted, line)[:2]
+                yield from (change([edit], "set", "a path", _SETUP) for edit in edits)
+
+
+def _similar(path: str, known: Iterable[str]) -> list[str]:
+    """Return known paths, the most similar first: those of the same name, in the same folder, then by their letters."""
+    matcher = SequenceMatcher(None, "", path, autojunk=False)
+
+    def order(other: str) -> tuple[bool, float]:
+        matcher.set_seq1(other)
+        return posixpath.basename(other) != posixpath.basename(path), -matcher.ratio()
+
+    return sorted((it for it in dict.fromkeys(known) if it != path), key=order)
+
+
+def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
+    """Yield edits with which a launch file finds its files: of all together, then of one path each."""
+    installed = task.package.installed
+    named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
+    wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
+    ways = [way for way in (_found_at(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
+    if len(ways) > 1:
+        yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
+    for way in ways:
+        yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
+
+
+def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
+    """Return the edits with which a path becomes the one that the file is installed at, or the file is installed there."""
+    package, actual, line = task.package, named.path or "", named.location.line
+    share = f"share/{package.name}/"
+    targets = [it for it in package.installed if it.startswith(share) and it.lower().endswith(_ENDINGS[named.purpose])]
+    looked = actual.removeprefix(f"{PREFIX}/")
+    found: list[list[Edit]] = []
+    for target in _similar(looked, targets)[:1]:
+        below = target.removeprefix(share)
+        if actual.startswith(PREFIX):
+            found += [[edit] for edit in moved(source, actual, f"{PREFIX}/{target}", line)]
+        elif source.path.endswith(".py"):
+            found += _of_one_machine(package.name, PythonFile(source), actual, below)
+        else:
+            short = actual.removeprefix(f"{WORKING_FOLDER}/")
+            found += [[edit] for edit in moved(source, short, f"$(find-pkg-share {package.name})/{below}", line)]
+        if actual.startswith("/"):
+            found += [[edit] for edit in moved(source, actual, below, line)[:1]]
+        if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
+            found[1:1] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
+    return found
+
+
+def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
+    """Yield the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
+
+    The difference to the reference has no answer where the file is built in another way: launch-home-path, sensors-launch-home-path.
+    """
+    share = f"{_SHARE_FUNCTION}({name!r})"
+    for literal in file.literals:
+        for path in (literal.text.rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.text}"):
+            rest = (
+                actual.removeprefix(path).strip("/") if literal.text and f"{actual}/".startswith(f"{path}/") else None
+            )
+            others = moved(file.source, rest, target)[:1] if rest and rest != target else []
+            if rest in ("", target) or others:
+                new = share if rest else f"os.path.join({share}, {target!r})"
+                imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
+                yield [*imports, file.source.edit(literal.outer_start, literal.outer_end, new), *others]
 
 
 def pieces(source: Source) -> Iterator[tuple[int, int]]:
@@ -57,12 +150,7 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
 def _without(source: Source, start: int, end: int) -> Edit:
     """Return the edit that removes a text, as an argument with its quotes and comma where it is one."""
     text = source.text
-    if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start]:
-        after = _REST_OF_ARGUMENT.match(text, end + 1)
-        if after is not None:
-            return source.edit(start - 1, after.end(), "")
-        before = re.search(r",\s*$", text[: start - 1])
-        if before is not None:
-            return source.edit(before.start(), end + 1, "")
-    slash = text[end : end + 1] == "/"
-    return source.edit(start, end + slash, "")
+    after = _REST_OF_ARGUMENT.match(text, end + 1)
+    if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start] and after is not None:
+        return source.edit(start - 1, after.end(), "")
+    return source.edit(start, end + (text[end : end + 1] == "/"), "")

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,6 +17,8 @@ _TOKEN = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_MAX_DEPTH = 4  # of names that are replaced by their values
+_MAX_CODE = 2000  # characters
 _USE = re.compile(r"\bglob\.glob\b")
 
 
@@ -76,8 +78,9 @@ class PythonFile:
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
-        text = self.source.line(line).encode("utf-8", "surrogateescape")[:byte]
-        return self.source.offset(line, len(text.decode("utf-8", "surrogateescape")) + 1)
+        start = self.source.offset(line, 1)
+        text = self.text[start : start + byte].encode("utf-8", "surrogateescape")[:byte]
+        return start + len(text.decode("utf-8", "surrogateescape"))
 
     def span(self, node: ast.expr | ast.stmt | ast.keyword) -> tuple[int, int]:
         """Return the offsets of the start and the end of a node."""
@@ -94,10 +97,48 @@ class PythonFile:
         """Return the edit that replaces a node."""
         return self.source.edit(*self.span(node), new)
 
-    def word_at(self, line: int, column: int) -> str:
-        """Return the name at a place, counted in characters from 1."""
-        found = re.compile(r"\w+").match(self.text, self.source.offset(line, column))
-        return found[0] if found else ""
+    @cached_property
+    def values(self) -> dict[str, ast.expr]:
+        """The expressions that are bound to names."""
+        found: dict[str, ast.expr] = {}
+        for node in self.nodes:
+            match node:
+                case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                    found[name] = value
+                case ast.withitem(context_expr=value, optional_vars=ast.Name(id=name)):
+                    found[name] = value
+        return found
+
+    def meant(self, node: ast.expr) -> ast.expr:
+        """Return the expression that a name is bound to; any other expression itself."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name) or node.id not in self.values:
+                break
+            node = self.values[node.id]
+        return node
+
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> tuple[str, set[str]]:
+        """Return an expression in which the names that are not `bound` have their values, and the names that it still has."""
+        start, _ = self.span(node)
+        text = self.segment(node)
+        needed: set[str] = set()
+        names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
+            if name.id in bound or name.id not in self.values or not depth or len(text) > _MAX_CODE:
+                needed.add(name.id)
+                continue
+            at, end = (offset - start for offset in self.span(name))
+            code, others = self.written(self.values[name.id], bound, depth - 1)
+            text, needed = text[:at] + code + text[end:], needed | others
+        return text, needed
+
+    def plain(self, node: ast.expr) -> str:
+        """Return the code of an expression without names for its parts and in one style, to compare it."""
+        code, _ = self.written(node)
+        try:
+            return ast.unparse(ast.parse(code.strip(), mode="eval"))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return code
 
     @cached_property
     def bound(self) -> frozenset[str]:
@@ -116,34 +157,23 @@ class PythonFile:
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
-        """Return the edits that import those of these names that have a usual meaning and are not bound."""
-        wanted = (name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound)
-        at: dict[int, list[str]] = {}
-        for statement in sorted(map(self._import, wanted), key=_import_order):
-            at.setdefault(self._place(statement), []).append(statement)
-        return [self.source.edit(start, start, "".join(line + self.newline for line in it)) for start, it in at.items()]
+        """Return the edit that imports those of these names that have a usual meaning and are not bound."""
+        wanted = [name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound]
+        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
+        start = next((self.span(node)[0] for node in body if not _is_first(node)), len(self.text))
+        text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
+        return [self.source.edit(start, start, text)] if wanted else []
 
     def _import(self, name: str) -> str:
         module, _, own = USUAL_NAMES[name].rpartition(".")
         if own == "?glob":
             module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
-        return f"from {module} import {own}" if module else f"import {own}"
+        return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
 
-    def _place(self, statement: str) -> int:
-        """Return the offset of the line before which an import is added: the first later one in the usual order, or the end of the imports."""
-        top = [node for node in self.imports if node.col_offset == 0]
-        for node in top:
-            if _import_order(self.segment(node)) > _import_order(statement):
-                return self.span(node)[0]
-        if top:
-            return self._next_line(self.span(top[-1])[1])
-        body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        is_docstring = bool(body) and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
-        return self._next_line(self.span(body[0])[1]) if is_docstring else self.source.offset(1, 1)
 
-    def _next_line(self, offset: int) -> int:
-        end = self.text.find("\n", offset)
-        return end + 1 if end >= 0 else len(self.text)
+def _is_first(node: ast.stmt) -> bool:
+    """Return whether a statement has to stay before imports: the docstring, or an import from the future."""
+    return isinstance(node, ast.Expr) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
 
 
 def called(call: ast.Call) -> str:
@@ -154,12 +184,6 @@ def called(call: ast.Call) -> str:
 def keyword(call: ast.Call, name: str) -> ast.keyword | None:
     """Return a keyword argument of a call."""
     return next((keyword for keyword in call.keywords if keyword.arg == name), None)
-
-
-def _import_order(statement: str) -> tuple[bool, str]:
-    """Return the order of the lab's files: what is imported as a whole comes first, setuptools last."""
-    words = statement.split()
-    return words[1] == "setuptools", "" if words[0] == "import" else words[1]
 
 
 def _bound(nodes: Iterable[ast.AST]) -> Iterator[str]:

@@ -1,55 +1,27 @@
-"""Syntax errors of Python: edits of one token after which Python can read the file, or else of several."""
+"""Syntax errors of Python: a search over edits of one token near the parser's error, or else of several."""
 
-import re
 from collections.abc import Iterator
 from itertools import islice
+from keyword import kwlist
 
 from grader.edits import Proposal, composed, edited
 from grader.names import closest
-from grader.package.edits.brackets import unbalanced, unmatched
-from grader.package.edits.python_file import PythonFile, Token
-from grader.package.edits.task import proposal
+from grader.package.edits.python_file import PythonFile
+from grader.package.edits.task import change
 from grader.source import Edit, Source
 from grader.static_python.parse import SyntaxFault
 
-_NAMES = {",": "comma", ":": "colon", "'": "quote", '"': "quote", "=": "equals sign", ".": "dot"}
-_CLOSING = {"(": ")", "[": "]", "{": "}"}
-_MAX_TRIES = 120  # edits that are parsed
-_MAX_FOUND = 6
-_MAX_DEPTH = 3  # errors in one file
+_BRACKETS = {"(": ")", "[": "]", "{": "}"}
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
-_KEYWORDS = (
-    "import",
-    "from",
-    "def",
-    "return",
-    "with",
-    "open",
-    "as",
-    "for",
-    "in",
-    "if",
-    "else",
-    "not",
-    "class",
-    "lambda",
-)
-_BLOCK = re.compile(r"\s*(def|with|if|elif|else|for|while|class|try|except|finally)\b")
-_LINE_END = re.compile(r"[\s,;:)\]}+]*(#.*)?$")
+_MAX_TRIES, _MAX_PARSED = 250, 512 * 1024  # edits that are parsed, and characters
+_MAX_FOUND = 10
+_MAX_DEPTH = 3  # errors in one file
 
 
 def repaired(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits after which Python can read a file, the most plausible first."""
     for edits in islice(_repairs(file, _MAX_DEPTH), _MAX_FOUND):
-        yield proposal(edits, f"a syntax error in {what}", _action(edits, what))
-
-
-def _action(edits: tuple[Edit, ...], what: str) -> str:
-    first = edits[0]
-    if len(edits) == 1 and not first.old.strip() and len(first.new.strip()) == 1:
-        name = _NAMES.get(first.new.strip(), "bracket")
-        return f"add the missing {name} in {what}"
-    return f"correct the syntax of {what}"
+        yield change(edits, "syntax", "", what)
 
 
 def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
@@ -58,7 +30,8 @@ def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
         return
     furthest: tuple[int, Edit, PythonFile] | None = None
     some = False
-    for edit in islice(dict.fromkeys(_edits(file, fault)), _MAX_TRIES):
+    tries = min(_MAX_TRIES, _MAX_PARSED // len(file.text))
+    for edit in dict.fromkeys(islice(_edits(file, fault), tries)):
         after = PythonFile(Source(file.source.path, edited(file.text, file.source.path, [edit]) or ""))
         if not isinstance(after.parsed, SyntaxFault):
             some = True
@@ -71,107 +44,43 @@ def _repairs(file: PythonFile, depth: int) -> Iterator[tuple[Edit, ...]]:
 
 
 def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
-    """Yield edits of one token that are plausible for an error, the most plausible first."""
+    """Yield edits of one token, the nearest to the error first, in lines with a lone quote or bracket before the others."""
+    source, at = file.source, file.source.offset(fault.location.line, fault.location.column)
     if (plain := file.text.translate(_QUOTES)) != file.text:
-        yield from _plain_quotes(file, plain)
-    line = fault.location.line
-    yield from _keywords(file, line)
-    yield from _colons(file, (line, line - 1))
-    odd = next((number for number in range(1, line) if _is_odd(file.source.line(number))), line)
-    for number in dict.fromkeys((line, odd)):
-        yield from _quotes(file, number)
-    for number in (line, line - 1):
-        yield from unbalanced(file, number)
-    yield from missing_commas(file)
-    yield from unmatched(file)
-    yield from _indents(file, line)
-    for number in (line, line - 1):
-        yield from _operators(file, number)
+        changed = [index for index, char in enumerate(file.text) if char != plain[index]]
+        yield source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
+    tokens = [(token, source.at(token.start).line) for token in file.tokens]
+    ops = [token.text for token in file.tokens if token.kind == "op"]
+    odd = [char for char in "'\"" if char in ops]
+    odd += [char for pair in _BRACKETS.items() for char in pair if ops.count(pair[0]) != ops.count(pair[1])]
+    balance: dict[int, int] = {}
+    for token, line in tokens:
+        is_lone = token.kind == "op" and token.text in odd
+        balance[line] = balance.get(line, 0) + is_lone * (-1 if token.text in _BRACKETS.values() else 1)
+    last = fault.location.line
+    tokens.sort(key=lambda it: (not balance[it[1]], abs(it[1] - last), min(abs(it[0].start - at), abs(it[0].end - at))))
+    near = [token for token, line in tokens if line in (last, last - 1)]
+    for token, line in tokens if odd else ():
+        if token.text in odd and token.kind == "op" and line in (last, last - 1):
+            yield source.edit(token.start, token.end, "")
+    for token, _ in tokens if odd else ():
+        for place in (token.end, token.start):
+            yield from (source.edit(place, place, char) for char in odd)
+    yield from _indents(file, (last, last - 1))
+    for token in near:
+        guess = closest(token.text, kwlist) if token.kind == "name" and token.text not in kwlist else None
+        if guess is not None:
+            yield source.edit(token.start, token.end, guess)
+        yield from (source.edit(token.end, token.end, char) for char in ",:=.([])")
+        if token.kind == "op":
+            yield from (source.edit(token.start, token.end, char) for char in ("", *_BRACKETS.values()))
 
 
-def _is_odd(text: str) -> bool:
-    """Return whether a line has a quote that is not closed."""
-    return not text.lstrip().startswith("#") and any(text.count(quote) % 2 for quote in "'\"")
-
-
-def _plain_quotes(file: PythonFile, plain: str) -> Iterator[Edit]:
-    changed = [index for index, pair in enumerate(zip(file.text, plain, strict=True)) if pair[0] != pair[1]]
-    yield file.source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-
-
-def _keywords(file: PythonFile, line: int) -> Iterator[Edit]:
-    for token in file.tokens:
-        if (
-            token.kind == "name"
-            and token.text not in _KEYWORDS
-            and file.source.at(token.start).line in (line, line - 1)
-        ):
-            guess = closest(token.text, _KEYWORDS) if len(token.text) > 1 else None
-            if guess is not None:
-                yield file.source.edit(token.start, token.end, guess)
-
-
-def _colons(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
-    for number in lines:
-        text = file.source.line(number).partition("#")[0].rstrip()
-        if _BLOCK.match(text) and not text.endswith(":"):
-            end = file.source.offset(number, len(text) + 1)
-            yield file.source.edit(end, end, ":")
-
-
-def _quotes(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add the quote that is missing at the start or the end of a string, first next to a word."""
-    text = file.source.line(line)
-    for quote in "'\"":
-        if text.count(quote) % 2:
-            beside = rf"(?<=[\s(\[,{{=])(?=[\w./*-]+{quote})|(?<={quote})[\w./*-]+(?=[,)\]}}:])"
-            end = _LINE_END.search(text)
-            ends = range(end.start() if end is not None else len(text), len(text) + 1)
-            words = re.finditer(r"(?<=[\s=(\[,{])(?=\w)|(?<=\w)(?=[,)\]}])", text)
-            near = [match.end() for match in re.finditer(beside, text)]
-            for place in dict.fromkeys([*near, *ends, *(match.end() for match in words)]):
-                at = file.source.offset(line, place + 1)
-                yield file.source.edit(at, at, quote)
-
-
-def _operators(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add what is missing between two words of a line: a comma, an equals sign, a dot, a bracket."""
-    start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
-    for match in re.finditer(r"(?<=[\w'\")\]])\s*(?=['\"(\[\w])", text):
-        for char in ",=.(":
-            yield file.source.edit(start + match.start(), start + match.start(), char)
-
-
-def missing_commas(file: PythonFile) -> Iterator[Edit]:
-    """Yield edits that add a comma between two items of a list or of arguments."""
-    depth = 0
-    for before, after in zip(file.tokens, file.tokens[1:], strict=False):
-        depth += (before.text in _CLOSING) - (before.text in _CLOSING.values())
-        between = file.text[before.end : after.start]
-        if depth > 0 and _ends(before) and _starts(after):
-            both = before.kind == after.kind == "string"
-            if "\n" in between or both or (before.text in (")", "]", "}") and (after.kind != "op" or between)):
-                yield file.source.edit(before.end, before.end, ",")
-
-
-def _ends(token: Token) -> bool:
-    return token.kind in ("string", "name") or token.text in _CLOSING.values()
-
-
-def _starts(token: Token) -> bool:
-    words = ("if", "else", "for", "in", "and", "or", "not", "is", "as")
-    return token.kind == "string" or token.text in _CLOSING or (token.kind == "name" and token.text not in words)
-
-
-def _indents(file: PythonFile, line: int) -> Iterator[Edit]:
+def _indents(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
     """Yield edits that indent a line as the lines around it."""
-    for number in (line, line - 1):
-        text = file.source.line(number)
-        indent = text[: len(text) - len(text.lstrip())]
-        above = next((it for it in range(number - 1, 0, -1) if file.source.line(it).strip()), 0)
-        around = [file.source.line(it) for it in (above, number + 1) if it]
-        others = [it[: len(it) - len(it.lstrip())] for it in around]
-        for other in dict.fromkeys([*others, *(f"{it}    " for it in others[:1])]):
-            if text.strip() and other != indent:
-                start = file.source.offset(number, 1)
-                yield file.source.edit(start, start + len(indent), other)
+    for number in lines:
+        text, start = file.source.line(number), file.source.offset(number, 1)
+        around = [file.source.line(other) for other in (number - 1, number - 2, number + 1)]
+        indents = [line[: len(line) - len(line.lstrip())] for line in around if line.strip()]
+        for indent in dict.fromkeys((*indents, *(f"{it}    " for it in indents[:1]))):
+            yield file.source.edit(start, start + len(text) - len(text.lstrip()), indent)

@@ -1,54 +1,74 @@
 """A package whose edits are searched, beside the package of the rubric's reference solution."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
-from grader.edits import KNOWN, REWRITTEN, Proposal
+from grader.edits import KNOWN, Proposal
 from grader.errors import InputError
 from grader.package.edits.python_file import PythonFile
+from grader.package.launch.places import ENDINGS, is_in_launch_folder
 from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
 
+Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
+# What is wrong and what to do, by the kind of the step; the first gives no answer away.
+_WORDS: Mapping[Verb, tuple[str, str]] = {
+    "set": ("{}", "correct {}"),
+    "add": ("a missing part of {}", "complete {}"),
+    "remove": ("{}", "remove {}"),
+    "rename": ("the spelling of {}", "correct the spelling of {}"),
+    "syntax": ("a syntax error{}", "correct the syntax{}"),
+    "create": ("{} is missing", "create {}"),
+    "file": ("the name of {}", "rename {}"),
+}
 _RVIZ_LIMIT = 512 * 1024
 
 
 @dataclass(frozen=True)
 class Task:
-    """A package, and the one of the reference solution, if there is one."""
+    """A package, the one of the reference solution, if there is one, and the texts that are given to checks."""
 
     package: Package
     reference: Package | None = None
-    _found: dict[str, list[Proposal]] = field(default_factory=dict, repr=False)
+    given: frozenset[str] = field(default=frozenset())
 
-    def once(self, name: str, make: Callable[[], Iterable[Proposal]]) -> list[Proposal]:
-        """Return proposals that several criteria need, made only once."""
-        if name not in self._found:
-            self._found[name] = list(make())
-        return self._found[name]
-
-    def source(self, path: str) -> Source | None:
+    def source(self, path: str | None) -> Source | None:
         """Return the text of a file of the package as it is; None where there is none that can be read."""
-        text = _text(self.package, path)
-        return Source(self.package.path(path), text) if text is not None else None
+        text = _text(self.package, path) if path is not None else None
+        return Source(self.package.path(path or ""), text) if text is not None else None
 
-    def python(self, path: str) -> PythonFile | None:
-        """Return a Python file of the package."""
-        source = self.source(path)
-        return PythonFile(source) if source is not None else None
+    def file(self, package: Package | None, kind: str) -> str | None:
+        """Return the path of the file of a kind in a package: the one that a check names, else another one."""
+        if package is None or kind not in ("launch", "rviz"):
+            return kind
+        name = min((name for name in self.given if kind_of(name) == kind), default="")
+        launch = next((package.launch(path) for path in package.launch_files[:1]), None)
+        return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
 
     @cached_property
     def setup(self) -> PythonFile | None:
         """The package's setup.py."""
-        return self.python(SETUP)
+        source = self.source(SETUP)
+        return PythonFile(source) if source is not None else None
 
     def wanted(self, path: str | None) -> str | None:
-        """Return the text of a file of the reference, for a package of the student's name."""
+        """Return the text of a file of the reference, with the student's names of the package and of its frames."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
-        if text is None or self.reference is None or self.reference.name == self.package.name:
+        launch = next((self.package.launch(it) for it in self.package.launch_files[:1]), None)
+        if text is not None and launch is not None and path is not None and path.endswith(".rviz"):
+            for link in sorted(self.given):
+                frame = launch.frames_of(link)[0] or link
+                text = text.replace(f"Frame: {link}\n", f"Frame: {frame}\n")
+        return self.named(text) if text is not None else None
+
+    def named(self, text: str) -> str:
+        """Return a text of the reference, or a path in it, with the student's name of the package."""
+        if self.reference is None or self.reference.name == self.package.name:
             return text
-        return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", self.package.name, text)
+        return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
 
     def created(self, path: str, like: str | None) -> list[Edit]:
         """Return the edit that creates a file like one of the reference; nothing where it exists, or the reference has none."""
@@ -65,6 +85,15 @@ class Task:
         return self.package.tree.files
 
 
+def kind_of(path: str) -> str:
+    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
+    if path.endswith((".rviz", ".urdf", ".xacro")):
+        return "rviz" if path.endswith(".rviz") else "urdf"
+    if path.endswith(ENDINGS) or is_in_launch_folder(path):
+        return "launch"
+    return SETUP if path.startswith("resource/") or path == "setup.cfg" else path
+
+
 def _text(package: Package, path: str) -> str | None:
     file = package.tree.files.get(path)
     try:
@@ -74,6 +103,13 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def proposal(edits: Iterable[Edit], cause: str, action: str, *, is_rewrite: bool = False) -> Proposal:
+def proposal(edits: Iterable[Edit], cause: str, action: str) -> Proposal:
     """Return a proposal that makes each edit once."""
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=REWRITTEN if is_rewrite else KNOWN)
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=KNOWN)
+
+
+def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
+    """Return the proposal of a step; `name` is what changes, and `what` the file that it is in."""
+    place = " in ".join(filter(None, (name, what)))
+    cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
+    return proposal(edits, cause, action)

@@ -1,0 +1,78 @@
+"""Words and names: what a file spells in another way than the reference, uses without an import, or writes differently."""
+
+import ast
+import keyword
+import re
+from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+from itertools import islice
+
+from grader.edits import Proposal
+from grader.names import closest
+from grader.package.edits.python_file import PythonFile
+from grader.package.edits.task import change
+from grader.source import Source
+from grader.static_python.imports import USUAL_NAMES
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_MAX_WORDS, _MAX_SUSPECTS = 8, 60
+_MAX_MORE = 2  # letters that one word has more than the other
+_LONG = 8
+_LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
+_LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
+# Words of launch files in XML and YAML.
+_FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
+file let group find-pkg-share find-pkg-prefix var env eval command dirname true false screen robot_description remap"""
+_PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
+
+
+def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+    """Yield edits that replace a misspelt word everywhere, rare ones first.
+
+    `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
+    """
+    places: dict[str, list[re.Match[str]]] = {}
+    for match in _WORD.finditer(source.text):
+        places.setdefault(match[0], []).append(match)
+    usual = _PYTHON if source.path.endswith(".py") else _FRONTEND
+    right = {word for text in (*known, usual) for word in _WORD.findall(text)}
+    right |= {word for word in places if len(places[word]) > 1}
+    suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
+    guesses = ((word, slip(word, right)) for word in suspects[:_MAX_SUSPECTS])
+    for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
+        yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
+
+
+def slip(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that a slip of the hand makes this one: a letter or two more, less, other or swapped."""
+    guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
+    same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
+    return guess if same >= (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG) else None
+
+
+def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
+    start_of_text = int(source.text.startswith("\ufeff"))
+    own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
+    if len(own) + len(right) > _MAX_TOKENS:
+        return
+    changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
+    for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
+        offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
+        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
+
+
+def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that import the names which are used without it, or as they are used; and missing commas."""
+    used = sorted({node.id for node in file.nodes if isinstance(node, ast.Name)})
+    yield change(file.with_imports(used), "add", "the imports", what)
+    for statement in file.imports:  # the function glob instead of the module, or the reverse
+        if [alias.name for alias in statement.names] == ["glob"]:
+            new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
+            yield change([file.replaced(statement, new)], "set", "an import", what)
+    for node in file.nodes:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
+            end = file.span(node.func)[1]
+            yield change([file.source.edit(end, end, ",")], "syntax", "", what)
