@@ -66,11 +66,7 @@ def steps(own: Node, like: Node) -> list[Step]:
             else:
                 moved.append(Step("move", same, step.like, parent=step.own))
                 moved += _steps(same, step.like)
-    return (
-        left[:0]
-        + moved
-        + sorted(left, key=lambda step: ("add", "remove").index(step.verb) + 1 if step.verb in ("add", "remove") else 0)
-    )
+    return left[:0] + moved + sorted(left, key=lambda step: ("add", "remove").index(step.verb) + 1 if step.verb in ("add", "remove") else 0)
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:
@@ -106,10 +102,7 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
     for index in range(depth):
         for other in [*missing]:
             wanted = other.keys[index : index + 1]
-            found = next(
-                (node for node in extra if node.tag == other.tag and wanted and node.keys[index : index + 1] == wanted),
-                None,
-            )
+            found = next((node for node in extra if node.tag == other.tag and wanted and node.keys[index : index + 1] == wanted), None)
             if found is not None:
                 _pair(found, other, extra, missing, both)
     for other in [*missing]:
@@ -143,6 +136,4 @@ def is_alike(one: Node, other: Node) -> bool:
 
 
 def _content(node: Node) -> set[tuple[str, ...]]:
-    return {
-        item for inner in node.walk() for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))
-    }
+    return {item for inner in node.walk() for item in ((inner.tag,), *((inner.tag, *pair) for pair in inner.values.items()))}
