@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
-from grader.edits import KNOWN, Proposal
+from grader.edits import Proposal
 from grader.errors import InputError
 from grader.package.edits.python_file import PythonFile
 from grader.package.launch.places import ENDINGS, is_in_launch_folder
@@ -105,7 +105,7 @@ def _text(package: Package, path: str) -> str | None:
 
 def proposal(edits: Iterable[Edit], cause: str, action: str) -> Proposal:
     """Return a proposal that makes each edit once."""
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action, rank=KNOWN)
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action)
 
 
 def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
