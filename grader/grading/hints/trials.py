@@ -19,6 +19,7 @@ Results = Mapping[str, Result]
 Edits = tuple[Edit, ...]
 
 _MAX_STEPS = 3000  # of one submission
+_HARMFUL = ("rejects", "drops", "undetermined")
 _PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
 
 
@@ -127,8 +128,8 @@ def _new_problems(before: Submission, after: Submission) -> bool:
     """Return whether ROS 2 loads the URDF, and finds a kind of problem that it had not before: no edit may make a robot worse."""
     if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read) or before.urdf.loaded.verdict == "rejected":
         return False
-    known = {problem.kind for problem in before.urdf.loaded.problems}
-    return any(problem.kind not in known for problem in after.urdf.loaded.problems)
+    known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL} 
+    return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
