@@ -53,24 +53,21 @@ class Pairs(NamedTuple):
 
 
 def steps(own: Node, like: Node) -> list[Step]:
-    """Return the steps from a tree to another one: first the values, then what is to move, be added and removed."""
+    """Return the steps from a tree to another one: what is to move, the values, then what is to be added and removed."""
     found = [*_steps(own, like)]
-    moved: list[Step] = []
-    left = [step for step in found if step.verb != "add"]
     spare = [step.own for step in found if step.verb == "remove"]
+    moved: list[Step] = []
+    left: list[Step] = []
     for step in found:
-        if step.verb == "add" and step.like is not None:
-            same = next((node for node in spare if is_alike(node, step.like)), None)
-            if same is None:
-                left.append(step)
-            else:
-                moved.append(Step("move", same, step.like, parent=step.own))
-                moved += _steps(same, step.like)
-    return (
-        left[:0]
-        + moved
-        + sorted(left, key=lambda step: ("add", "remove").index(step.verb) + 1 if step.verb in ("add", "remove") else 0)
-    )
+        alike = [node for node in spare if step.like is not None and is_alike(node, step.like)] if step.verb == "add" else []
+        if alike:
+            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]  # type: ignore[arg-type]
+            spare = [node for node in spare if node is not alike[0]]
+        else:
+            left.append(step)
+    order = ("add", "remove")
+    kept = [step for step in left if step.verb != "remove" or any(node is step.own for node in spare)]
+    return moved + sorted(kept, key=lambda step: order.index(step.verb) + 1 if step.verb in order else 0)
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:

@@ -19,7 +19,7 @@ from grader.grading.subjects import named_links
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft, Set
 from grader.robot.edits.numbers import values_of, written
-from grader.robot.edits.pieces import CONVENTION, FITTED, SOLVED, STRUCTURE, Difference, Piece
+from grader.robot.edits.pieces import CONVENTION, KNOWN, SOLVED, STRUCTURE, Difference, Piece
 from grader.robot.kinematics import Configuration
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
@@ -271,7 +271,7 @@ class Choice:
     def _together(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the fewest pieces of the difference with which a criterion passes, if they are few."""
         pieces = [piece for piece in look.relevant(criterion) if piece.sets or piece.edits]
-        kept = self._fewest(look, _compatible(pieces), criterion.id)
+        kept = self._fewest(look, _compatible(pieces, KNOWN), criterion.id) or self._fewest(look, _compatible(pieces, STRUCTURE), criterion.id)
         if 1 < len(kept) <= _MAX_PLACES:
             proposals = [next(look.proposals(piece), None) for piece in kept]
             if all(proposals):
@@ -310,13 +310,13 @@ def _order(one: Proven) -> tuple[Decimal, int, int]:
     return -one.gain, one.proposal.rank, one.proposal.size
 
 
-def _compatible(pieces: Iterable[Piece]) -> list[Piece]:
-    """Return pieces that do not change the same thing twice."""
+def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:
+    """Return the pieces up to a rank that do not change the same thing twice."""
     found: list[Piece] = []
     seen: set[object] = set()
     for piece in pieces:
-        keys = {one[:3] for one in piece.sets} or {(edit.path, edit.line, edit.column) for edit in piece.edits}
-        if seen.isdisjoint(keys) and piece.rank <= STRUCTURE:
+        keys = {one[:3] for one in piece.sets} or {(edit.path, edit.line, edit.column) for edit in piece.edits if edit.old}
+        if seen.isdisjoint(keys) and piece.rank <= rank:
             found.append(piece)
             seen |= keys
     return found

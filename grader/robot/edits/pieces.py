@@ -65,7 +65,8 @@ class Difference:
         known = {joint.name for joint in self.reference.robot.joints}
         for joint in self.reference.joints():
             own = self.draft.joint_of(end_of(joint, "child"))
-            if own is not None and own.get("name") and own.get("name") not in known:
+            is_there = any(it.get("name") == joint.get("name") for it in self.draft.joints())
+            if own is not None and own.get("name") and own.get("name") not in known and not is_there:
                 names["joint"][joint.get("name") or ""] = own.get("name") or ""
         mine = [_node(found) for found in self.draft.root.iterchildren("material")]
         pairs = paired(mine, [_node(found) for found in self.reference.root.iterchildren("material")])
@@ -89,12 +90,16 @@ class Difference:
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
+        every: list[Set] = []
         for new, old in self._names["joint"].items():
             joint = next((it for it in self.draft.joints() if it.get("name") == old), None) if old != new else None
             if joint is not None:
                 mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
                 sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+                every += sets
                 yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
+        if len(every) > 1:
+            yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
 
     def _ends(self) -> Iterator[Piece]:
         """Exchange the parent and the child of a joint."""
@@ -257,16 +262,22 @@ class Difference:
             return
         if tag in ("joint", "link"):
             name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
-            texts = [self.text(element)]
-            joint = self.reference.joint_of(name)
-            if tag == "link" and any(other.like is not None and other.like.of is joint for other in added.values()):
-                texts.append(self.text(joint))  # type: ignore[arg-type]
+            joints = [it.like.of for it in added.values() if tag == "link" and it.like is not None and it.like.tag == "joint"]
+            own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
+            texts = [self.text(element), *map(self.text, own)]
             edits = (*self.draft.append("\n\n".join(texts)), *self._materials(element))
             what = f"the {tag} {name!r}" if tag == "link" else f"the joint of {name!r}"
             yield Piece(f"{what} is missing", f"add {what}", name, (), edits, 0, frozenset(map(str, (one.tag for one in element.iter()))))
             return
         where = self.draft.insert(self.draft.root, self.text(element)) if tag == "material" else self.draft.append(self.text(element))
         yield self.piece(self.draft.root, f"<{tag}> is missing", f"add <{tag}>", edits=where)._replace(tags=frozenset(map(str, (one.tag for one in element.iter()))))
+
+    def _ends_of(self, joint: Element) -> list[str]:
+        return [end_of(joint, role) for role in _ENDS]
+
+    def _is_connected(self, joint: Element, link: str) -> bool:
+        """Return whether the links at the ends of a joint of the reference are there, once a link is added."""
+        return all(name == link or self.draft.link(name) is not None for name in self._ends_of(joint))
 
     def _materials(self, element: Element) -> Edits:
         """Return the edits that define the materials of an element of the reference that the robot does not define."""
