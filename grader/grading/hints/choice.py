@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
-_REPAIRED = 4  # the number of the way by two edits
+_REPAIRED = 2  # the number of the way by two edits
 _MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
@@ -171,9 +171,9 @@ class Choice:
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(look, look.relevant(criterion), name, lost),
             lambda: self._package_edits(look, criterion),
+            lambda: self._repaired(look, criterion, lost),
             lambda: self._solved(look, criterion, lost),
             lambda: self._of_whole(look, criterion, other_frames, lost),
-            lambda: self._repaired(look, criterion, lost),
             lambda: self._together(look, criterion),
         )
         best: Proven | None = None
