@@ -114,19 +114,24 @@ class Look:
         if not piece.sets or piece.rank == CONVENTION or piece.is_mistake:
             return piece
         first = piece.sets[0]
-        element = first.element
+        own = [first, *self._others(piece)]
+        for one in [*own] if len(own) > 1 else ():
+            fewer = [other for other in own if other is not one]
+            smaller = self.difference.of_sets(fewer, piece.rank) if fewer else piece
+            if fewer and passes <= self.passing(smaller, [*passes]):
+                piece, own = smaller, fewer
+        first, element = own[0], own[0].element
+        if len(own) > 1:
+            return piece
         old, new = values_of(element.get(first.attribute) if element is not None else None), values_of(first.value)
         off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
         if len(old) != len(new) or len(off) < 2:
             return piece
         for index in off:
-            fewer = tuple(old[index] if other == index else value for other, value in enumerate(new))
-            if fewer == old:
-                continue
-            smaller = self.difference.of_sets([first._replace(value=written(fewer)), *self._others(piece)], piece.rank)
-            if passes <= self.passing(smaller, [*passes]):
-                piece, new = smaller, fewer
-                self._passing[id(piece)] = passes
+            kept = tuple(old[index] if other == index else value for other, value in enumerate(new))
+            smaller = self.difference.of_sets([first._replace(value=written(kept))], piece.rank) if kept != old else piece
+            if kept != old and passes <= self.passing(smaller, [*passes]):
+                piece, new = smaller, kept
         return piece
 
     def _others(self, piece: Piece) -> list[Set]:
@@ -136,9 +141,9 @@ class Look:
     def proposals(self, piece: Piece) -> Iterator[Proposal]:
         """Yield the edits of the text that a piece stands for."""
         assert self.draft is not None
-        for edits in self.draft.ways(piece.sets) if piece.sets else [piece.edits]:
+        for way, edits in enumerate(self.draft.ways(piece.sets) if piece.sets else [piece.edits]):
             if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)
+                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
     def of_package(self, criterion: Criterion) -> list[Proposal]:
         """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""
@@ -159,6 +164,7 @@ class Choice:
     def __init__(self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
         self._trials, self._reference, self._package = trials, reference, package
         self._looks: tuple[State, Look] | None = None
+        self.causes: dict[str, list[str]] = {}  # what is wrong where more has to change than a hint may say
 
     def _look(self, state: State) -> Look:
         if self._looks is None or self._looks[0] is not state:
@@ -272,7 +278,9 @@ class Choice:
         """Yield the fewest pieces of the difference with which a criterion passes, if they are few."""
         pieces = [piece for piece in look.relevant(criterion) if piece.sets or piece.edits]
         kept = self._fewest(look, _compatible(pieces, KNOWN), criterion.id) or self._fewest(look, _compatible(pieces, STRUCTURE), criterion.id)
-        if 1 < len(kept) <= _MAX_PLACES:
+        if len(kept) > _MAX_PLACES:
+            self.causes[criterion.id] = list(dict.fromkeys(piece.cause for piece in kept))[:_MAX_PLACES]
+        elif len(kept) > 1:
             proposals = [next(look.proposals(piece), None) for piece in kept]
             if all(proposals):
                 first, *others = [it for it in proposals if it is not None]
@@ -306,8 +314,8 @@ class Choice:
         return name in self._trials.passing(look.state, edits, (name,))
 
 
-def _order(one: Proven) -> tuple[Decimal, int, int]:
-    return -one.gain, one.proposal.rank, one.proposal.size
+def _order(one: Proven) -> tuple[Decimal, int, int, int]:
+    return -one.gain, one.proposal.rank, one.proposal.way, one.proposal.size
 
 
 def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:

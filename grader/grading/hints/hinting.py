@@ -13,11 +13,12 @@ from grader.grading.hints.trials import Edits, Trials, costs_of
 from grader.grading.hints.words import message
 from grader.grading.levels import Level
 from grader.grading.reference import Reference
-from grader.grading.report import Fix, Hint, Report
+from grader.grading.report import Fix, Hint, Report, Result
 from grader.robot.edits.draft import Draft
 from grader.source import Location
 from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
+from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -47,10 +48,8 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
         with trials.isolated():
             hint = _hint(found, level, submission, costs, keep_edits=keep_edits)
             hints.update(dict.fromkeys(found.gains, hint))
-    with_hints = [
-        result._replace(hints=(hints[result.criterion.id],)) if result.criterion.id in hints else result
-        for result in report.results
-    ]
+    causes = search.causes if level in ("cause", "edit") else {}
+    with_hints = [_explained(result, hints.get(result.criterion.id), causes) for result in report.results]
     notes = report.notes if search.is_complete or submission.is_costly else (*report.notes, INCOMPLETE)
     report = replace(report, results=tuple(with_hints), notes=notes)
     return Hinted(report, search.final.edits, trials.faults, search.is_complete)
@@ -68,6 +67,18 @@ def fixed(found: Hinted, submission: Submission) -> Fix:
     files = edited_files(submission, found.edits) or {}
     after = with_files(submission, files)
     return Fix(files, grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single), why_nothing)
+
+
+def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]]) -> Result:
+    """Return a result with its hint; without one, its message says what is wrong at several places."""
+    if hint is not None:
+        return result._replace(hints=(hint,))
+    wrong = causes.get(result.criterion.id)
+    if not wrong or not result.is_lost:
+        return result
+    outcome = result.outcome
+    message = f"{outcome.message}. Several places differ from the reference solution: {enumerated(wrong)}"
+    return result._replace(outcome=outcome._replace(message=message, mistake=outcome.mistake or outcome.message))
 
 
 def _hint(

@@ -48,6 +48,7 @@ class Search:
         # One with as many links may be the lab's, with other names.
         is_small = robot is not None and 2 * len(robot.links) < len(rubric.links)
         self._is_another_robot = is_small and is_another_robot(rubric, robot)
+        self.causes = self._choice.causes
         self.found: list[Found] = []
         self.final = trials.start
         self.is_complete = True  # whether all was searched that may help

@@ -183,7 +183,8 @@ class Difference:
             cause, action = (text.replace("[place]", "{}") for text in mistake[:2])
             is_mistake = mistake.is_mistake
         else:
-            cause, action = f"the {names} of {{}}", f"set the {names} of {{}} to {' and '.join(one.value for one in sets)}"
+            what = "{}" if tag in _ENDS else f"the {names} of {{}}"
+            cause, action = what, f"set {what} to {' and '.join(one.value for one in sets)}"
         is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
         all_sets = self.with_twins(sets, is_known=rank == KNOWN)
         rank = STRUCTURE if tag in _ENDS else FITTED if is_turned and not is_mistake else rank
@@ -303,11 +304,23 @@ class Difference:
         others = [child for child in parent if parent.tag == "geometry" and child.tag in CHILDREN["geometry"]]
         cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
         if others:
-            cause, action, edits = "the shape of {}", f"make the shape of {{}} a {tag}", self.draft.replace(others[0], self.text(element))
+            twins = [shape for geometry in self._twin_shapes(parent, others[0]) for shape in geometry]
+            edits = tuple(edit for shape in (others[0], *twins) for edit in self.draft.replace(shape, self.text(element)))
+            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
         else:
             edits = (*self.draft.insert(parent, self.text(element)), *self._materials_in(element))
         piece = self.piece(parent, cause, action, edits=edits)
         yield piece._replace(tags=piece.tags | {str(one.tag) for one in element.iter()})
+
+    def _twin_shapes(self, geometry: Element, shape: Element) -> list[Element]:
+        """Return the geometry of the collision of a visual, if it is the same shape."""
+        visual = geometry.getparent()
+        link = visual.getparent() if visual is not None and visual.tag == "visual" else None
+        if link is None or visual is None:
+            return []
+        index = [*link.iterchildren("visual")].index(visual)
+        found = [child_of(twin, "geometry") for twin in [*link.iterchildren("collision")][index : index + 1]]
+        return [it for it in found if it is not None and [(one.tag, dict(one.attrib)) for one in it] == [(shape.tag, dict(shape.attrib))]]
 
     def _materials_in(self, element: Element) -> Edits:
         return self._materials(element.getparent()) if element.tag == "material" and element.getparent() is not None and not len(element) else self._materials(element)  # type: ignore[arg-type]
