@@ -59,7 +59,11 @@ def steps(own: Node, like: Node) -> list[Step]:
     moved: list[Step] = []
     left: list[Step] = []
     for step in found:
-        alike = [node for node in spare if step.like is not None and is_alike(node, step.like)] if step.verb == "add" else []
+        alike = (
+            [node for node in spare if step.like is not None and is_alike(node, step.like)]
+            if step.verb == "add"
+            else []
+        )
         if alike:
             moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]  # type: ignore[arg-type]
             spare = [node for node in spare if node is not alike[0]]

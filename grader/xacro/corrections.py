@@ -37,7 +37,9 @@ class Corrector:
     def __init__(self, documents: Mapping[str, Node], calls: Calls, others: Callable[[], Mapping[str, str]]) -> None:
         self._documents, self._calls, self._others = documents, calls, others
 
-    def corrections(self, refusals: Sequence[Refusal], names: Sequence[str], numbers: Sequence[str]) -> Iterator[Correction]:
+    def corrections(
+        self, refusals: Sequence[Refusal], names: Sequence[str], numbers: Sequence[str]
+    ) -> Iterator[Correction]:
         """Yield the edits that may correct refusals; `names` and `numbers` are those that a reference has."""
         counts = Counter(it.error.unknown.name for it in refusals if it.error.unknown is not None)
         for refusal in refusals[:_MAX_NAMES]:
@@ -48,13 +50,25 @@ class Corrector:
                 yield from self._included(refusal.place, unknown.name)
                 yield from self._defined(refusal.place, unknown, numbers)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
-                yield Correction(self._given(refusal.place, lacking, value), f"this call gives no value for {' and '.join(lacking)}", f"give {' and '.join(lacking)} a value")
+                yield Correction(
+                    self._given(refusal.place, lacking, value),
+                    f"this call gives no value for {' and '.join(lacking)}",
+                    f"give {' and '.join(lacking)} a value",
+                )
         yield from self._calls_of_macros(names)
 
-    def _respelled(self, place: Place, attribute: str | None, unknown: UnknownName, counts: Mapping[str, int]) -> Iterator[Edits]:
+    def _respelled(
+        self, place: Place, attribute: str | None, unknown: UnknownName, counts: Mapping[str, int]
+    ) -> Iterator[Edits]:
         """Yield the edits that correct an unknown name where it is used, or where a similar one is defined; declare a parameter."""
         near = closest(unknown.name, unknown.known)
-        others = [near] if near is not None else [*unknown.known] if len(unknown.known) <= _MAX_NAMES and attribute is None else []
+        others = (
+            [near]
+            if near is not None
+            else [*unknown.known]
+            if len(unknown.known) <= _MAX_NAMES and attribute is None
+            else []
+        )
         ways: list[Edits] = []
         for name in others:
             ways.append(_renamed(place, attribute, unknown.name, name))
@@ -76,13 +90,17 @@ class Corrector:
             if definition.search(text):
                 for document in dict.fromkeys((next(iter(self._documents.values())).place, place)):
                     source, start = document.source.element(0)
-                    edit = with_child(source, start, f'<xacro:include filename="{self._path(document.source.path, path)}"/>')
+                    edit = with_child(
+                        source, start, f'<xacro:include filename="{self._path(document.source.path, path)}"/>'
+                    )
                     yield Correction((edit,), "a file that is not included", f"include {posixpath.basename(path)}")
 
     def _path(self, path: str, other: str) -> str:
         """Return how a file is named in an include: as the files beside it are."""
-        for node in (it for document in self._documents.values() for it in _walk(document) if it.tag == "xacro:include"):
-            folder, slash, name = node.attributes.get("filename", "").rpartition("/")
+        for node in (
+            it for document in self._documents.values() for it in _walk(document) if it.tag == "xacro:include"
+        ):
+            folder, slash, _ = node.attributes.get("filename", "").rpartition("/")
             if "$(find" in folder and posixpath.dirname(other).endswith(folder.partition(")")[2].strip("/")):
                 return f"{folder}{slash}{posixpath.basename(other)}"
         return posixpath.relpath(other, posixpath.dirname(path) or ".")
@@ -94,7 +112,9 @@ class Corrector:
         source, start = place.source.element(0)
         for value in numbers[:_MAX_VALUES]:
             edit = with_child(source, start, f'<xacro:property name="{unknown.name}" value="{value}"/>')
-            yield Correction((edit,), f"the property {unknown.name} is not defined", f"define the property {unknown.name}")
+            yield Correction(
+                (edit,), f"the property {unknown.name} is not defined", f"define the property {unknown.name}"
+            )
 
     def _values(self, place: Place, lacking: Sequence[str], known: Sequence[str]) -> Iterator[Mapping[str, str]]:
         """Yield values for what a call lacks: those of other calls, their opposites, and known ones."""
@@ -118,7 +138,11 @@ class Corrector:
                 yield {**node.attributes, **dict(zip(names, blocks, strict=False))}
 
     def _parameters(self, tag: str) -> list[str]:
-        macros = (node for node in self._nodes() if node.tag == "xacro:macro" and f"xacro:{node.attributes.get('name', '').removeprefix('xacro:')}" == tag)
+        macros = (
+            node
+            for node in self._nodes()
+            if node.tag == "xacro:macro" and f"xacro:{node.attributes.get('name', '').removeprefix('xacro:')}" == tag
+        )
         return next((node.attributes.get("params", "").split() for node in macros), [])
 
     def _given(self, place: Place, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
@@ -140,9 +164,15 @@ class Corrector:
             name = node.attributes.get("name", "").removeprefix("xacro:")
             for plain in (it for it in self._nodes() if it.tag == name):
                 edits = tuple(_tags(plain.place, name, f"xacro:{name}", prefix=""))
-                yield Correction(edits, f"a call of the macro {name} without xacro:", "write xacro: before the name of the macro")
+                yield Correction(
+                    edits, f"a call of the macro {name} without xacro:", "write xacro: before the name of the macro"
+                )
             needed = [it for it in node.attributes.get("params", "").split() if "=" not in it]
-            last = [*root.elements][-1:] if name not in called and len(needed) <= 1 and not any(it.startswith("*") for it in needed) else []
+            last = (
+                [*root.elements][-1:]
+                if name not in called and len(needed) <= 1 and not any(it.startswith("*") for it in needed)
+                else []
+            )
             for value in names if needed else [""]:
                 for after in last:
                     given = f' {needed[0]}="{value}"' if needed else ""
@@ -210,4 +240,6 @@ def well_formed(source: Source) -> Iterable[Correction]:
         newline = "\r\n" if "\r\n" in text else "\n"
         moved = found[0] if before.isspace() else f"{found[0]}{newline}{before.rstrip()}"
         edit = source.edit(found.start() - len(before), found.end(), moved)
-        yield Correction((edit,), "the XML declaration, which is not at the start", "move the XML declaration to the start")
+        yield Correction(
+            (edit,), "the XML declaration, which is not at the start", "move the XML declaration to the start"
+        )

@@ -16,7 +16,18 @@ from grader.source import Edit
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.scopes import Definition, Key, Place, Scope, literal
 from grader.xacro.texts import PIECE, Texts
-from grader.xacro.variants import ARGUMENT, EXPRESSION, NAME, NUMBER, OTHER_NUMBER, TOKEN, Slot, numbers, variants, with_number
+from grader.xacro.variants import (
+    ARGUMENT,
+    EXPRESSION,
+    NAME,
+    NUMBER,
+    OTHER_NUMBER,
+    TOKEN,
+    Slot,
+    numbers,
+    variants,
+    with_number,
+)
 from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
@@ -68,7 +79,11 @@ class Rewriter:
         changed = [use for use in uses if not _same(use.old, use.new)]
         found: list[tuple[Edit, ...]] = []
         for several in (uses, changed) if len(changed) < len(uses) else (uses,):
-            ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0]) if text is not None else []
+            ways = (
+                sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
+                if text is not None
+                else []
+            )
             found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
             found += [] if found else self._at_calls(text, several) if text is not None else []
             if found:
@@ -86,7 +101,7 @@ class Rewriter:
         values = [self._value(text.text, use.scope) for use in uses]
         if any(value is not None and not _same(value, use.old) for value, use in zip(values, uses, strict=True)):
             return  # a name has another value by now
-        yield from self._changes(text, text, uses, 0)
+        yield from self._changes(text, uses)
         if None not in values:
             yield from self._of_tokens(text, uses)
             yield from self._of_pieces(text, uses)
@@ -100,11 +115,14 @@ class Rewriter:
             own: list[Use] = []
             for use, found in zip(uses, words, strict=True):
                 start, end = (sum(map(len, found[:stop])) for stop in (index, index + 1))
-                if sum(map(len, found)) != len(use.new.split()) or [word for those in found for word in those] != use.old.split():
+                if (
+                    sum(map(len, found)) != len(use.new.split())
+                    or [word for those in found for word in those] != use.old.split()
+                ):
                     return
                 own.append(use._replace(old=" ".join(found[index]), new=" ".join(use.new.split()[start:end])))
             if not all(_same(use.old, use.new) for use in own):
-                ways = sorted(islice(self._changes(token, token, own, 0), 40), key=lambda way: way[0])
+                ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
                 choices.append([*ways[: _MAX_WAYS if not choices else _MAX_CHOICES]])
         for parts in islice(product(*choices), 4 * _MAX_WAYS) if choices else ():
             yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
@@ -116,9 +134,9 @@ class Rewriter:
         for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
             own = [*filter(None, (_middle(use, found, index) for use, found in zip(uses, values, strict=True)))]
             if len(own) == len(uses):
-                yield from ((rank + 1, way) for rank, way in self._changes(piece, piece, own, 0))
+                yield from ((rank + 1, way) for rank, way in self._changes(piece, own))
 
-    def _changes(self, root: Written, text: Written, uses: Sequence[Use], depth: int) -> Iterator[tuple[int, Way]]:
+    def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
         changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
         sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
@@ -147,7 +165,10 @@ class Rewriter:
             plain = new.pop()
             quoted = f"'{plain}'" if text != literal(text) and as_number(text) is None else plain
             if fits(quoted):
-                yield (NUMBER if "$" not in text else _LITERAL), merged(text, quoted) if as_number(text) is not None else quoted
+                yield (
+                    (NUMBER if "$" not in text else _LITERAL),
+                    merged(text, quoted) if as_number(text) is not None else quoted,
+                )
         for slot in numbers(text):
             solution = self._solution(site, root, slot, uses)
             is_plain = slot.end - slot.start == len(text.strip())
@@ -223,7 +244,11 @@ class Rewriter:
     def _names(self, scope: Scope) -> tuple[list[str], list[str]]:
         """Return the names that have values in a scope, and those of the innermost macro."""
         if id(scope) not in self._known:
-            found = [name for name in dict.fromkeys(scope.names()[:_MAX_NAMES]) if self._value(f"${{{name}}}", scope) is not None]
+            found = [
+                name
+                for name in dict.fromkeys(scope.names()[:_MAX_NAMES])
+                if self._value(f"${{{name}}}", scope) is not None
+            ]
             own = scope.properties if scope.parent is not None else {}
             self._known[id(scope)] = scope, (found, [name for name in found if name in own])
         return self._known[id(scope)][1]
@@ -232,7 +257,11 @@ class Rewriter:
 def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:
     """Return what one part of a text is and should be, if the others stay."""
     before, after = "".join(values[:index]), "".join(values[index + 1 :])
-    if "".join(values) != use.old or len(use.new) < len(before) + len(after) or not (use.new.startswith(before) and use.new.endswith(after)):
+    if (
+        "".join(values) != use.old
+        or len(use.new) < len(before) + len(after)
+        or not (use.new.startswith(before) and use.new.endswith(after))
+    ):
         return None
     return use._replace(old=values[index], new=use.new[len(before) : len(use.new) - len(after)])
 
@@ -251,7 +280,9 @@ def _near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
         return text == wanted
     pairs = [(as_number(a), as_number(b)) for a, b in zip(text.split(), wanted.split(), strict=False)]
     is_alike = len(text.split()) == len(wanted.split()) and bool(pairs)
-    return is_alike and all(a is not None and b is not None and isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs)
+    return is_alike and all(
+        a is not None and b is not None and isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs
+    )
 
 
 def _same(one: str, other: str) -> bool:

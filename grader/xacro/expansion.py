@@ -103,6 +103,7 @@ class ExpandedSource(Source):
         first = self._nodes[next(iter(wanted))]
         moved = first.moved.get(attribute)
         from grader.xacro.edits import Use
+        from grader.xacro.scopes import Scope
 
         if moved is not None:
             old, new = next(iter(wanted.values()))

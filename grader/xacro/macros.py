@@ -104,7 +104,10 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
     for parameter in left:
         if parameter.is_block:
             if not waiting:
-                raise MacroError(f"this call of the macro {macro.name} has no element for {parameter.name}", lacking=(parameter.name,))
+                raise MacroError(
+                    f"this call of the macro {macro.name} has no element for {parameter.name}",
+                    lacking=(parameter.name,),
+                )
             definition = Definition(parameter.name, "", macro.body.place, "params", inner)
             inner.bind(parameter.name, waiting.pop(0), definition=definition)
     if waiting:
@@ -126,4 +129,6 @@ def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Sco
         else:
             missing.append(parameter.name)
     if missing:
-        raise MacroError(f"this call of the macro {macro.name} gives no value for {', '.join(missing)}", lacking=tuple(missing))
+        raise MacroError(
+            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}", lacking=tuple(missing)
+        )

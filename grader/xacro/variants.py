@@ -17,7 +17,9 @@ ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
 _WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
 _MAX_VARIANTS = 80  # of one text
-SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NUMBER, OTHER_NAME = range(8)  # kinds of changes, the most plausible first
+SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NUMBER, OTHER_NAME = range(
+    8
+)  # kinds of changes, the most plausible first
 
 
 class Slot(NamedTuple):
@@ -53,9 +55,14 @@ def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tu
     if _LOOSE.search(text):  # {side}, $(side) and $side
         yield SPELLING, _LOOSE.sub(lambda found: f"${{{found[1] or found[2] or found[3]}}}", text)
     if text.count("${") > text.count("}"):
-        yield from ((SPELLING, f"{text[:end]}}}{text[end:]}") for end in (found.end() for found in re.finditer(r"[\w)](?=\s|\Z)", text)))
+        yield from (
+            (SPELLING, f"{text[:end]}}}{text[end:]}")
+            for end in (found.end() for found in re.finditer(r"[\w)](?=\s|\Z)", text))
+        )
     for found in _WORD.finditer(text) if "${" not in text else ():  # the name of a parameter, not its value
-        yield from ((SPELLING, f"{text[: found.start()]}${{{name}}}{text[found.end() :]}") for name in own if name == found[0])
+        yield from (
+            (SPELLING, f"{text[: found.start()]}${{{name}}}{text[found.end() :]}") for name in own if name == found[0]
+        )
     for found in EXPRESSION.finditer(text):
         start, end = found.span(1)
         for _, (rank, inner) in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, own), strict=False):

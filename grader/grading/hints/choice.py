@@ -17,9 +17,10 @@ from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, joined
 from grader.grading.subjects import named_links
 from grader.robot.edits.conventions import conventions, other_frames
+from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft, Set
 from grader.robot.edits.numbers import values_of, written
-from grader.robot.edits.pieces import CONVENTION, KNOWN, SOLVED, STRUCTURE, Difference, Piece
+from grader.robot.edits.pieces import CONVENTION, KNOWN, SOLVED, STRUCTURE, Piece
 from grader.robot.kinematics import Configuration
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
@@ -44,7 +45,9 @@ class Proven(NamedTuple):
 class Look:
     """A state that is looked at: its pieces, and the lost criteria that pass with each."""
 
-    def __init__(self, trials: Trials, state: State, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
+    def __init__(
+        self, trials: Trials, state: State, reference: Draft | None, package: "Callable[[], Package | None]"
+    ) -> None:
         self.trials, self.state, self.reference = trials, state, reference
         self._package = package
         urdf = state.submission.urdf
@@ -70,7 +73,10 @@ class Look:
         if self.draft is None:
             return []
         with self.trials.isolated():
-            found = [Piece(it.cause, it.action, "", (), it.edits) for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)]
+            found = [
+                Piece(it.cause, it.action, "", (), it.edits)
+                for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)
+            ]
             return [*found, *self.difference.pieces]
         return []
 
@@ -129,7 +135,9 @@ class Look:
             return piece
         for index in off:
             kept = tuple(old[index] if other == index else value for other, value in enumerate(new))
-            smaller = self.difference.of_sets([first._replace(value=written(kept))], piece.rank) if kept != old else piece
+            smaller = (
+                self.difference.of_sets([first._replace(value=written(kept))], piece.rank) if kept != old else piece
+            )
             if kept != old and passes <= self.passing(smaller, [*passes]):
                 piece, new = smaller, kept
         return piece
@@ -208,7 +216,11 @@ class Choice:
     def _is_short(self, look: Look, best: Proven, lost: Sequence[str]) -> bool:
         """Return whether an edit leaves another criterion of its link lost, which two edits may gain as well."""
         after = self._trials.applied(look.state, best.proposal.edits)
-        left = [it for it in self._trials.rubric.criteria if it.id in lost and after is not None and after.results[it.id].is_lost]
+        left = [
+            it
+            for it in self._trials.rubric.criteria
+            if it.id in lost and after is not None and after.results[it.id].is_lost
+        ]
         return any(best.proposal.link in look.targets(it).moved[:1] for it in left if it.check.subject == "robot")
 
     def _best(self, state: State, name: str, proposals: Iterable[Proposal]) -> Proven | None:
@@ -241,7 +253,9 @@ class Choice:
         for piece in batch:
             yield from islice(look.proposals(piece), 3)
 
-    def _of_whole(self, look: Look, criterion: Criterion, make: Callable[[Difference], Iterable[Piece]], lost: Sequence[str]) -> Iterator[Proposal]:
+    def _of_whole(
+        self, look: Look, criterion: Criterion, make: Callable[[Difference], Iterable[Piece]], lost: Sequence[str]
+    ) -> Iterator[Proposal]:
         if look.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(look, make(look.difference), criterion.id, lost)
 
@@ -277,7 +291,9 @@ class Choice:
     def _together(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the fewest pieces of the difference with which a criterion passes, if they are few."""
         pieces = [piece for piece in look.relevant(criterion) if piece.sets or piece.edits]
-        kept = self._fewest(look, _compatible(pieces, KNOWN), criterion.id) or self._fewest(look, _compatible(pieces, STRUCTURE), criterion.id)
+        kept = self._fewest(look, _compatible(pieces, KNOWN), criterion.id) or self._fewest(
+            look, _compatible(pieces, STRUCTURE), criterion.id
+        )
         if len(kept) > _MAX_PLACES:
             self.causes[criterion.id] = list(dict.fromkeys(piece.cause for piece in kept))[:_MAX_PLACES]
         elif len(kept) > 1:
@@ -322,8 +338,11 @@ def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:
     """Return the pieces up to a rank that do not change the same thing twice."""
     found: list[Piece] = []
     seen: set[object] = set()
+    keys: set[object]
     for piece in pieces:
-        keys = {one[:3] for one in piece.sets} or {(edit.path, edit.line, edit.column) for edit in piece.edits if edit.old}
+        keys = set(one[:3] for one in piece.sets) or {
+            (edit.path, edit.line, edit.column) for edit in piece.edits if edit.old
+        }
         if seen.isdisjoint(keys) and piece.rank <= rank:
             found.append(piece)
             seen |= keys
@@ -332,7 +351,9 @@ def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:
 
 def _together(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
     leading = tuple(sorted(dict.fromkeys(edits), key=lambda edit: edit not in first.edits))
-    return Proposal(leading, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}", first.link, SOLVED)
+    return Proposal(
+        leading, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}", first.link, SOLVED
+    )
 
 
 def _score(results: Results) -> Decimal:

@@ -8,8 +8,8 @@ from typing import NamedTuple
 from grader.edits import Proposal
 from grader.grading.hints.trials import Edits, State, Trials, gained, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
+from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.pieces import Difference
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
@@ -101,7 +101,12 @@ def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
     state, reserve = trials.start, trials.left // 2
     for _ in range(_MAX_STEPS):
         reading = _reading(state)
-        if reading is None or not state.failed or (reading.verdict == "clean" and not defects(reading)[-1]) or trials.left < reserve:
+        if (
+            reading is None
+            or not state.failed
+            or (reading.verdict == "clean" and not defects(reading)[-1])
+            or trials.left < reserve
+        ):
             return
         step = _best(trials, state, reading, islice(_candidates(reading, reference), _MAX_CANDIDATES))
         if step is None:
@@ -127,11 +132,18 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
     draft = Draft.of(reading)
     if draft is not None:
         difference = Difference(draft, reference or draft)
-        yield from (Proposal(*correction) for correction in draft.source.corrections(difference.names, difference.numbers))
+        yield from (
+            Proposal(*correction) for correction in draft.source.corrections(difference.names, difference.numbers)
+        )
         problems = repairable(reading.problems)
         own = (pieces_for(difference, problem) for problem in problems)
         lines = {problem.location.line for problem in problems}
-        near = [piece for piece in difference.pieces if _STRUCTURE & piece.tags or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)]
+        near = [
+            piece
+            for piece in difference.pieces
+            if _STRUCTURE & piece.tags
+            or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)
+        ]
         for piece in chain(misplaced(difference), chain.from_iterable(own), near):
             for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
                 yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)

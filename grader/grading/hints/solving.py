@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.grading.hints.model import Model
+from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
-from grader.robot.edits.pieces import FITTED, SOLVED, Difference, Piece
+from grader.robot.edits.pieces import FITTED, SOLVED, Piece
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
@@ -54,7 +55,9 @@ def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[
                 yield from _slot(part, "origin", "xyz")
                 yield from _slot(part, "origin", "rpy")
                 for inner in part.iter("box", "cylinder", "sphere", "mesh", "mass", "inertia"):
-                    yield from _slot(inner, "", "size" if inner.tag == "box" else "scale" if inner.tag == "mesh" else "")
+                    yield from _slot(
+                        inner, "", "size" if inner.tag == "box" else "scale" if inner.tag == "mesh" else ""
+                    )
             for used in part.iter("material"):
                 defined = draft.material(used.get("name") or "")
                 for colour in defined.iter("color") if defined is not None else ():
@@ -68,12 +71,14 @@ def _slot(owner: Element, tag: str, attribute: str) -> Iterator[Slot]:
     known = TAGS[tag or str(owner.tag)].attributes
     names = (attribute,) if attribute else tuple(name for name, one in known.items() if len(one.parts) == 1)
     texts = [element.get(name) if element is not None else None for name in names]
-    given = [values_of(text if text is not None else known[name].default) for name, text in zip(names, texts, strict=True)]
+    given = [
+        values_of(text if text is not None else known[name].default) for name, text in zip(names, texts, strict=True)
+    ]
     if element is None and tag == "axis":
         given = [(1.0, 0.0, 0.0)]
     parts = [len(known[name].parts) for name in names]
     kept = [index for index, values in enumerate(given) if len(values) == parts[index]]
-    if kept and len(kept) == len(names) or (not attribute and kept):
+    if (kept and len(kept) == len(names)) or (not attribute and kept):
         values = tuple(value for index in kept for value in given[index])
         yield Slot(owner, tag, tuple(names[index] for index in kept), values, known[names[kept[0]]].unit)
 
@@ -100,7 +105,11 @@ class Solver:
             for values in dict.fromkeys(self._values(slot)):
                 if slot.sets(values):
                     is_one = sum(old != new for old, new in zip(slot.values, values, strict=True)) == 1
-                    is_short = slot.unit == "rad" or all(rounded((new,), _SHORT)[0] == new for old, new in zip(slot.values, values, strict=True) if old != new)
+                    is_short = slot.unit == "rad" or all(
+                        rounded((new,), _SHORT)[0] == new
+                        for old, new in zip(slot.values, values, strict=True)
+                        if old != new
+                    )
                     yield self._difference.of_sets(slot.sets(values), SOLVED if is_short and is_one else FITTED)
 
     def _values(self, slot: Slot) -> Iterator[Values]:
@@ -125,18 +134,22 @@ class Solver:
         known = {index: column for index in touched if (column := columns[index]) is not None}
         subsets = [(index,) for index in known] + ([tuple(known)] if len(known) > 1 else [])
         for subset in subsets:
-            values = self._solved(ask, slot.values, start, {index: known[index] for index in subset})
-            if values is not None:
-                yield values
+            solved = self._solved(ask, slot.values, start, {index: known[index] for index in subset})
+            if solved is not None:
+                yield solved
 
-    def _solved(self, ask: Callable[[Values], Values | None], old: Values, start: Values, columns: Mapping[int, Values]) -> Values | None:
+    def _solved(
+        self, ask: Callable[[Values], Values | None], old: Values, start: Values, columns: Mapping[int, Values]
+    ) -> Values | None:
         """Return values with which nothing remains of the residual: by Newton's method, then with as few digits as possible."""
         values, residual = old, start
         for _ in range(_ROUNDS):
             step = least_squares([columns[index] for index in columns], residual)
             if step is None:
                 return None
-            values = tuple(value - dict(zip(columns, step, strict=True)).get(index, 0.0) for index, value in enumerate(values))
+            values = tuple(
+                value - dict(zip(columns, step, strict=True)).get(index, 0.0) for index, value in enumerate(values)
+            )
             if not all(map(isfinite, values)):
                 return None
             after = ask(values)
@@ -152,7 +165,10 @@ class Solver:
 
     def _short(self, ask: Callable[[Values], Values | None], old: Values, values: Values) -> Values | None:
         for digits in _DIGITS:
-            short = tuple(before if abs(before - value) < _STEP / 10 else value for before, value in zip(old, rounded(values, digits), strict=True))
+            short = tuple(
+                before if abs(before - value) < _STEP / 10 else value
+                for before, value in zip(old, rounded(values, digits), strict=True)
+            )
             if self._is_exact(ask(short)):
                 return short
         return values if max(map(abs, values)) < 0.01 and self._is_exact(ask(values)) else None
@@ -204,7 +220,11 @@ def _vector(value: object) -> Values | None:
 def least_squares(columns: Sequence[Values], residual: Values) -> Values | None:
     """Return the numbers with which the sum of columns is nearest to the residual; None where they are not determined."""
     count = len(columns)
-    rows = [[sum(a * b for a, b in zip(one, other, strict=True)) for other in columns] + [sum(a * b for a, b in zip(one, residual, strict=True))] for one in columns]
+    rows = [
+        [sum(a * b for a, b in zip(one, other, strict=True)) for other in columns]
+        + [sum(a * b for a, b in zip(one, residual, strict=True))]
+        for one in columns
+    ]
     for index in range(count):
         pivot = max(range(index, count), key=lambda row: abs(rows[row][index]))
         if abs(rows[pivot][index]) < 1e-12:

@@ -126,9 +126,13 @@ class Trials:
 
 def _new_problems(before: Submission, after: Submission) -> bool:
     """Return whether ROS 2 loads the URDF, and finds a kind of problem that it had not before: no edit may make a robot worse."""
-    if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read) or before.urdf.loaded.verdict == "rejected":
+    if (
+        not isinstance(before.urdf, Read)
+        or not isinstance(after.urdf, Read)
+        or before.urdf.loaded.verdict == "rejected"
+    ):
         return False
-    known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL} 
+    known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL}
     return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
 
 

@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 from math import pi
 
+from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft, Set, child_of, end_of
 from grader.robot.edits.numbers import Values, values_of, written
-from grader.robot.edits.pieces import CONVENTION, Difference, Piece
+from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.frames import placed_by
 from grader.robot.model import Box, Origin
 from grader.robot.transforms import Transform, rotation_from_rpy
@@ -25,13 +26,21 @@ def conventions(difference: Difference) -> Iterator[Piece]:
             continue
         turns = ((0.0, 0.0, -pi / 2), (0.0, 0.0, pi / 2), (0.0, 0.0, pi))
         lifts = [shape.geometry.size[2] / 2 for shape in link.visuals[:1] if isinstance(shape.geometry, Box)]
-        for moved in (*(Transform(rotation_from_rpy(turn)) for turn in turns), *(_lifted(sign * lift) for lift in lifts for sign in (1, -1))):
+        for moved in (
+            *(Transform(rotation_from_rpy(turn)) for turn in turns),
+            *(_lifted(sign * lift) for lift in lifts for sign in (1, -1)),
+        ):
             is_turn = moved.translation == (0.0, 0.0, 0.0)
             what = "the directions of x and y" if is_turn else "the origin"
             sets = tuple(_moved(draft, link.name, moved))
-            yield Piece(f"{what} of the frame {link.name!r}", f"correct {what} of the frame {link.name!r}", "", sets, (), CONVENTION)
-
-
+            yield Piece(
+                f"{what} of the frame {link.name!r}",
+                f"correct {what} of the frame {link.name!r}",
+                "",
+                sets,
+                (),
+                CONVENTION,
+            )
 
 
 def other_frames(difference: Difference) -> Iterator[Piece]:
@@ -41,10 +50,17 @@ def other_frames(difference: Difference) -> Iterator[Piece]:
         joint, other = draft.joint_of(link.name), difference.reference.joint_of(link.name)
         if joint is None or other is None:
             continue
-        old, new = (Transform(rotation_from_rpy(_values(child_of(it, "origin"), "rpy")), _values(child_of(it, "origin"), "xyz")) for it in (joint, other))
+        old, new = (
+            Transform(rotation_from_rpy(_values(child_of(it, "origin"), "rpy")), _values(child_of(it, "origin"), "xyz"))
+            for it in (joint, other)
+        )
         for wanted in (new, Transform(new.rotation, old.translation), Transform(old.rotation, new.translation)):
             T_new_old = wanted.inverse() @ old
-            sets = [Set(joint, "origin", name, written(value)) for name, value, before in (("xyz", wanted.translation, old.translation), ("rpy", wanted.rpy, old.rpy)) if _differ(value, before)]
+            sets = [
+                Set(joint, "origin", name, written(value))
+                for name, value, before in (("xyz", wanted.translation, old.translation), ("rpy", wanted.rpy, old.rpy))
+                if _differ(value, before)
+            ]
             axis = child_of(joint, "axis")
             direction = (values_of(axis.get("xyz")) if axis is not None else ()) or (1.0, 0.0, 0.0)
             turned = T_new_old.rotate((direction[0], direction[1], direction[2])) if len(direction) == 3 else direction
@@ -52,7 +68,13 @@ def other_frames(difference: Difference) -> Iterator[Piece]:
                 sets.append(Set(joint, "axis", "xyz", written(tuple(round(value, 4) + 0.0 for value in turned))))
             moved = [*_moved(draft, link.name, T_new_old)]
             if sets and moved:
-                yield difference.piece(joint, f"the frame {link.name!r}", f"correct the frame {link.name!r}; what it shows stays where it is", sets=(*sets, *moved), rank=CONVENTION)
+                yield difference.piece(
+                    joint,
+                    f"the frame {link.name!r}",
+                    f"correct the frame {link.name!r}; what it shows stays where it is",
+                    sets=(*sets, *moved),
+                    rank=CONVENTION,
+                )
 
 
 def _differ(one: Values, other: Values) -> bool:
@@ -76,7 +98,7 @@ def _moved(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
 
 def _placed(owner: Element, T_new_old: Transform) -> Iterator[Set]:
     found = child_of(owner, "origin")
-    old = Origin(*(_values(found, name) for name in ("xyz", "rpy")))
+    old = Origin(_values(found, "xyz"), _values(found, "rpy"))
     pose = placed_by(T_new_old, old)
     for name, before, after in (("xyz", old.xyz, pose.translation), ("rpy", old.rpy, pose.rpy)):
         if _differ(before, after):
@@ -99,5 +121,10 @@ def _other_units(difference: Difference) -> Iterator[Piece]:
     if not any(value >= _LARGE for element, _, values in found for value in values if element.tag != "origin"):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
-        sets = tuple(Set(element, "", name, written(tuple(value / factor for value in values))) for element, name, values in found)
-        yield Piece(f"the unit of all lengths: {unit}, not metres", "convert all lengths to metres", "", sets, (), CONVENTION)
+        sets = tuple(
+            Set(element, "", name, written(tuple(value / factor for value in values)))
+            for element, name, values in found
+        )
+        yield Piece(
+            f"the unit of all lengths: {unit}, not metres", "convert all lengths to metres", "", sets, (), CONVENTION
+        )

@@ -85,7 +85,9 @@ class Draft:
     def link_of(self, element: Element) -> str:
         """Return the link that an element belongs to: of a joint its child; empty for a material."""
         owner = self.owner(element)
-        return end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
+        return (
+            end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
+        )
 
     def described(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
         """Return what an element, or its child with a tag, is called: the visual origin of 'lidar'. Only known names are given."""
@@ -99,7 +101,13 @@ class Draft:
             path.insert(0, str(owner.tag))
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = " ".join(path[:1] + path[1:][-1:])
-        return f"the {what} of {name!r}" if name in known and what != "link" else f"the link {name!r}" if name in known else f"the {what}"
+        return (
+            f"the {what} of {name!r}"
+            if name in known and what != "link"
+            else f"the link {name!r}"
+            if name in known
+            else f"the {what}"
+        )
 
     def siblings(self, element: Element) -> list[Element]:
         """Return the elements that come from the same text of xacro, with this one."""

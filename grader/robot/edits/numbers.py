@@ -51,7 +51,11 @@ def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) 
     if len(old) != len(new):
         return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {written(new)}")
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
-    wrong = what.format(enumerated([_with_article(parts[index]) for index in off])) if len(off) < 4 else what.format("the numbers")
+    wrong = (
+        what.format(enumerated([_with_article(parts[index]) for index in off]))
+        if len(off) < 4
+        else what.format("the numbers")
+    )
     for mistake in _MISTAKES:
         fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
         if (not mistake.units or unit in mistake.units) and off and all(fits):

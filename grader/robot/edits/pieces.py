@@ -1,20 +1,14 @@
-"""The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
+"""Pieces of edits: what is set or changed, named by what is wrong with it."""
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
-from itertools import groupby
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from grader.difference import Node, Step, likeness, paired, steps
-from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
-from grader.robot.edits.numbers import Values, named, number, values_of, written
+from grader.robot.edits.draft import Draft, Edits, Set, child_of
+from grader.robot.edits.numbers import named, values_of
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, PARTS, TAGS
+from grader.xml.urdf_format import TAGS
 
-_MAX_LINKS = 400  # of a robot: more are not compared
-_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
-_ENDS = ("parent", "child")
+ENDS = ("parent", "child")
 
 # The ranks of pieces: values of the reference; numbers that are solved for; another structure; numbers that no person would write;
 # conventions of a whole robot.
@@ -39,129 +33,52 @@ class Piece(NamedTuple):
     is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
 
 
-class Difference:
-    """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
+class PieceMaker:
+    """Makes pieces for a robot beside the reference's; `known` are names that may be told, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         self.draft, self.reference = draft, reference
-        self.known = {name for robot in (reference.robot,) for name in (*(link.name for link in robot.links), *(one.name for one in robot.materials))}
-        self._names = self._translation()
-        self._wanted: dict[tuple[Element, str], str] = {}
+        links, materials = ([one.name for one in found] for found in (reference.robot.links, reference.robot.materials))
+        self.known = {*links, *materials}
+        self.wanted: dict[
+            tuple[Element, str], str
+        ] = {}  # what the reference has instead of values, by element and attribute
 
-    @cached_property
-    def names(self) -> list[str]:
-        """The links of the reference."""
-        return [link.name for link in self.reference.robot.links]
-
-    @cached_property
-    def numbers(self) -> list[str]:
-        """The numbers of the reference, each once."""
-        values = (values_of(text) for element in self.reference.root.iter() for name, text in element.attrib.items() if PARTS.get(str(name)))
-        return list(dict.fromkeys(number(abs(value)) for found in values for value in found if value))
-
-    def _translation(self) -> dict[str, dict[str, str]]:
-        """Return what the joints and materials of the reference are called in the robot."""
-        names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
-        known = {joint.name for joint in self.reference.robot.joints}
-        for joint in self.reference.joints():
-            own = self.draft.joint_of(end_of(joint, "child"))
-            is_there = any(it.get("name") == joint.get("name") for it in self.draft.joints())
-            if own is not None and own.get("name") and own.get("name") not in known and not is_there:
-                names["joint"][joint.get("name") or ""] = own.get("name") or ""
-        mine = [_node(found) for found in self.draft.root.iterchildren("material")]
-        pairs = paired(mine, [_node(found) for found in self.reference.root.iterchildren("material")])
-        for own_node, like in pairs.both:
-            if own_node.values.get("name") and (own_node.keys == like.keys or likeness(own_node, like) > 0.5):
-                names["material"][like.values.get("name", "")] = own_node.values["name"]
-        return names
-
-    @cached_property
-    def pieces(self) -> list[Piece]:
-        """The pieces, each once: values first, then what moves, is added and is removed."""
-        own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
-        found_steps = steps(own, like)
-        self._wanted = {(step.own.of, step.name): value for step in found_steps if step.verb in ("set", "unset") and (value := _wanted(step))}
-        found = [*self._pieces(found_steps), *self._joint_names(), *self._ends()]
-        unique: dict[object, Piece] = {}
-        for piece in found:
-            if piece.sets or piece.edits:
-                unique.setdefault(piece.sets or piece.edits, piece)
-        return list(unique.values())
-
-    def _joint_names(self) -> Iterator[Piece]:
-        """Rename joints as in the reference, also where they are mimicked."""
-        every: list[Set] = []
-        for new, old in self._names["joint"].items():
-            joint = next((it for it in self.draft.joints() if it.get("name") == old), None) if old != new else None
-            if joint is not None:
-                mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
-                sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
-                every += sets
-                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
-        if len(every) > 1:
-            yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
-
-    def _ends(self) -> Iterator[Piece]:
-        """Exchange the parent and the child of a joint."""
-        for joint in self.draft.joints():
-            ends = [child_of(joint, role) for role in _ENDS]
-            names = [end_of(joint, role) for role in _ENDS]
-            likes = [self.reference.joint_of(name) for name in names]
-            if any(like is not None and [end_of(like, role) for role in _ENDS] == names[::-1] for like in likes):
-                edits = self.draft.exchange(*ends, "link")  # type: ignore[arg-type]
-                yield self.piece(joint, "parent and child of {} are swapped", "swap parent and child of {}", edits=edits)
-
-    def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
-        children = [child for child in draft.root if isinstance(child.tag, str)]
-        nodes = [_node(child, names) for child in children[: 3 * _MAX_LINKS]]
-        return Node("robot", (), {}, nodes, draft.root)
-
-    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        added = {id(step.like): step for step in found if step.verb == "add" and step.own.tag == "robot"}
-        is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
-        for _, group in groupby(found, key=is_set):
-            those = [*group]
-            if those[0].verb in ("set", "unset"):
-                yield from self._of_values(those)
-        for step in found:
-            match step.verb:
-                case "rename":
-                    edits = self.draft.rename_attribute(step.own.of, step.name, step.other)
-                    yield self.piece(step.own.of, f"the name of the attribute {step.other} of {{}}", f"rename {step.name} of {{}} to {step.other}", edits=edits)
-                case "retag" if step.like is not None:
-                    edits = self.draft.rename_tag(step.own.of, step.like.tag)
-                    yield self.piece(step.own.of, f"the name of the tag <{step.like.tag}>", f"rename the tag to <{step.like.tag}>", edits=edits)
-                case "move" if step.parent is not None and step.like is not None:
-                    yield self.moved(step.own.of, step.parent.of)
-                case "add" if step.like is not None:
-                    yield from self._added(step, added)
-                case "remove":
-                    yield from self._removed(step.own)
-
-    def piece(self, element: Element, cause: str, action: str, *, tag: str = "", sets: tuple[Set, ...] = (), edits: Edits = (), rank: int = 0, link: str = "") -> Piece:
+    def piece(
+        self,
+        element: Element,
+        cause: str,
+        action: str,
+        *,
+        tag: str = "",
+        sets: tuple[Set, ...] = (),
+        edits: Edits = (),
+        rank: int = 0,
+        link: str = "",
+    ) -> Piece:
         place = self.draft.described(element, tag, self.known)
-        tags = frozenset(map(str, (element.tag, tag, *(one.tag for one in element.iter()), *(one.attribute for one in sets))))
-        return Piece(cause.replace("{}", place), action.replace("{}", place), link or self.draft.link_of(element), sets, edits, rank, tags, element)
-
-    def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
-        """Yield the values of one element: each alone, and all together."""
-        element: Element = found[0].own.of
-        wanted = {step.name: _wanted(step) for step in found}
-        values = {name: value for name, value in wanted.items() if value is not None}
-        if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
-            yield from self._renamed(element, values.pop("name"))
-        if "" in values:
-            text = values.pop("")
-            yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits=self.draft.write_text(element, text))
-        groups = [(name,) for name in values] + ([tuple(values)] if len(values) > 1 else [])
-        for names in groups:
-            yield self.of_sets([Set(element, "", name, values[name]) for name in names])
+        tags = frozenset(
+            map(str, (element.tag, tag, *(one.tag for one in element.iter()), *(one.attribute for one in sets)))
+        )
+        return Piece(
+            cause.replace("{}", place),
+            action.replace("{}", place),
+            link or self.draft.link_of(element),
+            sets,
+            edits,
+            rank,
+            tags,
+            element,
+        )
 
     def of_sets(self, sets: Sequence[Set], rank: int = 0) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
         tag = first.tag or str(first.owner.tag)
-        old, new, parts, unit = [], [], [], ""
+        old: list[float] = []
+        new: list[float] = []
+        parts: list[str] = []
+        unit = ""
         is_numeric, is_mistake = True, False
         missing = [one.attribute for one in sets if one.element is None or one.attribute not in one.element.attrib]
         for one in sets:
@@ -170,7 +87,9 @@ class Difference:
             is_numeric = is_numeric and known is not None and bool(known.parts)
             if known is not None and known.parts:
                 unit = known.unit
-                old += before or [0.0] * len(known.parts) if len(before) != len(known.parts) and len(sets) > 1 else before
+                old += (
+                    before or [0.0] * len(known.parts) if len(before) != len(known.parts) and len(sets) > 1 else before
+                )
                 new += values_of(one.value)
                 parts += [part or one.attribute for part in known.parts]
         names = " and ".join(one.attribute for one in sets)
@@ -183,12 +102,14 @@ class Difference:
             cause, action = (text.replace("[place]", "{}") for text in mistake[:2])
             is_mistake = mistake.is_mistake
         else:
-            what = "{}" if tag in _ENDS else f"the {names} of {{}}"
+            what = "{}" if tag in ENDS else f"the {names} of {{}}"
             cause, action = what, f"set {what} to {' and '.join(one.value for one in sets)}"
         is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
         all_sets = self.with_twins(sets, is_known=rank == KNOWN)
-        rank = STRUCTURE if tag in _ENDS else FITTED if is_turned and not is_mistake else rank
-        return self.piece(first.owner, cause, action, tag=first.tag, sets=all_sets, rank=rank)._replace(is_mistake=is_mistake)
+        rank = STRUCTURE if tag in ENDS else FITTED if is_turned and not is_mistake else rank
+        return self.piece(first.owner, cause, action, tag=first.tag, sets=all_sets, rank=rank)._replace(
+            is_mistake=is_mistake
+        )
 
     def with_twins(self, sets: Sequence[Set], *, is_known: bool = False) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
@@ -196,8 +117,8 @@ class Difference:
         for one in sets:
             element = one.element
             for sibling in self.draft.siblings(element) if element is not None and is_known else ():
-                if sibling is not element and (sibling, one.attribute) in self._wanted:
-                    found.append(Set(sibling, "", one.attribute, self._wanted[sibling, one.attribute]))
+                wanted = self.wanted.get((sibling, one.attribute)) if sibling is not element else None
+                found += [Set(sibling, "", one.attribute, wanted)] if wanted is not None else []
         for one in [*found]:
             owner, tag = (one.owner, one.tag) if one.tag else (one.owner.getparent(), str(one.owner.tag))
             if owner is None or (tag != "origin" and owner.tag != "geometry"):
@@ -206,17 +127,24 @@ class Difference:
             link = visual.getparent() if visual is not None and visual.tag == "visual" else None
             if link is None:
                 continue
-            index = [*link.iterchildren("visual")].index(visual)
+            index = [*link.iterchildren("visual")].index(visual)  # type: ignore[arg-type]
             twins = [*link.iterchildren("collision")][index : index + 1]
             for twin in (*twins, *(link.iterchildren("inertial") if tag == "origin" and index == 0 else ())):
                 inner = twin if tag == "origin" else child_of(twin, "geometry")
-                if inner is not None and (tag == "origin" or child_of(inner, tag) is not None) and self._is_twin(owner, inner, tag, one):
+                if (
+                    inner is not None
+                    and (tag == "origin" or child_of(inner, tag) is not None)
+                    and self._is_twin(owner, inner, tag, one)
+                ):
                     found.append(Set(inner, tag, one.attribute, one.value))
         return tuple(found)
 
     def _is_twin(self, owner: Element, inner: Element, tag: str, one: Set) -> bool:
         """Return whether another element has the value that a visual has, and the reference does not say otherwise."""
-        mine, its = (_normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) for found in (child_of(owner, tag), child_of(inner, tag)))
+        mine, its = (
+            normal(tag, one.attribute, found.get(one.attribute) if found is not None else None)
+            for found in (child_of(owner, tag), child_of(inner, tag))
+        )
         if mine != its or (inner.tag == "inertial" and not mine.strip("0 ")):
             return False
         like = self.reference.link(self.draft.link_of(owner))
@@ -226,127 +154,19 @@ class Difference:
             return True
         place = child_of(other, "geometry") if tag != "origin" else other
         found = child_of(place, tag) if place is not None else None
-        return _normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) == _normal(tag, one.attribute, one.value)
-
-    def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
-        """Rename a link with all that names it, or alone; a joint; a material where it is used, or where it is defined."""
-        tag, old = str(element.tag), element.get("name") or ""
-        cause, action = f"the name of a {tag}", f"correct the name of a {tag}"
-        if tag == "link":
-            if sum(link.get("name") == old for link in self.draft.links()) == 1:
-                yield self.piece(element, cause, action, edits=renamed(self.draft, old, name), link=name)
-        yield from (self.piece(element, cause, action, edits=edits, link=name if tag == "link" else "") for edits in self.draft.write(element, "name", name))
+        return normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) == normal(
+            tag, one.attribute, one.value
+        )
 
     def moved(self, element: Element, parent: Element) -> Piece:
+        """Return the piece that moves an element into another one."""
         text = self.draft.text(element)
         there = self.draft.append(text) if parent is self.draft.root else self.draft.insert(parent, text)
         was = element.getparent()
         cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
-        return self.piece(element, cause, f"move <{element.tag}> into <{parent.tag}>", edits=(*self.draft.remove(element), *there))
-
-    def text(self, element: Element) -> str:
-        """Return an element of the reference as it is written, with the robot's names."""
-        text = self.reference.text(element)
-        for tag, attribute in (("joint", "joint"), ("material", "name")):
-            for old, new in self._names[tag].items():
-                pattern = rf'(<(?:{tag}|mimic)\b[^>]*\b{attribute}=")({re.escape(old)})(")'
-                text = re.sub(pattern, lambda found, new=new: f"{found[1]}{new}{found[3]}", text) if old != new else text
-        return text
-
-    def _added(self, step: Step, added: Mapping[int, Step]) -> Iterator[Piece]:
-        """Add an element: a link with its joint and its materials where these are missing, too."""
-        like, parent = step.like, step.own.of
-        assert like is not None
-        element, tag = like.of, like.tag
-        if parent is not self.draft.root:
-            yield from self._inner(parent, element)
-            return
-        if tag in ("joint", "link"):
-            name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
-            joints = [it.like.of for it in added.values() if tag == "link" and it.like is not None and it.like.tag == "joint"]
-            own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
-            texts = [self.text(element), *map(self.text, own)]
-            edits = (*self.draft.append("\n\n".join(texts)), *self._materials(element))
-            what = f"the {tag} {name!r}" if tag == "link" else f"the joint of {name!r}"
-            yield Piece(f"{what} is missing", f"add {what}", name, (), edits, 0, frozenset(map(str, (one.tag for one in element.iter()))))
-            return
-        where = self.draft.insert(self.draft.root, self.text(element)) if tag == "material" else self.draft.append(self.text(element))
-        yield self.piece(self.draft.root, f"<{tag}> is missing", f"add <{tag}>", edits=where)._replace(tags=frozenset(map(str, (one.tag for one in element.iter()))))
-
-    def _ends_of(self, joint: Element) -> list[str]:
-        return [end_of(joint, role) for role in _ENDS]
-
-    def _is_connected(self, joint: Element, link: str) -> bool:
-        """Return whether the links at the ends of a joint of the reference are there, once a link is added."""
-        return all(name == link or self.draft.link(name) is not None for name in self._ends_of(joint))
-
-    def _materials(self, element: Element) -> Edits:
-        """Return the edits that define the materials of an element of the reference that the robot does not define."""
-        names = dict.fromkeys(found.get("name") or "" for found in element.iter("material"))
-        texts = [self.text(found) for name in names if self._names["material"].get(name) is None and self.draft.material(name) is None for found in [self.reference.material(name)] if found is not None]
-        return self.draft.insert(self.draft.root, "\n".join(texts)) if texts else ()
-
-    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
-        tag = str(element.tag)
-        own = child_of(parent, tag)
-        values = {str(key): str(value) for key, value in element.attrib.items()}
-        if own is not None:  # one with default values only, which does not count
-            sets = [Set(own, "", name, value) for name, value in values.items() if _normal(tag, name, own.get(name)) != _normal(tag, name, value)]
-            yield from (self.of_sets([one]) for one in sets)
-            if len(sets) > 1:
-                yield self.of_sets(sets)
-            return
-        if tag in ("origin", "axis") and not len(element):
-            yield self.of_sets([Set(parent, tag, name, value) for name, value in values.items()])
-            if len(values) > 1:
-                yield from (self.of_sets([Set(parent, tag, name, value)]) for name, value in values.items() if _normal(tag, name, value) != _normal(tag, name, None))
-            return
-        others = [child for child in parent if parent.tag == "geometry" and child.tag in CHILDREN["geometry"]]
-        cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
-        if others:
-            twins = [shape for geometry in self._twin_shapes(parent, others[0]) for shape in geometry]
-            edits = tuple(edit for shape in (others[0], *twins) for edit in self.draft.replace(shape, self.text(element)))
-            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
-        else:
-            edits = (*self.draft.insert(parent, self.text(element)), *self._materials_in(element))
-        piece = self.piece(parent, cause, action, edits=edits)
-        yield piece._replace(tags=piece.tags | {str(one.tag) for one in element.iter()})
-
-    def _twin_shapes(self, geometry: Element, shape: Element) -> list[Element]:
-        """Return the geometry of the collision of a visual, if it is the same shape."""
-        visual = geometry.getparent()
-        link = visual.getparent() if visual is not None and visual.tag == "visual" else None
-        if link is None or visual is None:
-            return []
-        index = [*link.iterchildren("visual")].index(visual)
-        found = [child_of(twin, "geometry") for twin in [*link.iterchildren("collision")][index : index + 1]]
-        return [it for it in found if it is not None and [(one.tag, dict(one.attrib)) for one in it] == [(shape.tag, dict(shape.attrib))]]
-
-    def _materials_in(self, element: Element) -> Edits:
-        return self._materials(element.getparent()) if element.tag == "material" and element.getparent() is not None and not len(element) else self._materials(element)  # type: ignore[arg-type]
-
-    def _removed(self, node: Node) -> Iterator[Piece]:
-        """Remove what the reference does not have; an origin or axis gets its default."""
-        element, tag = node.of, node.tag
-        if tag in ("origin", "axis"):
-            defaults = {name: "1 0 0" if tag == "axis" else "0 0 0" for name in node.values}
-            yield from (self.of_sets([Set(element, "", name, value)], SOLVED) for name, value in defaults.items())
-            return
-        if element.getparent() is not None and (element.getparent().tag != "geometry"):  # there the shape is replaced
-            yield self.piece(element, f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}", f"remove the extra <{tag}>", edits=self.draft.remove(element), rank=STRUCTURE)
-
-
-def renamed(draft: Draft, old: str, new: str) -> Edits:
-    """Return the edits that give a link another name, also where joints name it."""
-    own = draft.link(old)
-    ways = draft.write(own, "name", new) if own is not None else []
-    edits = ways[0] if ways else ()
-    for found in draft.joints():
-        for role in _ENDS:
-            end = child_of(found, role)
-            if end is not None and end.get("link") == old:
-                edits += draft.write(end, "link", new)[0]
-    return tuple(dict.fromkeys(edits))  # a parameter of xacro can be both names
+        return self.piece(
+            element, cause, f"move <{element.tag}> into <{parent.tag}>", edits=(*self.draft.remove(element), *there)
+        )
 
 
 def _read(one: Set, default: str | None) -> list[float]:
@@ -355,46 +175,7 @@ def _read(one: Set, default: str | None) -> list[float]:
     return [*values_of(default if text is None else text)]
 
 
-def _wanted(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
-    if step.verb == "set" and step.like is not None:
-        return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
-    return known.default or None if known is not None else None
-
-
-def _node(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
-    """Return the node of an element, without values and elements that are the default."""
-    tag = str(element.tag)
-    values = {}
-    for name, value in element.attrib.items():
-        text = _normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == _normal(tag, str(name), None):
-            continue
-        kind = "joint" if (tag, name) == ("mimic", "joint") else "material" if tag == "material" and name == "name" else "joint" if tag == "joint" and name == "name" else ""
-        values[str(name)] = (names or {}).get(kind, {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [_node(child, names) for child in element if isinstance(child.tag, str)]
-    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
-    return Node(tag, _keys(element, values), values, children, element)
-
-
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
-    name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
-
-
-def _is_default(node: Node, *, is_moving: bool) -> bool:
-    if node.tag == "axis":
-        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
-    return node.tag == "origin" and not node.values
-
-
-def _normal(tag: str, attribute: str, text: str | None) -> str:
+def normal(tag: str, attribute: str, text: str | None) -> str:
     """Return a value as it is compared: numbers without needless digits, the default where there is none."""
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:

@@ -30,7 +30,11 @@ def is_readable(attribute: str, text: str) -> bool:
 def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
     """Yield what a text may stand for, each with what was wrong, and what to do."""
     found: dict[str, tuple[str, str]] = {}
-    for steps in product(*((step if isinstance(step, tuple) else (step,)) for step in _STEPS)) if len(text) <= _MAX_LENGTH else ():
+    for steps in (
+        product(*((step if isinstance(step, tuple) else (step,)) for step in _STEPS))
+        if len(text) <= _MAX_LENGTH
+        else ()
+    ):
         current, causes = text, []
         for function, cause, action in map(_NAMED.__getitem__, steps):
             after = function(current, attribute)
@@ -41,7 +45,10 @@ def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
             found.setdefault(current, causes[0])
     for current, (cause, action) in found.items():
         yield current, cause, action
-    yield from ((it, f"the count of numbers in {attribute}", f"write {len(PARTS[attribute])} numbers") for it in _counted(attribute, text))
+    yield from (
+        (it, f"the count of numbers in {attribute}", f"write {len(PARTS[attribute])} numbers")
+        for it in _counted(attribute, text)
+    )
 
 
 def _counted(attribute: str, text: str) -> Iterator[str]:
@@ -90,7 +97,7 @@ def _value(text: str) -> str:
     except (ExpressionFails, Undetermined, OutOfBudget):
         return text
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    return number(float(value)) if is_number else text  # type: ignore[arg-type]
+    return number(float(value)) if is_number else text
 
 
 def _in_range(text: str, attribute: str) -> str:
