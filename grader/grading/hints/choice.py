@@ -340,9 +340,8 @@ def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:
     seen: set[object] = set()
     keys: set[object]
     for piece in pieces:
-        keys = set(one[:3] for one in piece.sets) or {
-            (edit.path, edit.line, edit.column) for edit in piece.edits if edit.old
-        }
+        keys = {one[:3] for one in piece.sets}
+        keys |= {(edit.path, edit.line, edit.column) for edit in piece.edits if edit.old}
         if seen.isdisjoint(keys) and piece.rank <= rank:
             found.append(piece)
             seen |= keys

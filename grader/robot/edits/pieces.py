@@ -56,6 +56,7 @@ class PieceMaker:
         rank: int = 0,
         link: str = "",
     ) -> Piece:
+        """Return a piece that changes an element, or its child with a tag; {} in the texts stands for what it is called."""
         place = self.draft.described(element, tag, self.known)
         tags = frozenset(
             map(str, (element.tag, tag, *(one.tag for one in element.iter()), *(one.attribute for one in sets)))
@@ -180,5 +181,5 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
         text = known.default or "" if known is not None else ""
-    values: Values = values_of(text) if known is not None and known.parts else ()
+    values = values_of(text) if known is not None and known.parts else ()
     return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text

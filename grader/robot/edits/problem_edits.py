@@ -6,9 +6,9 @@ from itertools import islice
 from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import Difference, renamed
 from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
-from grader.robot.edits.pieces import Piece, renamed
+from grader.robot.edits.pieces import Piece
 from grader.robot.edits.readable import is_readable, readable
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, JOINT_TYPES, REQUIRED, TAGS, missing_element
