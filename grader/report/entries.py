@@ -73,8 +73,8 @@ def show_failure(failure: Failure, page: Page, number: int) -> None:
     texts += _hints(details, page)
     reasons = [*_reasons(details, result, page)] if page.room or is_first else []
     page.shown.update(text.plain for text in reasons)
-    skipped = [_skipped(failure)] if failure.skipped and (page.room or is_first) else []
-    most = None if page.room else _MAX_REASON
+    skipped = [_skipped(failure)] if failure.skipped and page.room else []
+    most = None if page.room else _MAX_REASON - (number > 0)
     texts += [block(console, text, INDENT, most=most) for text in (*reasons, *skipped)]
     page.leave_row()
     put(console, Text("\n").join(texts))
@@ -85,6 +85,8 @@ def _head(failure: Failure, details: Details, page: Page) -> Text:
     status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
     text = Text.assemble(mark(status, page.console), " ", (printable(result.criterion.id), "bold"))
     text.append(f"  {content.cost_text(failure)}", STYLES[status])
+    if failure.skipped and not page.room:
+        text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
         where = details.location if page.room else replace(details.location, calls=())
         text.append(f"  {location_text(where)}", "dim")
