@@ -94,10 +94,11 @@ def failures(report: Report) -> tuple[Failure, ...]:
     is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
 
     def rank(mistake: tuple[Failure, ...]) -> tuple[bool, bool, bool, Decimal]:
-        subjects = [failure.result.criterion.check.subject for failure in mistake]
-        is_last = not has_package and "package" in subjects
+        criteria = [failure.result.criterion for failure in mistake]
+        is_last = not has_package and report.rubric.part(criteria[0].part).needs == "package"
+        is_urgent = is_rejected and any(criterion.check.subject == "urdf" for criterion in criteria)
         lost = sum((failure.lost for failure in mistake), Decimal(0))
-        return bool(mistake[0].result.why_given), is_last, not (is_rejected and "urdf" in subjects), -lost
+        return bool(mistake[0].result.why_given), is_last, not is_urgent, -lost
 
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
