@@ -35,10 +35,11 @@ def explained(
     """
     if outcome.problem:  # the check has said it
         return outcome
-    mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
+    lost, dropping = outcome.message, _DROPPING.get(part, ())
+    mistake = outcome.mistake or lost
     dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
     if dropped is not None:
-        message = f"{outcome.message}: {dropped.message}"
+        message = f"{lost}: {dropped.message}"
         outcome = outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
     place, inside = outcome.location, _extent(outcome.location, source)
     for problem in problems:
@@ -48,9 +49,9 @@ def explained(
         if where == place and dropped is not None:
             continue
         if (where == place and (is_cause or kind.is_before_ros)) or (is_cause and _is_in(where, place, inside, source)):
+            if dropped is not None:  # because of this
+                return outcome._replace(message=f"{lost}: {problem.message}")
             message = f"{outcome.message} ({problem.code}: {problem.message})"
-            if dropped is not None:
-                return outcome._replace(message=message)
             return outcome._replace(message=message, location=where, mistake=mistake, problem=problem.message)
     return outcome
 

@@ -12,7 +12,7 @@ from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
 from grader.report.details import SYMBOLS, Details, location_text, result_details, sentence, status_of
 from grader.report.diff import diff_lines
-from grader.report.order import Failure
+from grader.report.order import Failure, hint_of
 from grader.text import printable
 
 STYLES = {
@@ -70,11 +70,11 @@ def show_failure(failure: Failure, page: Page, number: int) -> None:
         ]
     texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
-    texts += _hints(details, page)
+    texts += _hints(failure, details, page)
     reasons = [*_reasons(details, result, page)] if page.room or is_first else []
     page.shown.update(text.plain for text in reasons)
-    skipped = [_skipped(failure)] if failure.skipped and (page.room or is_first) else []
-    most = None if page.room else _MAX_REASON
+    skipped = [_skipped(failure)] if failure.skipped and page.room else []
+    most = None if page.room else _MAX_REASON - (number > 0)
     texts += [block(console, text, INDENT, most=most) for text in (*reasons, *skipped)]
     page.leave_row()
     put(console, Text("\n").join(texts))
@@ -85,6 +85,8 @@ def _head(failure: Failure, details: Details, page: Page) -> Text:
     status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
     text = Text.assemble(mark(status, page.console), " ", (printable(result.criterion.id), "bold"))
     text.append(f"  {content.cost_text(failure)}", STYLES[status])
+    if failure.skipped and not page.room:
+        text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
         where = details.location if page.room else replace(details.location, calls=())
         text.append(f"  {location_text(where)}", "dim")
@@ -106,13 +108,15 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
         yield excerpt_block(page.console, source, where, INDENT, is_underlined=bool(page.room))
 
 
-def _hints(details: Details, page: Page) -> Iterator[Text]:
+def _hints(failure: Failure, details: Details, page: Page) -> Iterator[Text]:
     """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
     for hint in details.hints[: None if page.is_verbose else 1]:
         whole = block(page.console, Text(hint.message, "bold"), INDENT)
         is_long = not page.is_verbose and hint.action and _height(whole) >= _MAX_ROWS
-        short = f"{sentence(hint.action)} --verbose shows the edits."
-        yield block(page.console, Text(short, "bold"), INDENT) if is_long else whole
+        if is_long:
+            short = hint_of(failure, hint._replace(message=f"{sentence(hint.action)} --verbose shows the edits."))
+            whole = block(page.console, Text(short.message, "bold"), INDENT)
+        yield whole
         if page.is_verbose:
             lines = diff_lines(hint.edits, page.report.submission.source)
             yield from (block(page.console, Text(line, _CHANGES.get(line[0], "dim")), 2 * INDENT) for line in lines)

@@ -94,10 +94,11 @@ def failures(report: Report) -> tuple[Failure, ...]:
     is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
 
     def rank(mistake: tuple[Failure, ...]) -> tuple[bool, bool, bool, Decimal]:
-        subjects = [failure.result.criterion.check.subject for failure in mistake]
-        is_last = not has_package and "package" in subjects
+        criteria = [failure.result.criterion for failure in mistake]
+        is_last = not has_package and report.rubric.part(criteria[0].part).needs == "package"
+        is_urgent = is_rejected and any(criterion.check.subject == "urdf" for criterion in criteria)
         lost = sum((failure.lost for failure in mistake), Decimal(0))
-        return bool(mistake[0].result.why_given), is_last, not (is_rejected and "urdf" in subjects), -lost
+        return bool(mistake[0].result.why_given), is_last, not is_urgent, -lost
 
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
@@ -159,21 +160,19 @@ def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[
 
 def hints_of(result: Result, report: Report) -> tuple[Hint, ...]:
     """Return the hints of a criterion, which say what they fix besides; one that an earlier failure has names that failure."""
-    found = (
-        (failure for failure in failures(report) if failure.result.criterion.id == result.criterion.id)
-        if result.hints
-        else ()
-    )
-    return tuple(_named(hint, failure) for failure in found for hint in result.hints)
+    name = result.criterion.id
+    found = (failure for failure in failures(report) if failure.result.criterion.id == name) if result.hints else ()
+    return tuple(hint_of(failure, hint) for failure in found for hint in result.hints)
 
 
-def _named(hint: Hint, failure: Failure) -> Hint:
+def hint_of(failure: Failure, hint: Hint) -> Hint:
+    """Return a hint of a failure, which says what it fixes besides."""
     if failure.first:
         return hint._replace(message=f"Fixed by the same edit as {failure.first}.", edits=())
     also = [f"{other.result.criterion.id}, {signed_points(-other.lost)}" for other in failure.also]
     skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
-    fixes = f" Also fixes {enumerated(also)}." if also else ""
-    return hint._replace(
-        message=hint.message + fixes + (f" Then look at {enumerated(left, _MAX_NAMED)}." if left else "")
-    )
+    texts = [hint.message.removesuffix(".")]
+    texts += [f"Also fixes {enumerated(also)}"] if also else []
+    texts += [f"Then look at {enumerated(left, _MAX_NAMED)}"] if left else []
+    return hint._replace(message=f"{'. '.join(texts)}.")

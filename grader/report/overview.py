@@ -88,6 +88,8 @@ def show_other_problems(page: Page) -> None:
     report, console = page.report, page.console
     problems = tuple(content.other_problems(report))
     listed = problems if page.is_verbose else tuple(found for found in problems if found.severity != "note")
+    if not page.room:
+        problems = listed = tuple(found for found in listed if not found.kind.is_consequence)
     if listed:
         page.leave_row()
     if page.is_verbose and listed:

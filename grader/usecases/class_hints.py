@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
+from operator import attrgetter
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_old_hints, rubrics_of
 from grader.classroom.run.batch import Progress
-from grader.classroom.run.hint_search import Group, HintSearch, same_content, same_robot
+from grader.classroom.run.hint_search import HintSearch
 from grader.classroom.run.pool import Processes, processors
 from grader.files.reading import URDF_LIMIT
-from grader.grading.rubric import Rubric
 from grader.text import counted
 from grader.usecases import Warn
 
@@ -29,25 +29,15 @@ class HintOptions(NamedTuple):
 def search_class_hints(
     book: Gradebook, options: HintOptions, progress: ProgressDisplay, warn: Warn, *, reports: bool, statistics: bool
 ) -> None:
-    """Search the hints that the reports of students show, and those that the statistics of the class count."""
+    """Search the hints that the reports of students show, and those that the statistics of the class count, and store them.
+
+    Reports quote the text of the student, so that each content is searched; statistics show one of those with the same robot.
+    """
     searched = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if reports else []
-    if searched:
-        search_hints(book, searched, same_content, options, progress, warn)
+    searches = [HintSearch(book, rubric, attrgetter("content"), options.max_size) for rubric in searched]
     newest = Grades(book).newest_rubric()
     if statistics and newest.sha256 not in {rubric.sha256 for rubric in searched}:
-        search_hints(book, [newest], same_robot, options, progress, warn)
-
-
-def search_hints(
-    book: Gradebook,
-    rubrics: Iterable[Rubric],
-    group: Group,
-    options: HintOptions,
-    progress: ProgressDisplay,
-    warn: Warn,
-) -> None:
-    """Search the hints of the newest submissions that are not stored yet, once for each group, and store them."""
-    searches = [HintSearch(book, rubric, group, options.max_size) for rubric in rubrics]
+        searches.append(HintSearch(book, newest, attrgetter("robot"), options.max_size))
     total = sum(len(search.wanted) for search in searches)
     if total and book.read_only:
         warn(f"no hints for {counted(total, 'submission')}: {book.read_only}")

@@ -54,8 +54,8 @@ def hinted(report: Report | None = None) -> Report:
     points = {result.criterion.id: result.criterion.points for result in report.results}
     hints: dict[str, tuple[Hint, ...]] = {}
     for names, message, edits in (
-        (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73): both pass, +7 points', (rpy,)),
-        (LIFT, "Raise the base by 50 mm: both pass, +7 points", (xyz, other)),
+        (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73)', (rpy,)),
+        (LIFT, "Raise the base by 50 mm", (xyz, other)),
     ):
         hint = Hint(
             message, Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}, edits

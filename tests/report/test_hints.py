@@ -14,19 +14,19 @@ from tests.report.readers import READERS, read_as_github, read_markdown, read_sa
 from tests.report.reports import AXLE, hinted
 from tests.samples import ROOT
 
-CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73): both pass, +7 points.'
+CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73). Also fixes right-wheel-axis, -1.'
 AGAIN = f"Fixed by the same edit as {AXLE[0]}."
 MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
 
 
 @pytest.mark.parametrize("kind", [kind for kind in READERS if kind is not Format.JSON])
 def test_every_format_shows_a_hint_once(kind: Format) -> None:
-    """In full at the costliest failure, then by its name; in place of the feedback."""
+    """In full at the costliest failure, with the other one, which names it; in place of the feedback."""
     report = hinted()
     words = " ".join(READERS[kind].text(render(report, kind)).split())
     axle = next(result for result in report.results if result.criterion.id == AXLE[1])
     assert words.count(CHANGE) == (3 if kind is Format.SARIF else 1)  # of the result, its fix, and the list of criteria
-    assert AGAIN in words
+    assert (AGAIN in words) != (kind is Format.TERMINAL)  # which has both in one entry
     assert " ".join(axle.criterion.feedback.split()) not in words or kind is Format.SARIF  # the help of the rule
 
 
@@ -46,7 +46,7 @@ def test_the_whole_report_has_hint_and_feedback() -> None:
 def test_a_hint_is_never_cut() -> None:
     """Half an edit would be a wrong one: a long message is cut instead."""
     report = hinted()
-    change = "Change " + " ".join(f"part{number}" for number in range(80))
+    change = "Change " + " ".join(f"part{number}" for number in range(20))
     results = tuple(
         result._replace(
             outcome=result.outcome._replace(message="wrong " * 200),
@@ -62,7 +62,7 @@ def test_a_hint_is_never_cut() -> None:
 
 
 def test_a_hint_without_room_is_described() -> None:
-    """What it changes and which criteria pass; the lines that change are in the whole report."""
+    """What it changes; the lines that change are in the whole report."""
     report = hinted()
     change = "Change " + " ".join(f"part{number}" for number in range(80))
     results = tuple(
@@ -72,14 +72,10 @@ def test_a_hint_without_room_is_described() -> None:
     short, whole = (
         render(replace(report, results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
     )
-    words = (
-        "Negate the roll: right-wheel-forward and right-wheel-axis pass, +7 points. Run with --verbose to see the edit."
-    )
-    assert words in " ".join(short.split())
+    assert "Negate the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(short.split())
     assert "part79" not in short
     assert "part79." in whole
     assert '    +      <origin xyz="-0.15 -0.2 0" rpy="-1.57 0 0" />\n' in whole
-    assert all(len(lines.splitlines()) < 10 for lines in short.split("\n\n")[1:8])
 
 
 def test_a_manual_mark_leaves_no_hint() -> None:
@@ -120,7 +116,10 @@ def test_sarif_fixes_apply() -> None:
     """The replaced region of the file is the old text, counted in characters; what is inserted is the new text."""
     run = read_sarif(render(hinted(), Format.SARIF, Base("lab/")))
     fixes = [fix for result in run["results"] for fix in result.get("fixes", [])]
-    assert [fix["description"]["text"] for fix in fixes] == [CHANGE, "Raise the base by 50 mm: both pass, +7 points."]
+    assert [fix["description"]["text"] for fix in fixes] == [
+        CHANGE,
+        "Raise the base by 50 mm. Also fixes stands-on-ground, -1.",
+    ]
     lines = MISTAKEN.read_text(encoding="utf-8").splitlines()
     for fix, (old, new) in zip(fixes, (('"1.57 0 0"', '"-1.57 0 0"'), ('"0 0 0.05"', '"0 0 0.1"')), strict=True):
         change = fix["artifactChanges"][0]

@@ -5,7 +5,6 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.hints import Mistaken, mistaken, save_hints
@@ -13,55 +12,35 @@ from grader.classroom.gradebook.result import Verdict, graded_on
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
-from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric, read_rubric
 
 _AHEAD = 3  # tasks for each worker: one at work, the others ready
 _NONE = "[null]"  # of a search that was not complete
+_GRADED: Verdict = "graded"
+_ERRORED: Verdict = "errored"
 _NO_DOCUMENTS = "hints are about the URDF and the package"
 
-Group = Callable[[Mistaken], tuple[str, ...]]
+Group = Callable[[Mistaken], tuple[str, ...]]  # what submissions have in common of which one is searched
 
 
-class HintTask(NamedTuple):
-    """A submission whose hints are searched: where it is, what was graded, and by which rubric."""
+def search_hints(one: Mistaken, parts: tuple[str, ...], data: bytes, path: str, max_size: int) -> str | None:
+    """Return the proven hints of a submission as JSON; None if its files are not those that were graded.
 
-    root: str
-    paths: tuple[str, ...]
-    names: tuple[str, ...]
-    key: str
-    digest: str
-    parts: tuple[str, ...]
-    rubric: bytes
-    rubric_path: str
-    max_size: int = URDF_LIMIT
-
-
-def same_content(submission: Mistaken) -> tuple[str, ...]:
-    """Return what two submissions have in common whose hints are equal: reports quote the text of the student."""
-    return submission.content
-
-
-def same_robot(submission: Mistaken) -> tuple[str, ...]:
-    """Return what two submissions have in common that need the same changes: statistics show one of them."""
-    return submission.robot
-
-
-def search_hints(task: HintTask) -> str | None:
-    """Return the proven hints of a submission as JSON; None if its files are not those that were graded."""
+    The rubric is the content of the file at `path`, which need not exist.
+    """
     from grader.grading.grade import grade  # late, like the next two: only workers that search hints load them
     from grader.grading.hints.hinting import hinted
     from grader.grading.hints.record import hints_to_record
 
-    rubric = _rubric(task.rubric, task.rubric_path)
+    rubric = _rubric(data, path)
     try:
-        opened = open_submission(task.root, task.paths, task.names, task.key, task.max_size)
-        if opened.digest != task.digest:
+        opened = open_submission(one.root, one.paths, one.names, one.key, max_size)
+        if opened.digest != one.digest:
             return None
         submission = opened.submission(rubric, _NO_DOCUMENTS)
     except InputError:
         return None
-    report = grade(rubric, submission, task.parts, is_one_of_class=True)
+    report = grade(rubric, submission, parts, is_one_of_class=True)
     return hints_to_record(hinted(report, submission, rubric.hints, keep_edits=True).report)
 
 
@@ -73,7 +52,7 @@ def _rubric(data: bytes, path: str) -> Rubric:
 class HintSearch:
     """The search for the hints of a class, for one rubric. `unavailable` counts submissions whose files have changed or are gone."""
 
-    def __init__(self, book: Gradebook, rubric: Rubric, group: Group, max_size: int = URDF_LIMIT) -> None:
+    def __init__(self, book: Gradebook, rubric: Rubric, group: Group, max_size: int) -> None:
         self._book, self._rubric, self._max_size = book, rubric, max_size
         submissions = mistaken(book, rubric)
         self._alike: dict[tuple[str, ...], list[int]] = {}
@@ -102,22 +81,19 @@ class HintSearch:
     def _submitted(
         self, executor: Executor, submissions: Iterable[Mistaken]
     ) -> Iterator[tuple[Future[str | None], Mistaken]]:
+        rubric = self._rubric
         for one in submissions:
-            parts = graded_on(self._rubric, one.statuses)
-            rubric = self._rubric.data, str(self._rubric.path)
-            task = HintTask(one.root, one.paths, one.names, one.key, one.digest, parts, *rubric, self._max_size)
-            yield executor.submit(search_hints, task), one
+            task = one, graded_on(rubric, one.statuses), rubric.data, str(rubric.path), self._max_size
+            yield executor.submit(search_hints, *task), one
 
     def _save(self, submission: Mistaken, future: "Future[str | None]") -> Verdict:
         """Store the hints of a submission; none if the search was lost, unless it may have been lost with another one's."""
-        verdict: Verdict = "graded"
         try:
-            found = future.result()
+            found, verdict = future.result(), _GRADED
         except Exception as error:  # noqa: BLE001  it costs the hints of one submission, not its report
-            verdict = "errored"
-            found = _NONE
             if isinstance(error, WorkerError) and not error.is_own_fault:
-                return verdict
+                return _ERRORED
+            found, verdict = _NONE, _ERRORED
         if found is None:
             self.unavailable += 1
         else:
