@@ -106,13 +106,14 @@ def test_no_second_sensor_is_added(tmp_path: Path) -> None:
 def test_a_sensor_outside_of_its_element_is_put_into_it(tmp_path: Path) -> None:
     """A <sensor> directly in <robot> is moved, not copied."""
     (hint,) = hints_of(tmp_path, ROBOT.replace(f'<gazebo reference="camera_link">\n{SENSOR}\n</gazebo>', SENSOR))
-    (edit,) = hint["edits"]
-    assert edit["old"].startswith("<sensor")
-    assert edit["new"] == f'<gazebo reference="camera_link">{edit["old"]}</gazebo>'
+    removed, added = hint["edits"]
+    assert removed["old"].startswith("<sensor")
+    assert removed["new"] == added["old"] == ""
+    assert added["new"].split() == f'<gazebo reference="camera_link"> {SENSOR} </gazebo>'.split()
 
 
 def test_xacro_is_edited_where_it_is_written(tmp_path: Path) -> None:
-    """The value of an attribute is changed in the property that it comes from; a text that is evaluated is left alone."""
+    """The value of an attribute is changed in the property that it comes from, and a text in its expression."""
     robot = XACRO.replace('type="camera"', 'type="${kind}"').replace(
         '<link name="base"/>', '<link name="base"/>\n<xacro:property name="kind" value="depth"/>'
     )
@@ -120,4 +121,5 @@ def test_xacro_is_edited_where_it_is_written(tmp_path: Path) -> None:
     assert "camera" in hint["edits"][0]["new"]
     other = tmp_path / "other"
     other.mkdir()
-    assert hints_of(other, XACRO.replace(">30<", ">${2 * 5}<"), "robot.urdf.xacro") == []
+    (hint,) = hints_of(other, XACRO.replace(">30<", ">${2 * 5}<"), "robot.urdf.xacro")
+    assert [edit["new"] for edit in hint["edits"]] == ["${6 * 5}"]

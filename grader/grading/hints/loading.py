@@ -10,6 +10,7 @@ from grader.grading.hints.trials import Edits, State, Trials, gained, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft
+from grader.robot.edits.pieces import STRUCTURE
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
@@ -22,7 +23,6 @@ _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
 _MAX_VALUES = 40  # edits of one step that are graded
 _MAX_CANDIDATES = 150  # edits of one step that are read
-_STRUCTURE = {"parent", "child"}
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
@@ -141,7 +141,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
         near = [
             piece
             for piece in difference.pieces
-            if _STRUCTURE & piece.tags
+            if piece.rank == STRUCTURE
             or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)
         ]
         for piece in chain(misplaced(difference), chain.from_iterable(own), near):

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
-from grader.difference import Node, Step, likeness, paired, steps
-from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
+from grader.difference import Node, Step, is_alike, likeness, paired, steps
+from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of, escaped
 from grader.robot.edits.numbers import number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal
 from grader.xml.parsing import Element
@@ -97,16 +97,24 @@ class Difference(PieceMaker):
                 assert other is not None
                 edits = self.draft.exchange(one, other, "link")
                 yield self.piece(
-                    joint, "parent and child of {} are swapped", "swap parent and child of {}", edits=edits
+                    joint,
+                    "parent and child of {} are swapped",
+                    "swap parent and child of {}",
+                    edits=edits,
+                    rank=STRUCTURE,
                 )
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
         nodes = [_node(child, names) for child in children[: 3 * _MAX_LINKS]]
-        return Node("robot", (), {}, nodes, draft.root)
+        version = draft.root.get("version")
+        return Node("robot", (), {"version": version} if version not in (None, "1.0") else {}, nodes, draft.root)
 
     def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        added = {id(step.like): step for step in found if step.verb == "add" and step.own.tag == "robot"}
+        added = [
+            step.like for step in found if step.like is not None and step.verb == "add" and step.own.tag == "robot"
+        ]
+        removed = [step.own for step in found if step.verb == "remove"]
         is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
         for _, group in groupby(found, key=is_set):
             those = [*group]
@@ -133,7 +141,7 @@ class Difference(PieceMaker):
                 case "move" if step.parent is not None and step.like is not None:
                     yield self.moved(step.own.of, step.parent.of)
                 case "add" if step.like is not None:
-                    yield from self._added(step, added)
+                    yield from self._added(step, added, removed)
                 case "remove":
                     yield from self._removed(step.own)
 
@@ -170,10 +178,11 @@ class Difference(PieceMaker):
         for tag, attribute in (("joint", "joint"), ("material", "name")):
             for old, new in self._names[tag].items():
                 pattern = rf'(<(?:{tag}|mimic)\b[^>]*\b{attribute}=")({re.escape(old)})(")'
-                text = re.sub(pattern, rf"\g<1>{new}\g<3>", text) if old != new and new.isidentifier() else text
+                name = escaped(new).replace("\\", r"\\")
+                text = re.sub(pattern, rf"\g<1>{name}\g<3>", text) if old != new else text
         return text
 
-    def _added(self, step: Step, added: Mapping[int, Step]) -> Iterator[Piece]:
+    def _added(self, step: Step, added: Sequence[Node], removed: Sequence[Node]) -> Iterator[Piece]:
         """Add an element: a link with its joint and its materials where these are missing, too."""
         like, parent = step.like, step.own.of
         assert like is not None
@@ -181,32 +190,22 @@ class Difference(PieceMaker):
         if parent is not self.draft.root:
             yield from self._inner(parent, element)
             return
-        if tag in ("joint", "link"):
-            name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
-            joints = [
-                it.like.of for it in added.values() if tag == "link" and it.like is not None and it.like.tag == "joint"
-            ]
-            own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
-            texts = [self.text(element), *map(self.text, own)]
-            edits = (*self.draft.append("\n\n".join(texts)), *self._materials(element))
-            what = f"the {tag} {name!r}" if tag == "link" else f"the joint of {name!r}"
-            yield Piece(
-                f"{what} is missing",
-                f"add {what}",
-                name,
-                (),
-                edits,
-                0,
-                frozenset(map(str, (one.tag for one in element.iter()))),
-            )
+        if tag not in ("joint", "link"):
+            spare = [
+                it.of for it in removed if any(is_alike(it, inner) for inner in like.walk())
+            ]  # it is put into the new one
+            away = tuple(edit for it in spare for edit in self.draft.remove(it))
+            text = self.text(element)
+            there = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
+            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", edits=(*away, *there))
             return
-        where = (
-            self.draft.insert(self.draft.root, self.text(element))
-            if tag == "material"
-            else self.draft.append(self.text(element))
-        )
-        yield self.piece(self.draft.root, f"<{tag}> is missing", f"add <{tag}>", edits=where)._replace(
-            tags=frozenset(map(str, (one.tag for one in element.iter())))
+        name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
+        joints = [it.of for it in added if tag == "link" and it.tag == "joint"]
+        own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
+        text = "\n\n".join([self.text(element), *map(self.text, own)])
+        what = f"the link {name!r}" if tag == "link" else f"the joint of {name!r}"
+        yield Piece(
+            f"{what} is missing", f"add {what}", name, (), (*self.draft.append(text), *self._materials(element))
         )
 
     def _ends_of(self, joint: Element) -> list[str]:
@@ -232,7 +231,7 @@ class Difference(PieceMaker):
         tag = str(element.tag)
         own = child_of(parent, tag)
         values = {str(key): str(value) for key, value in element.attrib.items()}
-        if own is not None:  # one with default values only, which does not count
+        if own is not None and tag in ("origin", "axis"):  # one with default values only, which does not count
             sets = [
                 Set(own, "", name, value)
                 for name, value in values.items()
@@ -261,8 +260,7 @@ class Difference(PieceMaker):
             cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
         else:
             edits = (*self.draft.insert(parent, self.text(element)), *self._materials_in(element))
-        piece = self.piece(parent, cause, action, edits=edits)
-        yield piece._replace(tags=piece.tags | {str(one.tag) for one in element.iter()})
+        yield self.piece(parent, cause, action, edits=edits)
 
     def _twin_shapes(self, geometry: Element, shape: Element) -> list[Element]:
         """Return the geometry of the collision of a visual, if it is the same shape."""

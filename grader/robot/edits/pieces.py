@@ -18,8 +18,7 @@ KNOWN, SOLVED, STRUCTURE, FITTED, CONVENTION = range(5)
 class Piece(NamedTuple):
     """An edit that may undo a mistake: values that are set, or edits of the text; what is wrong, what to do, and the link concerned.
 
-    The `rank` orders pieces: the reference's own values come first, what fits comes later. `tags` are those of the elements that
-    change.
+    The `rank` orders pieces: the reference's own values come first, what fits comes later.
     """
 
     cause: str
@@ -28,7 +27,6 @@ class Piece(NamedTuple):
     sets: tuple[Set, ...] = ()
     edits: Edits = ()
     rank: int = 0
-    tags: frozenset[str] = frozenset()
     element: Element | None = None  # that it changes
     is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
 
@@ -58,19 +56,8 @@ class PieceMaker:
     ) -> Piece:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for what it is called."""
         place = self.draft.described(element, tag, self.known)
-        tags = frozenset(
-            map(str, (element.tag, tag, *(one.tag for one in element.iter()), *(one.attribute for one in sets)))
-        )
-        return Piece(
-            cause.replace("{}", place),
-            action.replace("{}", place),
-            link or self.draft.link_of(element),
-            sets,
-            edits,
-            rank,
-            tags,
-            element,
-        )
+        cause, action = (text.replace("{}", place) for text in (cause, action))
+        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
 
     def of_sets(self, sets: Sequence[Set], rank: int = 0) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
