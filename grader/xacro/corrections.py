@@ -75,7 +75,7 @@ class Corrector:
             defined = unknown.known[name]
             if defined is not None and name == near:
                 ways.append(_renamed(*defined, name, unknown.name))
-            if defined is not None and defined[1] == "params":
+            if defined is not None and defined[1] == "params" and near is None:
                 source, start = defined[0].source.element(defined[0].tag)
                 params = markup.attribute(source.text, start, "params")
                 given = source.text[params.value_start : params.value_end] if params is not None else ""

@@ -22,6 +22,7 @@ from grader.xacro.variants import (
     NAME,
     NUMBER,
     OTHER_NUMBER,
+    SINGLE,
     TOKEN,
     Slot,
     numbers,
@@ -32,6 +33,7 @@ from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
 _MAX_WAYS = 8
+_MAX_DEPTH = 6  # names that stand for each other
 _MAX_SITES = 10  # texts that one value is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_CHOICES = 3  # for each number, where several change
@@ -85,9 +87,7 @@ class Rewriter:
                 else []
             )
             found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
-            found += [] if found else self._at_calls(text, several) if text is not None else []
-            if found:
-                break
+            found += self._at_calls(text, several) if text is not None and not found else []
         values = {use.new for use in changed}
         if attribute and len(values) == 1:
             source, start = place.source.element(place.tag)
@@ -96,7 +96,7 @@ class Rewriter:
             found.insert(_MAX_WAYS - 1, (with_attribute(source, start, attribute, merged(raw, changed[0].new)),))
         return list(dict.fromkeys(found))[:_MAX_WAYS]
 
-    def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+    def _ways(self, text: Written, uses: Sequence[Use], depth: int = 0) -> Iterator[tuple[int, Way]]:
         """Yield the changes with which a text is what its uses need, each with its rank."""
         values = [self._value(text.text, use.scope) for use in uses]
         if any(value is not None and not _same(value, use.old) for value, use in zip(values, uses, strict=True)):
@@ -105,6 +105,13 @@ class Rewriter:
         if None not in values:
             yield from self._of_tokens(text, uses)
             yield from self._of_pieces(text, uses)
+        for definition in (
+            self._definitions(text, uses[0].scope) if SINGLE.fullmatch(text.text) and depth < _MAX_DEPTH else ()
+        ):
+            inner = defined(definition)
+            if inner is not None and "$" in inner.text:
+                own = [use._replace(scope=definition.scope) for use in uses]
+                yield from ((rank + 2, way) for rank, way in self._ways(inner, own, depth + 1))
 
     def _of_tokens(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield changes of a list of numbers: those of each that is wrong."""
@@ -144,10 +151,11 @@ class Rewriter:
             for rank, other in self._candidates(site, root, uses):
                 yield rank + 2 * site.rank, (Change(site.written, other),)
         new = {use.new for use in uses}
-        if len(new) == 1 and "$" not in root.text:
-            yield 0, (Change(root, merged(root.text, new.pop()) if as_number(root.text) is not None else new.pop()),)
-        elif len(new) == 1:
-            yield _LITERAL, (Change(root, new.pop()),)
+        if len(new) == 1:
+            text = new.pop()
+            is_number = as_number(root.text) is not None and root.text == root.text.strip()
+            other = merged(root.text, text) if is_number else text
+            yield _LITERAL if "$" in root.text else 0, (Change(root, other),)
 
     def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
         text = site.written.text
@@ -178,12 +186,15 @@ class Rewriter:
     def _solution(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> tuple[str, int] | None:
         """Return the text with the number in a slot that gives what the uses need, and how many digits it has."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
-        wanted = as_number(first.new)
+        pairs = [*zip(first.old.split(), first.new.split(), strict=False)]
+        index = next((index for index, pair in enumerate(pairs) if not _same(*pair)), 0)
+        wanted = as_number(pairs[index][1]) if pairs else None
         if wanted is None:
             return None
 
         def of(value: float) -> float | None:
-            return as_number(self._with(site, root, with_number(site.written.text, slot, repr(value)), first))
+            words = (self._with(site, root, with_number(site.written.text, slot, repr(value)), first) or "").split()
+            return as_number(words[index]) if index < len(words) else None
 
         found = secant(of, slot.value, wanted)
         if found is None and wanted:  # a divisor: 1/f is linear

@@ -134,7 +134,8 @@ class ExpandedSource(Source):
 
         refusals = [Refusal(*refused) for refused in self._expander.refused]
         corrector = Corrector(self.documents, self._expander.uses, self._expander.files.others)
-        return [*well_formed(Source(self.path, self.text)), *corrector.corrections(refusals, names, numbers)]
+        found = (*well_formed(Source(self.path, self.text)), *corrector.corrections(refusals, names, numbers))
+        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
         """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""

@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from grader.names import closest
+
 EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?![\w.(])")
 _PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
@@ -13,6 +15,7 @@ _OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
 _DIVIDED = re.compile(r"/\s*[\d.]+\Z")
 _TERM = re.compile(r"[\w.]+")
 TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+SINGLE = re.compile(r"\s*\$(?:\{\s*(?:[^\W\d]\w*)\s*\}|\(arg\s+[^\s()]+\s*\))\s*")
 ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
 _WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
@@ -96,7 +99,7 @@ def _of_expression(text: str, names: Sequence[str], own: Sequence[str]) -> Itera
     yield from ((HALF, without) for without in _without(r"\s*/\s*2(?![\w.])", text))
     yield HALF, f"2*{whole}"
     for found in NAME.finditer(text):
-        for name in names:
+        for name in sorted(names, key=lambda name: name != closest(found[0], names)):
             if name != found[0]:
                 yield OTHER_NAME, f"{text[: found.start()]}{name}{text[found.end() :]}"
 

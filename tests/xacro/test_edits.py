@@ -55,7 +55,7 @@ def changes(document: Document, tag: str, attribute: str, new: str, which: int =
     """Return the new texts of the ways to change an attribute of an expanded element, and check that each is what is read then."""
     found = expand(document)
     index, element = elements(found.root, tag)[which]
-    ways = found.source.rewrites(index, attribute, element.get(attribute, ""), new)
+    ways = found.source.rewrites(attribute, {index: (element.get(attribute, ""), new)})
     return [[edit.new for edit in way] for way in ways]
 
 
@@ -106,7 +106,7 @@ def test_a_way_to_change_an_attribute(body: str, tag: str, attribute: str, new: 
     assert expected in changes(document, tag, attribute, new)
     found = expand(document)
     index, element = elements(found.root, tag)[0]
-    for way in found.source.rewrites(index, attribute, element.get(attribute, ""), new):
+    for way in found.source.rewrites(attribute, {index: (element.get(attribute, ""), new)}):
         value = elements(expand(after(document, way)).root, tag)[0][1].get(attribute)
         assert value == new or all(
             abs(float(one) - float(other)) < 2e-3 for one, other in zip(value.split(), new.split(), strict=True)
@@ -131,7 +131,7 @@ def test_an_included_file_is_edited() -> None:
     assert source.path == "urdf/part.xacro"
     assert source.text.startswith("<cylinder", start)
     assert {
-        edit.path for way in found.source.rewrites(index, "radius", element.get("radius"), "0.2") for edit in way
+        edit.path for way in found.source.rewrites("radius", {index: (element.get("radius"), "0.2")}) for edit in way
     } == {"urdf/part.xacro"}
 
 
@@ -226,7 +226,7 @@ def test_an_edit_changes_one_attribute_and_nothing_else(seed: int, which: int, n
     if not attributes:
         return
     index, name, value = attributes[which % len(attributes)]
-    for way in found.source.rewrites(index, name, value, new):
+    for way in found.source.rewrites(name, {index: (value, new)}):
         before, now = files_of(document), edited_files(document, way)
         for path, text in before.items():
             edits = sorted((edit for edit in way if edit.path == path), key=lambda edit: (edit.line, edit.column))
@@ -249,5 +249,5 @@ def test_hostile_expressions_take_a_bounded_number_of_steps() -> None:
     document = Document(robot(f'{named("a0", "0.1")}{chain}<a b="${{a60 + a59}}"/><a b="${{a60 - a59}}"/>'))
     found = expand(document)
     for index, element in elements(found.root, "a"):
-        ways = found.source.rewrites(index, "b", element.get("b"), "0.3")
+        ways = found.source.rewrites("b", {index: (element.get("b"), "0.3")})
         assert [edit.new for way in ways for edit in way] == ['b="0.3"']
