@@ -19,6 +19,13 @@ _EXPLAINING = (
     catalogue.EMPTY_RANGE,
     catalogue.LIMIT_IN_DEGREES,
 )
+# Problems that explain a measurement of the element around them, and how that begins.
+_INSIDE = {
+    catalogue.MISSPELT: "<",
+    catalogue.DEGREES: "<origin",
+    catalogue.BAD_COLOUR: "<material",
+    catalogue.COLOUR_COUNT: "<material",
+}
 _DROPPING = {
     "inertial": (catalogue.BAD_INERTIAL,),
     "visual": (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL),
@@ -41,14 +48,13 @@ def explained(
     if dropped is not None:
         message = f"{lost}: {dropped.message}"
         outcome = outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
-    place, inside = outcome.location, _extent(outcome.location, source)
+    place = outcome.location
+    inside = _extent(place, source) if any(problem.kind in _INSIDE for problem in problems) else range(0)
     for problem in problems:
         kind, where = problem.kind, problem.location
         explains = kind in _EXPLAINING or (kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-        is_cause = kind is catalogue.MISSPELT or (explains and not dropping)
-        if where == place and dropped is not None:
-            continue
-        if (where == place and (is_cause or kind.is_before_ros)) or (is_cause and _is_in(where, place, inside, source)):
+        is_there = where == place and dropped is None and ((explains and not dropping) or kind.is_before_ros)
+        if is_there or (where != place and _is_inside(problem, place, inside, source)):
             if dropped is not None:  # because of this
                 return outcome._replace(message=f"{lost}: {problem.message}")
             message = f"{outcome.message} ({problem.code}: {problem.message})"
@@ -67,7 +73,17 @@ def _extent(place: Location | None, source: Source | None) -> range:
     return range(start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0])
 
 
-def _is_in(where: Location, place: Location | None, inside: range, source: Source | None) -> bool:
-    if source is None or place is None or (where.path, where.calls) != (place.path, place.calls):
+def _is_inside(problem: Problem, place: Location | None, inside: range, source: Source | None) -> bool:
+    """Return whether a problem that explains what is around it is in the element at a place."""
+    where = problem.location
+    if (
+        source is None
+        or place is None
+        or problem.kind not in _INSIDE
+        or (where.path, where.calls) != (place.path, place.calls)
+    ):
         return False
-    return source.offset(where.line, where.column) in inside
+    return (
+        source.text.startswith(_INSIDE[problem.kind], inside.start)
+        and source.offset(where.line, where.column) in inside
+    )

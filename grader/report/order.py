@@ -173,6 +173,6 @@ def hint_of(failure: Failure, hint: Hint) -> Hint:
     skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
     texts = [hint.message.removesuffix(".")]
-    texts += [f"Also fixes {enumerated(also)}"] if also else []
+    texts += [f"Also fixes {enumerated(also, _MAX_NAMED)}"] if also else []
     texts += [f"Then look at {enumerated(left, _MAX_NAMED)}"] if left else []
     return hint._replace(message=f"{'. '.join(texts)}.")

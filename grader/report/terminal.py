@@ -1,5 +1,7 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends."""
 
+from io import StringIO
+
 from rich.console import Console
 from rich.text import Text
 
@@ -23,12 +25,14 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
     Text of the submission is never interpreted as markup or control codes.
     """
     order = in_order(report)
-    for room in (2, 1, 0):
-        with console.capture() as captured:
-            _show(Page(report, console, verbose, set(), room), order)
-        if verbose or captured.get().count("\n") <= _ROWS:
-            break
-    console.file.write(captured.get())
+    pages = [Page(report, console, verbose, set(), room) for room in (2, 1, 0)]
+    _show(pages[0] if verbose else next((page for page in pages[:-1] if _fits(page, order)), pages[-1]), order)
+
+
+def _fits(page: Page, order: Order) -> bool:
+    out = StringIO()
+    _show(page._replace(console=Console(file=out, width=page.console.width), shown=set()), order)
+    return out.getvalue().count("\n") <= _ROWS
 
 
 def _show(page: Page, order: Order) -> None:

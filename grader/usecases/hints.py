@@ -61,10 +61,8 @@ def files_to_fix(
     if is_folder and (target.is_file() or (target.suffix.lower() in _FILES and not target.exists())):
         raise InputError(f"--fix: {printable_path(target)} names a file: of a folder or an archive name a folder")
     if not is_folder and (len(files) > 1 or (files and besides and own not in files)):
-        names = ", ".join(map(printable, files))
-        raise InputError(
-            f"--fix: the edits change {names}, not only the file that is graded: name a folder that exists"
-        )
+        names, only = ", ".join(map(printable, files)), "only " * (own in files)
+        raise InputError(f"--fix: the edits change {names}, not {only}{own}: name a folder that exists")
     written = {(target / path if is_folder else target): data for path, data in files.items()}
     for file in written:
         refuse_symlinks(file, (graded,))

@@ -123,6 +123,9 @@ def test_each_round_ends_with_the_changes(robot: Path) -> None:
         assert watch.out.until(END).encode() == run(("grade", str(robot))).stdout
         put(URDF, robot)
         assert watch.out.until(BETTER).startswith("grader ")
+        assert (
+            watch.out.until("\n") == 'hint applied: Move `<origin xyz="0.15 0 0.225" />` (line 34) to after line 40.\n'
+        )
         put(SHORT, robot)
         assert watch.out.until(WORSE).startswith("grader ")
         put(SHORT, robot)

@@ -162,7 +162,7 @@ def test_a_report_from_the_gradebook_names_the_cause(top: Path) -> None:
     )
     assert done.returncode == 0
     report = (top / "reports/pine.txt").read_text(encoding="utf-8")
-    assert "Points given: this fails only because of left-wheel-shape." in " ".join(report.split())
+    assert "(caused by left-wheel-shape)." in " ".join(report.split())
 
 
 # --- Identical work ---------------------------------------------------------------------------------------------------
