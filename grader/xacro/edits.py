@@ -80,6 +80,8 @@ class Rewriter:
         text = written(place, attribute, uses[0].scope)
         changed = [use for use in uses if not _same(use.old, use.new)]
         found: list[tuple[Edit, ...]] = []
+        if not changed:
+            return found
         for several in (uses, changed) if len(changed) < len(uses) else (uses,):
             ways = (
                 sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
