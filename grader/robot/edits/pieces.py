@@ -94,7 +94,8 @@ class PieceMaker:
             cause, action = what, f"set {what} to {' and '.join(one.value for one in sets)}"
         is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
         all_sets = self.with_twins(sets, is_known=rank == KNOWN)
-        rank = STRUCTURE if tag in ENDS else FITTED if is_turned and not is_mistake else rank
+        is_guess = (is_turned and not is_mistake) or (first.element is None and rank == SOLVED)
+        rank = STRUCTURE if tag in ENDS else FITTED if is_guess else rank
         return self.piece(first.owner, cause, action, tag=first.tag, sets=all_sets, rank=rank)._replace(
             is_mistake=is_mistake
         )
