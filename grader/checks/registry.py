@@ -104,7 +104,9 @@ class Check:
     `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
     submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
     for the grader's own. `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF
-    on which the result depends: hints propose edits of these.
+    on which the result depends: hints propose edits of these. `suggests` is
+    the function that yields edits for it, as "module:function", where neither the reference nor the numbers that it measures lead to
+    them.
     """
 
     name: str
@@ -113,6 +115,7 @@ class Check:
     parameters: Mapping[str, Parameter]
     distribution: str = ""
     looks_at: tuple[str, ...] = ()
+    suggests: str = ""
 
     @property
     def subject(self) -> Subject:
@@ -148,8 +151,10 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     examined = tuple(
         name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
     )
-    declared = getattr(sys.modules.get(function.__module__), "LOOKS_AT", {}).get(function.__name__, ())
-    return Check(function.__name__, function, examined, parameters, distribution, tuple(map(str, declared)))
+    name, module = function.__name__, sys.modules.get(function.__module__)
+    looks_at, suggests = (getattr(module, table, {}).get(name, ()) for table in ("LOOKS_AT", "SUGGESTS"))
+    texts = tuple(map(str, looks_at))
+    return Check(name, function, examined, parameters, distribution, texts, str(suggests or ""))
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:

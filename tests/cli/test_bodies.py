@@ -196,8 +196,8 @@ COLLISION = RIGHT[RIGHT.index("    <collision>") : RIGHT.index("  </link>")]
 @pytest.mark.parametrize(
     ("old", "new", "cause"),
     [
-        ('<mass value="2"/>', '<mass value="2000"/>', "the mass of the link 'arm'"),
-        ('ixx="0.06125"', 'ixx="0.6125"', "the inertia of the link 'arm'"),
+        ('<mass value="2"/>', '<mass value="2000"/>', "the value of the inertial mass of 'arm'"),
+        ('ixx="0.06125"', 'ixx="0.6125"', "the decimal point of the ixx of the inertial inertia of 'arm'"),
         (
             '<origin xyz="0 0 0.3"/>\n      <mass',
             "<mass",
@@ -213,12 +213,12 @@ COLLISION = RIGHT[RIGHT.index("    <collision>") : RIGHT.index("  </link>")]
         (
             COLLISION,
             COLLISION.replace("0 0 0.3", "0 0 0"),
-            "the origin of the collision of the link 'arm'",
+            "the collision origin of the link 'arm'",
         ),
         (
             COLLISION,
             COLLISION.replace("0.05", "0.5"),
-            "the geometry of the collision of the link 'arm'",
+            "the collision geometry of the link 'arm'",
         ),
         (
             COLLISION,

@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
 from functools import cached_property
+from importlib import import_module
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
-_REPAIRED = 2  # the number of the way by two edits
+_REPAIRED = 3  # the number of the way by two edits
 _MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
@@ -80,15 +81,18 @@ class Look:
             return [*found, *self.difference.pieces]
         return []
 
+    def with_links(self, criterion: Criterion) -> Criterion:
+        """Return a criterion with the names of the links that selectors mean, where each means one."""
+        if criterion.has_selectors and self.draft is not None:
+            with suppress(MissingElement, NotDecided):
+                return replace(criterion, arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
+        return criterion
+
     def targets(self, criterion: Criterion) -> Targets:
         """Return the links on which a criterion depends."""
         if self.draft is None:
             return Targets((), ())
-        named = criterion
-        if criterion.has_selectors:
-            with suppress(MissingElement, NotDecided):
-                named = replace(criterion, arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
-        return targets_of([named], self.draft.robot, (self.reference or self.draft).robot)
+        return targets_of([self.with_links(criterion)], self.draft.robot, (self.reference or self.draft).robot)
 
     def relevant(self, criterion: Criterion) -> list[Piece]:
         """Return the pieces that may decide a criterion, the most plausible first: those where its failure is."""
@@ -184,6 +188,7 @@ class Choice:
         look, name, lost = self._look(state), criterion.id, state.failed
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(look, look.relevant(criterion), name, lost),
+            lambda: self._suggested(look, criterion, lost),
             lambda: self._package_edits(look, criterion),
             lambda: self._repaired(look, criterion, lost),
             lambda: self._solved(look, criterion, lost),
@@ -258,6 +263,14 @@ class Choice:
     ) -> Iterator[Proposal]:
         if look.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(look, make(look.difference), criterion.id, lost)
+
+    def _suggested(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
+        """Yield the edits that the check suggests itself."""
+        module, _, name = criterion.check.suggests.partition(":")
+        if look.draft is not None and name:
+            make = getattr(import_module(module), name)
+            arguments = look.with_links(criterion).arguments
+            yield from self._passing(look, make(look.difference, arguments), criterion.id, lost)
 
     def _package_edits(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
         for proposal in look.of_package(criterion):
