@@ -183,7 +183,7 @@ class Choice:
             self._looks = state, Look(self._trials, state, self._reference, self._package)
         return self._looks[1]
 
-    def best(self, state: State, criterion: Criterion) -> Proposal | None:
+    def best(self, state: State, criterion: Criterion, *, is_solving: bool) -> Proposal | None:
         """Return the edit with which a criterion passes, and which gains most; None if none is found."""
         look, name, lost = self._look(state), criterion.id, state.failed
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
@@ -196,7 +196,7 @@ class Choice:
             lambda: self._together(look, criterion),
         )
         best: Proven | None = None
-        for number, way in enumerate(ways):
+        for number, way in enumerate(ways if is_solving else ways[: _REPAIRED + 1]):
             is_good = best is not None and best.proposal.rank < STRUCTURE
             if best is not None and is_good and (number != _REPAIRED or not self._is_short(look, best, lost)):
                 continue

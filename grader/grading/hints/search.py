@@ -52,7 +52,7 @@ class Search:
         self.found: list[Found] = []
         self.final = trials.start
         self.is_complete = True  # whether all was searched that may help
-        self._given_up: set[tuple[Edits, str]] = set()
+        self._given_up: set[tuple[Edits, str, bool]] = set()
 
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
@@ -74,10 +74,11 @@ class Search:
                 self.final = after._replace(edits=joined(self.trials.start.submission, self.final.edits, best.edits))
 
     def _rounds(self) -> None:
-        while self._round(self.final):
-            pass
+        for is_solving in (False, True, False):  # what the reference has comes first
+            while self._round(self.final, is_solving=is_solving):
+                pass
 
-    def _round(self, state: State) -> bool:
+    def _round(self, state: State, *, is_solving: bool) -> bool:
         """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
         wanted = self._by_cost(state.results)
         if self._is_another_robot:  # no edit of a mistake makes it the lab's
@@ -85,11 +86,11 @@ class Search:
         taken: Edits = ()
         current = state
         for name in wanted:
-            if current.results[name].outcome.status == "passed" or (state.edits, name) in self._given_up:
+            if current.results[name].outcome.status == "passed" or (state.edits, name, is_solving) in self._given_up:
                 continue
-            best = self._choice.best(state, self._criteria[name])
+            best = self._choice.best(state, self._criteria[name], is_solving=is_solving)
             if best is None or not self._prove(state, best, name):
-                self._given_up.add((state.edits, name))
+                self._given_up.add((state.edits, name, is_solving))
                 continue
             together = self.trials.applied(state, (*taken, *best.edits), current.results)
             if together is not None and not together.lost:

@@ -102,8 +102,9 @@ class Solver:
         if self._expected is None:
             return
         for slot in islice(found, _MAX_SLOTS):
+            is_size = slot.unit == "m" and slot.tag != "origin"
             for values in dict.fromkeys(self._values(slot)):
-                if slot.sets(values):
+                if slot.sets(values) and not (is_size and min(values) <= 0.0):
                     is_one = sum(old != new for old, new in zip(slot.values, values, strict=True)) == 1
                     is_short = slot.unit == "rad" or all(
                         rounded((new,), _SHORT)[0] == new

@@ -9,7 +9,7 @@ from grader.robot.edits.numbers import Values, values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.frames import placed_by
 from grader.robot.model import Box, Origin
-from grader.robot.transforms import Transform, rotation_from_rpy
+from grader.robot.transforms import IDENTITY, Transform, rotation_from_rpy
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
@@ -32,7 +32,9 @@ def conventions(difference: Difference) -> Iterator[Piece]:
         ):
             is_turn = moved.translation == (0.0, 0.0, 0.0)
             what = "the directions of x and y" if is_turn else "the origin"
-            sets = tuple(_moved(draft, link.name, moved))
+            own = draft.joint_of(link.name)
+            before = _placed(own, IDENTITY, moved.inverse()) if own is not None else ()
+            sets = (*before, *_moved(draft, link.name, moved))
             yield Piece(
                 f"{what} of the frame {link.name!r}",
                 f"correct {what} of the frame {link.name!r}",
@@ -96,10 +98,10 @@ def _moved(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
             yield from _placed(joint, T_new_old)
 
 
-def _placed(owner: Element, T_new_old: Transform) -> Iterator[Set]:
+def _placed(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
     found = child_of(owner, "origin")
     old = Origin(_values(found, "xyz"), _values(found, "rpy"))
-    pose = placed_by(T_new_old, old)
+    pose = placed_by(T_new_old, old) @ T_old_new
     for name, before, after in (("xyz", old.xyz, pose.translation), ("rpy", old.rpy, pose.rpy)):
         if _differ(before, after):
             yield Set(owner, "origin", name, written(tuple(round(value, 4) + 0.0 for value in after)))

@@ -1,0 +1,101 @@
+"""What a hint may say: the cause first, alone if possible, never to please a tolerance, and nothing that makes the robot worse."""
+
+import pytest
+
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from tests.hints.trials import BASES, Hints, hints_for
+from tests.samples import SAMPLES
+
+REFERENCE = BASES["reference"].text
+MACROS = BASES["equivalent-xacro-macros"]
+SOLID = REFERENCE.replace(
+    "</visual>",
+    '</visual>\n    <collision>\n      <origin xyz="0 0 0.1" rpy="0 0 0"/>\n      <geometry><box size="0.6 0.4 0.2"/></geometry>\n'
+    "    </collision>",
+    1,
+)
+
+
+def edits_of(hints: Hints) -> list[list[tuple[str, str]]]:
+    """Return the old and new texts of each hint."""
+    return [[(edit.old, edit.new) for edit in found.edits] for found in hints.found]
+
+
+def changed(*changes: tuple[str, str], text: str = REFERENCE) -> Submission:
+    """Return a single URDF in which texts, each of which is there, are changed."""
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return read_submission(text.encode(), identity="robot", path="my_robot.urdf")
+
+
+def test_a_call_without_its_parameter_gets_the_parameter() -> None:
+    """A macro call that lacks a parameter is completed; no link is added beside it."""
+    call = next(line for line in MACROS.text.split("\n") if "<xacro:wheel" in line and "right" in line)
+    name, value = next(pair.split("=") for pair in call.rstrip("/> ").split()[1:] if "right" not in pair)
+    hints = hints_for(MACROS.changed(MACROS.text.replace(call, call.replace(f" {name}={value}", ""))))
+    assert hints.is_full
+    (edits,) = edits_of(hints)
+    assert [new.strip() for _, new in edits] == [f"{name}={value}"]
+
+
+def test_a_missing_include_is_one_hint() -> None:
+    """An include that is missing is the only hint, whatever fails because of it."""
+    include = next(line for line in MACROS.text.split("\n") if "<xacro:include" in line)
+    hints = hints_for(MACROS.changed(MACROS.text.replace(f"{include}\n", "")))
+    assert hints.is_full
+    (edits,) = edits_of(hints)
+    assert [" ".join(new.split()) for _, new in edits] == [" ".join(include.split())]
+
+
+def test_each_hint_is_alone() -> None:
+    """Two mistakes have a hint each, which contains nothing of the other one."""
+    hints = hints_for(changed(('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'), ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')))
+    assert sorted(edits_of(hints)) == [
+        [('rgba="0 1 0 1"', 'rgba="0 0.6 0 1"')],
+        [('xyz="0.15 0 0.025"', 'xyz="0.15 0 0.225"')],
+    ]
+
+
+@pytest.mark.parametrize("size", ["6 4 2", "600 400 200", "0.01 0.01 0.0005"])
+def test_no_edit_pleases_a_tolerance(size: str) -> None:
+    """A box of another size at the origin gets the size and the place of the lab, not a size that sinks by less than 2 mm."""
+    hints = hints_for(changed(('size="0.6 0.4 0.2"', f'size="{size}"'), ('<origin xyz="0 0 0.1" rpy="0 0 0"/>', "")))
+    assert hints.is_full
+    new = {new for edits in edits_of(hints) for _, new in edits if "size" in new}
+    assert new == {'size="0.6 0.4 0.2"'}
+
+
+def test_what_is_seen_and_what_collides_stay_together() -> None:
+    """A visual that is moved or resized takes its collision along, if that was the same shape in the same place."""
+    for old, new in (('xyz="0 0 0.1" rpy', 'xyz="0 0 0.2" rpy'), ('size="0.6 0.4 0.2"', 'size="0.6 0.4 0.1"')):
+        hints = hints_for(read_submission(SOLID.replace(old, new, 2).encode(), identity="robot", path="my_robot.urdf"))
+        assert hints.is_full
+        (edits,) = edits_of(hints)
+        assert len(edits) == 2
+        assert len(set(edits)) == 1
+
+
+def test_no_edit_adds_a_problem() -> None:
+    """With all edits, ROS 2 rejects and drops nothing that it loaded before."""
+    for name in ("several-mistakes", "caster-misnamed", "footprint-below-the-base", "box-sunk"):
+        if name in SAMPLES:
+            fixed = hints_for(SAMPLES[name].open()).fixed
+            assert getattr(fixed.urdf, "loaded").verdict == "clean"  # noqa: B009  of any state of a URDF
+
+
+def test_a_convention_of_the_whole_robot_is_one_hint() -> None:
+    """A base frame at the centre of the box, with everything else consistent, is one hint that gains all."""
+    moved = changed(
+        ('<origin xyz="0 0 0.1" rpy="0 0 0"/>\n      <geometry>\n        <box', '<origin xyz="0 0 0" rpy="0 0 0"/>\n      <geometry>\n        <box'),
+        ('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.125"'),
+        ('xyz="-0.15 0.2 0"', 'xyz="-0.15 0.2 -0.1"'),
+        ('xyz="-0.15 -0.2 0"', 'xyz="-0.15 -0.2 -0.1"'),
+        ('xyz="0.2 0 -0.05"', 'xyz="0.2 0 -0.15"'),
+        ('xyz="0 0 0.1"', 'xyz="0 0 0.2"'),
+    )  # fmt: skip
+    hints = hints_for(moved)
+    assert len(hints.lost) >= 4
+    assert hints.is_full
+    assert len(hints.found) <= 2
