@@ -6,9 +6,9 @@ from contextlib import AbstractContextManager
 from itertools import chain, islice
 from typing import Any
 
-from grader.edits import Proposal, edited
+from grader.edits import Proposal, composed, edited
 from grader.package.edits.files import WHAT, file_proposals, package_names
-from grader.package.edits.paths import launch_paths, setup_paths
+from grader.package.edits.paths import in_xml, launch_paths, setup_paths
 from grader.package.edits.python_difference import PythonDifference
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.syntax import repaired
@@ -20,6 +20,8 @@ from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Source
 
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
+_MAX_MISTAKES = 3  # in one launch file
+_MAX_FIRST = 2
 
 
 def package_proposals(
@@ -73,12 +75,48 @@ def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
 
 
 def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    """Yield the edits of a file, and those of several mistakes in a launch file one after the other."""
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
-    source, wanted = task.source(path), task.wanted(like)
-    if source is None or path is None:
+    source = task.source(path)
+    if source is not None and path is not None:
+        yield from _of_text(task, kind, source, path, like, _MAX_MISTAKES)
+
+
+def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None, depth: int) -> Iterator[Proposal]:
+    """Yield the edits of the text of a file; for those that leave fewer mistakes, also with the edits of the others."""
+    found = [*islice(_of_one(task, kind, source, path, like), _MAX_MADE)]
+    yield from found
+    if kind != "launch" or task.reference is None or like is None or depth == 1:
         return
+    wanted = {(it.package, it.executable) for it in task.reference.launch(like).nodes}
+
+    def left(text: Source) -> tuple[bool, int]:
+        launch = task.package.launch(path, text.text.encode("utf-8", "surrogateescape"))
+        started = {(it.package, it.executable) for it in launch.nodes}
+        return launch.syntax is not None, len(launch.faults) + len(wanted - started)
+
+    afters = [(it, Source(source.path, edited(source.text, source.path, it.edits) or "")) for it in found if it.edits]
+    ranked = sorted(((left(after), it.size, index) for index, (it, after) in enumerate(afters)))
+    now = left(source)
+    for _, _, index in [it for it in ranked if (False, 0) < it[0] < now][:_MAX_FIRST]:
+        first, after = afters[index]
+        for second in _of_text(task, kind, after, path, like, depth - 1):
+            edits = composed(source.text, source.path, first.edits, second.edits)
+            yield Proposal(edits, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}")
+
+
+def _of_one(task: Task, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    wanted = task.wanted(like)
+    if (
+        path.endswith(".xml")
+        and kind == "launch"
+        and like is not None
+        and task.reference is not None
+        and not like.endswith(".xml")
+    ):
+        wanted, like = in_xml(task, task.reference.launch(like)), path
     what = WHAT.get(kind, kind)
     is_python = posixpath.splitext(path)[1] in (".py", "")
     is_like = is_python or (like is not None and posixpath.splitext(path)[1] == posixpath.splitext(like)[1])
@@ -93,7 +131,7 @@ def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
     elif kind != "rviz":
         yield from repaired_xml(source, what)
     if kind == "launch":
-        yield from launch_paths(task, task.package.launch(path), source)
+        yield from launch_paths(task, task.package.launch(path, source.text.encode("utf-8", "surrogateescape")), source)
     elif kind == SETUP:
         yield from setup_paths(task)
     yield from respelt(source, [wanted or "", *(task.files if kind == SETUP else task.package.installed)], what)
