@@ -68,21 +68,18 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
 
 
 def in_xml(task: Task, launch: Launch) -> str:
-    """Return a launch file in XML that starts the nodes of a launch file of the reference."""
-    texts = {"urdf": "", "rviz": ""}
-    for it in launch.references if task.reference is not None else ():
-        like = (it.path or "").partition(f"{task.reference.name}/")[2]
-        for target in _similar(like, _targets(task, it.purpose))[:1] if it.purpose in texts else ():
-            texts[it.purpose] = f"$(find-pkg-share {task.package.name})/{target}"
-    inner = {
-        STATE_PUBLISHER: f"""<param name="robot_description" value="$(command 'xacro {texts["urdf"]}')" type="str"/>""",
-    }
-    arguments = {"rviz2": f' args="-d {texts["rviz"]}"'}
-    nodes = [
-        f"""<node pkg="{it.package}" exec="{it.executable}"{arguments.get(it.executable, "")}>{inner.get(it.executable, "")}</node>"""
-        for it in launch.nodes
-    ]
-    return "\n".join(("<launch>", *(it.replace("></node>", "/>") for it in nodes), "</launch>"))
+    """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
+    reference = task.reference.name if task.reference is not None else ""
+    paths = {"urdf": "", "rviz": ""}
+    for purpose in paths:
+        named = [(it.path or "").partition(f"{reference}/")[2] for it in launch.references if it.purpose == purpose]
+        found = [target for like in named for target in _similar(like, _targets(task, purpose))]
+        paths[purpose] = f"$(find-pkg-share {task.package.name})/{found[0]}" if found else ""
+    read = "xacro" if paths["urdf"].endswith(".xacro") else "cat"
+    inner = f"""><param name="robot_description" value="$(command '{read} {paths["urdf"]}')" type="str"/></node>"""
+    ends = {STATE_PUBLISHER: inner, "rviz2": f' args="-d {paths["rviz"]}"/>'}
+    nodes = [f'<node pkg="{it.package}" exec="{it.executable}"{ends.get(it.executable, "/>")}' for it in launch.nodes]
+    return "\n".join(("<launch>", *nodes, "</launch>"))
 
 
 def _targets(task: Task, purpose: str) -> list[str]:

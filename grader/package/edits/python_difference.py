@@ -73,14 +73,16 @@ class PythonDifference(NamedTuple):
             return
         if isinstance(like, ast.List) and (isinstance(own, ast.List) or is_root):
             yield from self._items(own, like, name)
-        elif is_root and set(mine) < {"0"} == set(its):  # actions are added later
+            return
+        if is_root and set(mine) < {"0"} == set(its):  # actions are added later
             yield from self._compared(own, its["0"], name)
-        elif _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
+            return
+        for part in [part for part in its if part in mine and _tag(own) == _tag(like)]:
+            yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
+        if _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
             code = self.like.written(like, self.own.bound)
             yield self._change("set", name, [self.own.replaced(own, code[0])], code)
         else:
-            for part in [part for part in its if part in mine]:
-                yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
             arguments: list[ast.expr | ast.keyword] = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
             missing = [part for part in its if part not in mine and arguments]
             for parts in (missing, *([part] for part in missing)) if missing else ():
@@ -142,8 +144,9 @@ def _parts(file: PythonFile, node: ast.expr) -> Mapping[str, ast.expr]:
     match node:
         case ast.Call(args=items):
             named = {it.arg: it.value for it in node.keywords if it.arg}
-            if isinstance(node.func, ast.Attribute) and isinstance(file.meant(node.func.value), ast.Call):
-                named[_OWNER] = node.func.value
+            owner = node.func.value if isinstance(node.func, ast.Attribute) else None
+            owner = file.values.get(owner.id) if isinstance(owner, ast.Name) else owner
+            named |= {_OWNER: owner} if isinstance(owner, ast.Call) else {}
         case ast.BinOp(left=left, right=right):
             items, named = [left, right], {}
         case ast.Tuple(elts=items):
