@@ -81,7 +81,8 @@ class PythonDifference(NamedTuple):
             yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
         if _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
             code = self.like.written(like, self.own.bound)
-            yield self._change("set", name, [self.own.replaced(own, code[0])], code)
+            whole = self._change("set", name, [self.own.replaced(own, code[0])], code)
+            yield whole._replace(rank=int(_tag(own) == _tag(like)))
         else:
             arguments: list[ast.expr | ast.keyword] = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
             missing = [part for part in its if part not in mine and arguments]

@@ -58,7 +58,9 @@ def _xml_tree(source: Source) -> Node | None:
         key = next((values[name] for name in (*_IDENTIFYING, "") if name in values), "")
         place = file.location(element)
         children = [node(child, depth - 1) for child in element.iterchildren("*") if depth][:_MAX_CHILDREN]
-        return Node(str(element.tag), (key,), values, children, source.offset(place.line, place.column))
+        return Node(
+            str(element.tag), (key, values.get("pkg", "")), values, children, source.offset(place.line, place.column)
+        )
 
     return node(file.root, _MAX_DEPTH)
 
