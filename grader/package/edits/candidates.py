@@ -45,7 +45,9 @@ def package_proposals(
         with isolated():
             # Of equal ones, a later one says better what changes.
             own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
-            found |= {edits: own[edits] for edits in sorted(own, key=lambda it: own[it].size)[:_MAX_PROPOSALS]}
+            found |= {
+                edits: own[edits] for edits in sorted(own, key=lambda it: (own[it].rank, own[it].size))[:_MAX_PROPOSALS]
+            }
     return list(found.values())
 
 
@@ -98,7 +100,8 @@ def _further(
         first, after = afters[index]
         for second in _further(task, kind, after, path, like, depth - 1):
             edits = composed(source.text, source.path, first.edits, second.edits)
-            yield Proposal(edits, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}")
+            cause, action = f"{first.cause} and {second.cause}", f"{first.action} and {second.action}"
+            yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
 
 
 def _started(launch: Launch) -> set[tuple[str, str]]:

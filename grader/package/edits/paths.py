@@ -107,7 +107,7 @@ def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
         if actual.startswith("/"):
             found += [[edit] for edit in moved(source, actual, below, line)[:1]]
         if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
-            found[1:1] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
+            found[2:2] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
     return found
 
 
