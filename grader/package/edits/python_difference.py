@@ -82,7 +82,7 @@ class PythonDifference(NamedTuple):
         if _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
             code = self.like.written(like, self.own.bound)
             whole = self._change("set", name, [self.own.replaced(own, code[0])], code)
-            yield whole._replace(rank=int(_tag(own) == _tag(like)))
+            yield whole._replace(rank=int(_tag(own) == _tag(like) and bool(its)))
         else:
             arguments: list[ast.expr | ast.keyword] = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
             missing = [part for part in its if part not in mine and arguments]
@@ -164,7 +164,7 @@ def _node(file: PythonFile, item: ast.expr) -> Node:
     meant = file.meant(item)
     values = {name: file.plain(value) for name, value in _parts(file, meant).items()}
     key = next((values[name] for name in _IDENTIFYING if name in values), "")
-    return Node(_tag(meant), (file.plain(meant), key), values, (), item)
+    return Node(_tag(meant), (file.plain(meant), key, values.get("package", "")), values, (), item)
 
 
 def _appended(

@@ -51,9 +51,10 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
 
 
 def _replaced(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
-    """Yield edits that write another word where a pattern is found."""
-    for found, word in product(islice(pattern.finditer(source.text), _MAX_WORDS), words):
-        yield change([source.edit(*found.span(), word)], "set", "a word", what)
+    """Yield edits that write another word everywhere for what a pattern finds."""
+    places = [*pattern.finditer(source.text)]
+    for old, word in product(dict.fromkeys(it[0] for it in places), words):
+        yield change([source.edit(*it.span(), word) for it in places if it[0] == old], "set", "a word", what)
 
 
 def slip(word: str, known: Iterable[str]) -> str | None:
