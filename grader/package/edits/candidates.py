@@ -14,7 +14,7 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task
 from grader.package.edits.trees import tree_proposals
-from grader.package.edits.wording import defined, respelt
+from grader.package.edits.wording import defined, respelt, reworded
 from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Source
@@ -113,6 +113,8 @@ def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None)
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
     own, right = PythonFile(source), Source(source.path, wanted)
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
+    if wanted and (ending == other or ending in (".py", "")):
+        yield from reworded(source, wanted, what)
     if ending in (".py", ""):
         yield from PythonDifference(own, PythonFile(right), what).proposals() if wanted else ()
         yield from repaired(own, what)

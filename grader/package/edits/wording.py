@@ -21,6 +21,8 @@ _MAX_MEANT = 4  # names that an undefined one may stand for
 _MAX_MORE = 2  # letters that one word has more than the other
 _LONG = 8
 _LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
 # Words of launch files in XML and YAML.
 _FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
@@ -62,6 +64,18 @@ def slip(word: str, known: Iterable[str]) -> str | None:
     guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
     same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
     return guess if same >= (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG) else None
+
+
+def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
+    start_of_text = int(source.text.startswith("\ufeff"))
+    own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
+    if len(own) + len(right) > _MAX_TOKENS:
+        return
+    changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
+    for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
+        offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
+        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
 
 
 def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
