@@ -160,21 +160,21 @@ class Package:
         similar = closest(name, names) or next((other for other in names if launch_stem(other) == stem), None)
         return names[similar] if similar else files[0] if files else None
 
-    def launch(self, path: str) -> "Launch":
-        """Return a launch file, evaluated."""
-        if path in self._launches:
+    def launch(self, path: str, text: bytes | None = None) -> "Launch":
+        """Return a launch file, evaluated: as it is, or with another text."""
+        if path in self._launches and text is None:
             return self._launches[path]
         from grader.package.launch.model import Launch
         from grader.package.launch.reader import read_launch
 
         own = self.path(path)
         try:
-            data = self.tree.files[path].read(PYTHON_LIMIT)
+            data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
             installed = self.target(path) or f"share/{self.name}/{path}"
             launch = read_launch(data, own, installed, self._open_installed)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
-        return self._launches.setdefault(path, launch)
+        return self._launches.setdefault(path, launch) if text is None else launch
 
     def rviz(self, path: str) -> "RvizFile":
         """Return an RViz file."""

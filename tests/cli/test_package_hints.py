@@ -11,6 +11,7 @@ from tests.command_line import run
 from tests.samples import ROOT
 
 LAUNCH, SETUP, RVIZ = "*.launch.py", "setup.py", "*.rviz"
+FRONTEND, XML = "equivalent-launch-file-in-xml", "*.launch.xml"
 XACRO, PLAIN = "equivalent-xacro-command", "equivalent-f-strings-and-pathlib"
 
 # A sample, a file of it, a text, what a student writes instead, and the old and the new text of each edit.
@@ -29,6 +30,25 @@ MISTAKES = {
         "equivalent-nested-install-paths", SETUP, "from glob import glob", "import glob",
         [("import glob", "from glob import glob")],
     ),
+    "closing bracket of another kind": (XACRO, LAUNCH, "description}]", "description]]", [("]", "}")]),
+    "space after xacro": (XACRO, LAUNCH, "'xacro '", "'xacro'", [("", " ")]),
+    "name that is not defined": (XACRO, LAUNCH, "([model, gui])", "([model_file, gui])", [("model_file", "model")]),
+    "name of the function": (
+        XACRO, LAUNCH, "generate_launch_description", "launch_robot", [("launch_robot", "generate_launch_description")],
+    ),
+    "return": (XACRO, LAUNCH, "    return ld\n", "", [("", "\n    return ld")]),
+    "name of an argument": (XACRO, LAUNCH, "executable='rviz2'", "node='rviz2'", [("node", "executable")]),
+    "two nodes": (
+        XACRO, LAUNCH, "executable='r", "executable='xr",
+        [("'xrobot_state_publisher'", "'robot_state_publisher'"), ("'xrviz2'", "'rviz2'")],
+    ),
+    "name of an attribute": (FRONTEND, XML, 'exec="rviz2"', 'type="rviz2"', [("type", "exec")]),
+    "executable in XML": (
+        FRONTEND, XML, 'exec="robot_state_publisher"', 'exec="state_publisher"',
+        [('exec="state_publisher"', 'exec="robot_state_publisher"')],
+    ),
+    "name of a tag": (PLAIN, "package.xml", "name>", "nme>", [("<nme>my_robot</nme>", "<name>my_robot</name>")]),
+    "substitution of ROS 1": (FRONTEND, XML, "$(find-pkg-share", "$(find", [("find", "find-pkg-share")] * 2),
     "name of the package in its paths": (
         "equivalent-literal-lists", SETUP, "share/my_robot", "share/my-robot", [("my-robot", "my_robot")] * 2,
     ),

@@ -6,20 +6,23 @@ from contextlib import AbstractContextManager
 from itertools import chain, islice
 from typing import Any
 
-from grader.edits import Proposal, edited
+from grader.edits import Proposal, composed, edited
 from grader.package.edits.files import WHAT, file_proposals, package_names
-from grader.package.edits.paths import launch_paths, setup_paths
+from grader.package.edits.paths import in_xml, launch_paths, setup_paths
 from grader.package.edits.python_difference import PythonDifference
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task
 from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import defined, respelt, reworded
-from grader.package.edits.xml_syntax import repaired as repaired_xml
+from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Source
+from grader.xml.syntax import proposals
 
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
+_MAX_MISTAKES = 3  # in one launch file
+_MAX_FIRST = 2
 
 
 def package_proposals(
@@ -37,26 +40,20 @@ def package_proposals(
     wanted = list(wanted)
     kinds = dict.fromkeys(kind for looks_at, _ in wanted for kind in looks_at)
     task = Task(package, reference, frozenset(chain.from_iterable(_texts(arguments) for _, arguments in wanted)))
-    found: dict[tuple[object, ...], Proposal] = {}
+    found: dict[tuple[Edit, ...], Proposal] = {}
     for kind in ("", *kinds):
         with isolated():
             # Of equal ones, a later one says better what changes.
-            own = {_result(task, it.edits): it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
-            found |= {result: own[result] for result in sorted(own, key=lambda it: own[it].size)[:_MAX_PROPOSALS]}
+            own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
+            found |= {
+                edits: own[edits] for edits in sorted(own, key=lambda it: (own[it].rank, own[it].size))[:_MAX_PROPOSALS]
+            }
     return list(found.values())
 
 
 def _texts(arguments: Mapping[str, Any]) -> Iterator[str]:
     for value in arguments.values():
         yield from (it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str))
-
-
-def _result(task: Task, edits: tuple[Edit, ...]) -> tuple[object, ...]:
-    """Return what is the same for edits that make the same change: the text after them, of one file."""
-    source = task.source(edits[0].path.removeprefix(task.package.path("")))
-    if source is None or any(it.renamed or it.path != source.path for it in edits):
-        return edits
-    return source.path, edited(source.text, source.path, edits)
 
 
 def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
@@ -73,27 +70,65 @@ def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
 
 
 def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    """Yield the edits of the file of a kind."""
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
-    source, wanted = task.source(path), task.wanted(like)
-    if source is None or path is None:
-        return
-    what = WHAT.get(kind, kind)
-    is_python = posixpath.splitext(path)[1] in (".py", "")
-    is_like = is_python or (like is not None and posixpath.splitext(path)[1] == posixpath.splitext(like)[1])
-    own, right = PythonFile(source), Source(source.path, wanted or "")
-    if wanted and is_like:
+    source = task.source(path)
+    if source is not None and path is not None:
+        yield from (
+            _further(task, kind, source, path, like) if kind == "launch" else _of_text(task, kind, source, path, like)
+        )
+
+
+def _further(
+    task: Task, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
+) -> Iterator[Proposal]:
+    """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
+    found = [*islice(_of_text(task, kind, source, path, like), _MAX_MADE)]
+    yield from found
+    reference = task.reference.launch(like) if task.reference is not None and like is not None else None
+    wanted = _started(reference) if reference is not None else set()
+
+    def left(text: Source) -> tuple[bool, int]:
+        launch = task.launch(path, text)
+        return launch.syntax is not None, len(launch.faults) + len(wanted - _started(launch))
+
+    afters = [(it, Source(source.path, edited(source.text, source.path, it.edits) or "")) for it in found if it.edits]
+    ranked = sorted((left(after), it.size, index) for index, (it, after) in enumerate(afters) if depth > 1)
+    now = left(source)
+    for _, _, index in [it for it in ranked if (False, 0) < it[0] < now][:_MAX_FIRST]:
+        first, after = afters[index]
+        for second in _further(task, kind, after, path, like, depth - 1):
+            edits = composed(source.text, source.path, first.edits, second.edits)
+            cause, action = f"{first.cause} and {second.cause}", f"{first.action} and {second.action}"
+            yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
+
+
+def _started(launch: Launch) -> set[tuple[str, str]]:
+    return {(it.package, it.executable) for it in launch.nodes}
+
+
+def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    own, right = PythonFile(source), Source(source.path, wanted)
+    ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
+    if wanted and (ending == other or ending in (".py", "")):
         yield from reworded(source, wanted, what)
-        compared = PythonDifference(own, PythonFile(right), what).proposals()
-        yield from compared if is_python else tree_proposals(source, right, task.given, what)
-    if is_python:
+    if ending in (".py", ""):
+        yield from PythonDifference(own, PythonFile(right), what).proposals() if wanted else ()
         yield from repaired(own, what)
         yield from defined(own, what)
-    elif kind != "rviz":
-        yield from repaired_xml(source, what)
+    elif ending == other:
+        yield from tree_proposals(source, right, task.given, what)
+    elif ending == ".xml" and task.reference is not None and like is not None:
+        right = Source(source.path, in_xml(task, task.reference.launch(like)))
+        yield from (it._replace(rank=1) for it in tree_proposals(source, right, task.given, what))
+    if ending == ".xml":
+        for it in proposals(source, is_urdf=False, is_strict=True):
+            yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")
     if kind == "launch":
-        yield from launch_paths(task, task.package.launch(path), source)
+        yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
         yield from setup_paths(task)
-    yield from respelt(source, [wanted or "", *(task.files if kind == SETUP else task.package.installed)], what)
+    yield from respelt(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

@@ -9,7 +9,7 @@ from itertools import islice
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import Task, change
-from grader.package.launch.model import Launch, Reference
+from grader.package.launch.model import STATE_PUBLISHER, Launch, Reference
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.source import Edit, Source
 
@@ -52,7 +52,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
         matcher.set_seq1(other)
         return posixpath.basename(other) != posixpath.basename(path), -matcher.ratio()
 
-    return sorted((it for it in dict.fromkeys(known) if it != path), key=order)
+    return sorted(dict.fromkeys(known), key=order)
 
 
 def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
@@ -67,15 +67,36 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
         yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
 
 
+def in_xml(task: Task, launch: Launch) -> str:
+    """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
+    reference = task.reference.name if task.reference is not None else ""
+    paths = {"urdf": "", "rviz": ""}
+    for purpose in paths:
+        named = [(it.path or "").partition(f"{reference}/")[2] for it in launch.references if it.purpose == purpose]
+        found = [target for like in named for target in _similar(like, _targets(task, purpose))]
+        paths[purpose] = f"$(find-pkg-share {task.package.name})/{found[0]}" if found else ""
+    read = "xacro" if paths["urdf"].endswith(".xacro") else "cat"
+    inner = f"""><param name="robot_description" value="$(command '{read} {paths["urdf"]}')" type="str"/></node>"""
+    ends = {STATE_PUBLISHER: inner, "rviz2": f' args="-d {paths["rviz"]}"/>'}
+    nodes = [f'<node pkg="{it.package}" exec="{it.executable}"{ends.get(it.executable, "/>")}' for it in launch.nodes]
+    return "\n".join(("<launch>", *nodes, "</launch>"))
+
+
+def _targets(task: Task, purpose: str) -> list[str]:
+    """Return the paths in the package's share folder of the files that it installs for a purpose."""
+    share = f"share/{task.package.name}/"
+    own = (it.removeprefix(share) for it in task.package.installed if it.startswith(share))
+    return [it for it in own if it.lower().endswith(_ENDINGS[purpose])]
+
+
 def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
     """Return the edits with which a path becomes the one that the file is installed at, or the file is installed there."""
     package, actual, line = task.package, named.path or "", named.location.line
     share = f"share/{package.name}/"
-    targets = [it for it in package.installed if it.startswith(share) and it.lower().endswith(_ENDINGS[named.purpose])]
     looked = actual.removeprefix(f"{PREFIX}/")
     found: list[list[Edit]] = []
-    for target in _similar(looked, targets)[:1]:
-        below = target.removeprefix(share)
+    for below in _similar(looked.removeprefix(share), _targets(task, named.purpose))[:1]:
+        target = share + below
         if actual.startswith(PREFIX):
             found += [[edit] for edit in moved(source, actual, f"{PREFIX}/{target}", line)]
         elif source.path.endswith(".py"):
@@ -86,7 +107,7 @@ def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
         if actual.startswith("/"):
             found += [[edit] for edit in moved(source, actual, below, line)[:1]]
         if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
-            found[1:1] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
+            found[2:2] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
     return found
 
 

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 from grader.difference import Node, paired
@@ -17,6 +18,7 @@ _IDENTIFYING = (
     "1",
     "0",
 )  # arguments: of a node, else the files of an entry of data_files, else the first
+_OWNER = "00"  # what a method is called of
 _MAX_ITEMS = 100
 _MAX_TEXT = 12 * 1024  # characters of a file that is compared
 
@@ -33,8 +35,29 @@ class PythonDifference(NamedTuple):
     def proposals(self) -> Iterator[Proposal]:
         """Yield the edits that undo one difference each."""
         for name in _ROOTS if len(self.own.text) <= _MAX_TEXT else ():
+            yield from self._functions() if self.own.calls(name) else ()
             for pair in zip(self.own.calls(name), self.like.calls(name), strict=False):
                 yield from self._compared(*pair, name)
+
+    def _functions(self) -> Iterator[Proposal]:
+        """Yield the edits that give a function the name that it should have, and what it should return."""
+        mine, its = (
+            {it.name: it for it in file.nodes if isinstance(it, ast.FunctionDef)} for file in (self.own, self.like)
+        )
+        other = [name for name in mine if name not in its]
+        for name, wanted in zip(other, [name for name in its if name not in mine], strict=False):
+            start = self.own.text.index(name, self.own.span(mine[name])[0])
+            yield change([self.own.source.edit(start, start + len(name), wanted)], "rename", f"`{name}`", self.what)
+        for name in its:
+            body = mine[name].body if name in mine else []
+            if not body or any(isinstance(it, ast.Return) for it in ast.walk(mine[name])):
+                continue
+            start, end = self.own.span(body[-1])
+            indent = " " * body[-1].col_offset
+            yield change([self.own.source.edit(start, start, "return ")], "add", "`return`", self.what)
+            for variable in sorted(name for name, value in self.own.values.items() if _tag(value) in _ROOTS):
+                new = f"{self.own.newline}{indent}return {variable}"
+                yield change([self.own.source.edit(end, end, new)], "add", "`return`", self.what)
 
     def _change(self, verb: Verb, name: str, edits: Sequence[Edit], *codes: Code) -> Proposal:
         imports = self.own.with_imports(sorted(set().union(*(names for _, names in codes))))
@@ -44,27 +67,35 @@ class PythonDifference(NamedTuple):
     def _compared(self, own: ast.expr, like: ast.expr, name: str) -> Iterator[Proposal]:
         """Yield the edits that make an expression the one of the reference: of one of its parts, else of the whole."""
         own, like = self.own.meant(own), self.like.meant(like)
-        mine, its = _parts(own), _parts(like)
+        mine, its = _parts(self.own, own), _parts(self.like, like)
         is_root = name in _ROOTS and isinstance(own, ast.Call)
         if self.own.plain(own) == self.like.plain(like):
             return
         if isinstance(like, ast.List) and (isinstance(own, ast.List) or is_root):
             yield from self._items(own, like, name)
-        elif is_root and set(mine) < {"0"} == set(its):  # actions are added later
+            return
+        if is_root and set(mine) < {"0"} == set(its):  # actions are added later
             yield from self._compared(own, its["0"], name)
-        elif _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
+            return
+        for part in [part for part in its if part in mine and _tag(own) == _tag(like)]:
+            yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
+        if _tag(own) != _tag(like) or set(filter(str.isdigit, mine)) != set(filter(str.isdigit, its)) or not its:
             code = self.like.written(like, self.own.bound)
-            yield self._change("set", name, [self.own.replaced(own, code[0])], code)
+            whole = self._change("set", name, [self.own.replaced(own, code[0])], code)
+            yield whole._replace(rank=int(_tag(own) == _tag(like) and bool(its)))
         else:
-            for part in [part for part in its if part in mine]:
-                yield from self._compared(mine[part], its[part], name if part.isdigit() else part)
             arguments: list[ast.expr | ast.keyword] = [*own.args, *own.keywords] if isinstance(own, ast.Call) else []
-            for part in [part for part in its if part not in mine and arguments]:
-                code = self.like.written(its[part], self.own.bound)
-                yield self._change("add", part, [_appended(self.own, arguments, [f"{part}={code[0]}"])], code)
-            for argument in own.keywords if isinstance(own, ast.Call) else ():
-                if argument.arg and argument.arg not in its:
-                    yield self._change("remove", argument.arg, [_without(self.own, argument)])
+            missing = [part for part in its if part not in mine and arguments]
+            for parts in (missing, *([part] for part in missing)) if missing else ():
+                codes = [self.like.written(its[part], self.own.bound) for part in parts]
+                texts = [f"{part}={code}" for part, (code, _) in zip(parts, codes, strict=True)]
+                yield self._change("add", parts[-1], [_appended(self.own, arguments, texts)], *codes)
+            for part, argument in product(missing, own.keywords if isinstance(own, ast.Call) else ()):
+                if self.own.plain(argument.value) == self.like.plain(its[part]) and argument.arg:
+                    start = self.own.span(argument)[0]
+                    yield self._change(
+                        "rename", argument.arg, [self.own.source.edit(start, start + len(argument.arg), part)]
+                    )
 
     def _items(self, own: ast.expr, like: ast.List, name: str) -> Iterator[Proposal]:
         """Yield the edits of the items of a list, and those that add missing ones: all together, then each."""
@@ -109,11 +140,16 @@ def _tag(node: ast.expr) -> str:
     return called(node) if isinstance(node, ast.Call) else type(node).__name__
 
 
-def _parts(node: ast.expr) -> Mapping[str, ast.expr]:
+def _parts(file: PythonFile, node: ast.expr) -> Mapping[str, ast.expr]:
     """Return the parts of an expression by their names or numbers."""
     match node:
         case ast.Call(args=items):
             named = {it.arg: it.value for it in node.keywords if it.arg}
+            owner = node.func.value if isinstance(node.func, ast.Attribute) else None
+            owner = file.values.get(owner.id) if isinstance(owner, ast.Name) else owner
+            named |= {_OWNER: owner} if isinstance(owner, ast.Call) else {}
+        case ast.BinOp(left=left, right=right):
+            items, named = [left, right], {}
         case ast.Tuple(elts=items):
             named = {}
         case ast.Dict(keys=keys, values=values):
@@ -126,9 +162,9 @@ def _parts(node: ast.expr) -> Mapping[str, ast.expr]:
 def _node(file: PythonFile, item: ast.expr) -> Node:
     """Return an item of a list as it is paired: as a whole, then by what identifies it, then by its likeness."""
     meant = file.meant(item)
-    values = {name: file.plain(value) for name, value in _parts(meant).items()}
+    values = {name: file.plain(value) for name, value in _parts(file, meant).items()}
     key = next((values[name] for name in _IDENTIFYING if name in values), "")
-    return Node(_tag(meant), (file.plain(meant), key), values, (), item)
+    return Node(_tag(meant), (file.plain(meant), key, values.get("package", "")), values, (), item)
 
 
 def _appended(
@@ -145,11 +181,3 @@ def _appended(
         lines = (space.lstrip("\r\n") + other[least:] if other.strip() else other for other in others)
         text += f"{comma}{space}{file.newline.join([first, *lines])}"
     return file.source.edit(end, end, text)
-
-
-def _without(file: PythonFile, argument: ast.keyword) -> Edit:
-    """Return the edit that removes an argument, with its comma and its line."""
-    start, end = file.span(argument)
-    end += file.text[end : end + 1] == ","
-    line = file.text.rfind("\n", 0, start) + 1
-    return file.source.edit(max(line - 1, 0) if not file.text[line:start].strip() else start, end, "")

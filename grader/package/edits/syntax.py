@@ -62,7 +62,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     near = [token for token, line in tokens if line in (last, last - 1)]
     for token, line in tokens if odd else ():
         if token.text in odd and token.kind == "op" and line in (last, last - 1):
-            yield source.edit(token.start, token.end, "")
+            yield from (source.edit(token.start, token.end, char) for char in ("", *odd))
     for token, _ in tokens if odd else ():
         for place in (token.end, token.start):
             yield from (source.edit(place, place, char) for char in odd)

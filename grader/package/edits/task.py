@@ -9,6 +9,7 @@ from typing import Literal
 from grader.edits import Proposal
 from grader.errors import InputError
 from grader.package.edits.python_file import PythonFile
+from grader.package.launch.model import Launch
 from grader.package.launch.places import ENDINGS, is_in_launch_folder
 from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
@@ -53,6 +54,10 @@ class Task:
         """The package's setup.py."""
         source = self.source(SETUP)
         return PythonFile(source) if source is not None else None
+
+    def launch(self, path: str, source: Source) -> Launch:
+        """Return a launch file of the package with another text, evaluated."""
+        return self.package.launch(path, source.text.encode("utf-8", "surrogateescape"))
 
     def wanted(self, path: str | None) -> str | None:
         """Return the text of a file of the reference, with the student's names of the package and of its frames."""

@@ -1,12 +1,12 @@
 """The difference between two files of XML or YAML: their elements and settings, as edits of the text."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.difference import Node, Step, steps
 from grader.edits import Proposal, text_of, with_attribute, with_child
-from grader.markup import head_end
-from grader.package.edits.task import change
+from grader.markup import attribute, head_end
+from grader.package.edits.task import Verb, change
 from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node as YamlNode
 from grader.package.yaml_nodes import YamlFault, read_yaml
@@ -15,6 +15,7 @@ from grader.xml.parsing import Element
 
 _SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
 _MAX_DEPTH, _MAX_CHILDREN = 8, 200
+_VERBS: Mapping[str, Verb] = {"add": "add", "retag": "rename", "unset": "rename"}
 _IDENTIFYING = ("exec", "name", "pkg", "file")  # attributes of an element
 
 
@@ -31,7 +32,7 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
     for step in sorted(found, key=order):
         edit = write(own, like, step)
         if edit is not None:
-            yield change([edit], "add" if step.verb == "add" else "set", _place(step), what)
+            yield change([edit], _VERBS.get(step.verb, "set"), _place(step), what)
             same.setdefault((edit.old.rpartition("/")[0], edit.new.rpartition("/")[0]), []).append(edit)
     for (old, _), edits in same.items():  # one mistake that is made everywhere, such as classes of ROS 1
         if old and len(edits) > 1:
@@ -39,7 +40,7 @@ def tree_proposals(own: Source, like: Source, given: frozenset[str], what: str) 
 
 
 def _place(step: Step) -> str:
-    node = step.like or step.own
+    node = step.own if step.verb in ("retag", "unset") else step.like or step.own
     tag = f"<{node.tag}>" if node.of.__class__ is int else node.tag
     name = f"`{step.name}` of {tag}" if step.name else tag
     return f"the value of {name}" if step.verb == "set" else name
@@ -57,7 +58,9 @@ def _xml_tree(source: Source) -> Node | None:
         key = next((values[name] for name in (*_IDENTIFYING, "") if name in values), "")
         place = file.location(element)
         children = [node(child, depth - 1) for child in element.iterchildren("*") if depth][:_MAX_CHILDREN]
-        return Node(str(element.tag), (key,), values, children, source.offset(place.line, place.column))
+        return Node(
+            str(element.tag), (key, values.get("pkg", "")), values, children, source.offset(place.line, place.column)
+        )
 
     return node(file.root, _MAX_DEPTH)
 
@@ -72,6 +75,13 @@ def _xml_edit(source: Source, like: Source, step: Step) -> Edit | None:
             return None if is_empty else source.edit(first, first + len(text.strip()), values[""])
         case Step(verb="set", like=Node(values=values)):
             return with_attribute(source, start, step.name, values[step.name])
+        case Step(verb="unset", name=name, own=own, like=Node(values=values)):  # the same value, by another name
+            found = attribute(source.text, start, name)
+            new = next((it for it, value in values.items() if it not in own.values and value == own.values[name]), None)
+            return source.edit(found.start, found.start + len(name), new) if found and new else None
+        case Step(verb="retag", own=own, like=Node(tag=tag)):
+            text = text_of(source, start)
+            return source.edit(start, start + len(text), tag.join(text.rsplit(own.tag, 1)).replace(own.tag, tag, 1))
         case Step(verb="add", like=Node(of=place)):
             return with_child(source, start, text_of(like, place))
     return None

@@ -1,11 +1,12 @@
 """Words and names: what a file spells in another way than the reference, uses without an import, or writes differently."""
 
 import ast
+import builtins
 import keyword
 import re
 from collections.abc import Iterable, Iterator
 from difflib import SequenceMatcher
-from itertools import islice
+from itertools import islice, product
 
 from grader.edits import Proposal
 from grader.names import closest
@@ -15,16 +16,20 @@ from grader.source import Source
 from grader.static_python.imports import USUAL_NAMES
 
 _WORD = re.compile(r"[^\W\d]\w*")
-_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60
+_MAX_MEANT = 4  # names that an undefined one may stand for
 _MAX_MORE = 2  # letters that one word has more than the other
 _LONG = 8
 _LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
 # Words of launch files in XML and YAML.
 _FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
 file let group find-pkg-share find-pkg-prefix var env eval command dirname true false screen robot_description remap"""
+_SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
+_SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
+_PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
 _PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
 
 
@@ -40,9 +45,18 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
     right = {word for text in (*known, usual) for word in _WORD.findall(text)}
     right |= {word for word in places if len(places[word]) > 1}
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
-    guesses = ((word, slip(word, right)) for word in suspects[:_MAX_SUSPECTS])
+    guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
+    yield from _replaced(source, _PROGRAM, [" "], what)
+    yield from () if source.path.endswith(".py") else _replaced(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+
+
+def _replaced(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
+    """Yield edits that write another word everywhere for what a pattern finds."""
+    places = [*pattern.finditer(source.text)]
+    for old, word in product(dict.fromkeys(it[0] for it in places), words):
+        yield change([source.edit(*it.span(), word) for it in places if it[0] == old], "set", "a word", what)
 
 
 def slip(word: str, known: Iterable[str]) -> str | None:
@@ -65,13 +79,20 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 
 def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that import the names which are used without it, or as they are used; and missing commas."""
-    used = sorted({node.id for node in file.nodes if isinstance(node, ast.Name)})
-    yield change(file.with_imports(used), "add", "the imports", what)
+    """Yield edits that import or correct the names which are not defined, or not as they are used; and missing commas."""
+    names = [node for node in file.nodes if isinstance(node, ast.Name)]
+    used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
+    yield change(file.with_imports(sorted(used)), "add", "the imports", what)
+    for word in sorted(used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
+        own = sorted(file.values, key=lambda it: -SequenceMatcher(None, it, word).ratio())[:_MAX_MEANT]
+        for old, new in [*((word, other) for other in own), *((other, word) for other in own if other not in used)]:
+            edits = [file.replaced(node, new) for node in names if node.id == old]
+            yield change(edits, "rename", f"`{old}`", what)
     for statement in file.imports:  # the function glob instead of the module, or the reverse
         if [alias.name for alias in statement.names] == ["glob"]:
             new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
-            yield change([file.replaced(statement, new)], "set", "an import", what)
+            found = change([file.replaced(statement, new)], "set", "an import", what)
+            yield found._replace(rank=-1)  # says better what changes than the difference of the lines
     for node in file.nodes:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
             end = file.span(node.func)[1]
