@@ -11,7 +11,7 @@ _ENDS = {"<!--": "-->", "<![CDATA[": "]]>", "<?": "?>", "<!": ">"}
 _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
-_DECLARATION = re.compile(r"""<\?xml\s+version\s*=\s*["']1\.[0-9]["']\s*(encoding\s*=\s*["'][^"']*["']\s*)?\?>""")
+_DECLARATIONS = re.compile(r"\ufeff?\s*(?:<\?[^<>]*>\s*)*")  # what TinyXML2 accepts before one
 _NO_NUMBERS = re.compile(r"[^-+0-9.,eE\s]")
 
 
@@ -105,9 +105,9 @@ def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
         why = "comment" if inner in text[piece.start + 4 : piece.end - 3] else ""
     elif piece.name == "<?" and not text.startswith("<?xml-", piece.start):
-        is_first = not text[: piece.start].strip("\ufeff" if rules.is_strict else "\ufeff \t\r\n")
-        is_right = not rules.is_strict or _DECLARATION.fullmatch(text, piece.start, piece.end)
-        why = "misplaced" if not is_first else "" if is_right else "version"
+        before = text[: piece.start]
+        is_first = before in ("", "\ufeff") if rules.is_strict else _DECLARATIONS.fullmatch(before)
+        why = "" if is_first else "misplaced"
     elif piece.form == "close":
         why = "close" if piece.name != parent else ""
     elif piece.form != "other" and not parent and mark.is_late:

@@ -50,7 +50,6 @@ _WAYS = {
     "extra": ("an extra closing tag", "remove the closing tag"),
     "name": ("the name of a closing tag", "correct the closing tag"),
     "drop": ("a tag that is not closed", "remove the tag"),
-    "end": ("the file is truncated", "close all open tags"),
     "early": ("a closing tag before the end of its element", "move the closing tag to the end"),
     "text": ("text that is no XML", "remove the text"),
     "comment": ("a malformed comment", "write the comment as <!-- ... -->"),
@@ -59,6 +58,8 @@ _WAYS = {
     "reference": ("an & that is not escaped", "write &amp; for &"),
     "prefix": ("the namespace of xacro is missing", "declare xmlns:xacro"),
 }
+
+_LOSSY = ("drop", "text")
 
 Change = tuple[int, int, str]
 
@@ -125,7 +126,7 @@ class _Search:
             if any(not faults for (_, _, faults), _ in found.values()):
                 break
         ways = [way for _, way in sorted(found.values(), key=lambda pair: pair[0])]
-        return ways[:_MAX_WAYS] + [way for way in ways[_MAX_WAYS:] if _is_lossy(way)][:1]
+        return ways[:_MAX_WAYS] + [way for way in ways[_MAX_WAYS:] if way.name in _LOSSY][:1]
 
     def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, bool, int] | None:
         """Return how far the parser is from the end, whether text is lost, and the faults for urdfdom; None if no further."""
@@ -137,7 +138,7 @@ class _Search:
         after = scan(way.after, rules, mark, limit)
         if len(way.after) - after.at >= len(text) - stop.at:
             return None
-        return len(way.after) - after.at if after.at < limit else -1, _is_lossy(way), after.faults
+        return len(way.after) - after.at if after.at < limit else -1, way.name in _LOSSY, after.faults
 
 
 def _way(text: str, name: str, changes: list[Change]) -> Way:
@@ -146,10 +147,6 @@ def _way(text: str, name: str, changes: list[Change]) -> Way:
     for start, end, new in reversed(changes):
         after = after[:start] + new + after[end:]
     return Way(name, changes, after)
-
-
-def _is_lossy(way: Way) -> bool:
-    return way.name in ("drop", "text")
 
 
 class _Operations:
@@ -188,15 +185,11 @@ class _Operations:
             yield "text", (int(text.startswith("\ufeff")), start, "")
         elif why == "root":
             if wrong.name not in ATTRIBUTES:
-                last = text.rfind(f"</{wrong.name}")
-                yield "tag", self._named(start, wrong.name, "robot"), self._named(last, wrong.name, "robot")
-            closing = "" if "</robot" in text else f"{self.line}</robot>"
-            yield "open", (start, start, f"<robot>{self.line}"), (end, end, closing)
+                yield "tag", self._named(wrong, "robot")
+            yield "open", (start, start, f"<robot>{self.line}")
         elif tags and why in ("second", "text"):
             if wrong.form != "text":
-                early = self._begun(tags[0]) if tags[0].form == "empty" else self._removed(tags[-1])
-                yield "early", early
-                yield "early", early, (end, end, f"{self.line}</{tags[0].name}>")
+                yield "early", self._begun(tags[0]) if tags[0].form == "empty" else self._removed(tags[-1])
             yield "text", (start, min(end, wrong.end), "")
 
     def characters(self) -> Iterator[tuple[str, *tuple[Change, ...]]]:
@@ -206,15 +199,14 @@ class _Operations:
             return
         yield "text", (wrong.start, wrong.end, "")
         for at, old in enumerate(text[wrong.start : wrong.end + 1], wrong.start):
-            for new in ('"', ">", "/>", "<", "=", "/", "'", " "):
+            for new in " " if old.isalnum() and text[at - 1].isalnum() else ('"', ">", "/>", "<", "=", "/", "'", " "):
                 yield _said("", new), (at, at, new)
             if not old.isalnum():
                 yield _said(old, ""), (at, at + 1, "")
 
-    def _named(self, start: int, old: str, new: str) -> Change:
-        """Return the change of the name of the tag at an offset; none without the tag."""
-        at = self.text.find(old, start) if start >= 0 else -1
-        return (at, at + len(old), new) if at >= 0 else (0, 0, "")
+    def _named(self, piece: Piece, name: str) -> Change:
+        end = markup.name_end(self.text, piece.start)
+        return end - len(piece.name), end, name
 
     def _removed(self, piece: Piece) -> Change:
         """Return the removal of a tag, with its line where nothing else is on it."""
@@ -246,7 +238,7 @@ class _Operations:
             plain = [piece for piece in self.open[:-1] if not piece.attributes][:3]
             yield from (("slash", (piece.start, piece.end, f"</{piece.name}>")) for piece in plain)
             yield "close", *self._places(tags, closing.start, inner)
-            yield "end" if is_end else "close", self._closed(closing.start, inner)
+            yield "close", self._closed(closing.start, inner)
             yield from (("drop", self._removed(piece)) for piece in self.open[:3])
         if is_end:
             return
@@ -261,7 +253,7 @@ class _Operations:
         if self.open:
             yield "name", (closing.start, closing.end, f"</{top.name}>")
         if self.open and not (self.is_urdf and top.name in ATTRIBUTES):
-            yield "tag", self._named(top.start, top.name, closing.name)
+            yield "tag", self._named(top, closing.name)
 
     def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Iterator[Change]:
         """Yield the closing of what is open before the first tags that may not be in it, as the format or the indentation tells."""
@@ -316,11 +308,10 @@ class _Operations:
             yield "version", (piece.start, end, _XML)
         is_leaf = not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
         is_empty = "/" in tail or "\\" in tail or is_leaf
-        blank = " " if tail[:1].isspace() and tail.strip() else ""
         forms = [f"</{name}>"] if slash else []
         for pairs in () if slash else _attributes(name, rest):
             values = "".join(f' {key}="{value}"' for key, value in pairs.items())
-            forms += [f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty)]
+            forms += [f"<{name}{values}{'/' * empty}>" for empty in (is_empty, not is_empty)]
         yield from ((_said(body, form), (piece.start, end, form)) for form in forms)
 
 
