@@ -12,7 +12,6 @@ _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
 _DECLARATIONS = re.compile(r"\ufeff?\s*(?:<\?[^<>]*>\s*)*")  # what TinyXML2 accepts before one
-_NO_NUMBERS = re.compile(r"[^-+0-9.,eE\s]")
 
 
 class Piece(NamedTuple):
@@ -75,7 +74,7 @@ def scan(text: str, rules: Rules, mark: Mark | None = None, limit: int | None = 
         why, wrong = _why(text, mark, piece, rules)
         pieces += [piece] if wrong is piece else []
         if rules.is_urdf and mark.opened and wrong is piece:
-            faults += _faults(piece, mark.opened[0].name, text[mark.position : piece.start])
+            faults += _faults(piece, mark.opened[0].name) + bool(text[mark.position : piece.start].strip())
         if why:
             return Scan(pieces, marks, why, wrong, min(wrong.start if wrong.at is None else wrong.at, limit), faults)
         outer = mark.opened[1] if mark.opened and piece.form == "close" else mark
@@ -107,7 +106,8 @@ def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]
     elif piece.name == "<?" and not text.startswith("<?xml-", piece.start):
         before = text[: piece.start]
         is_first = before in ("", "\ufeff") if rules.is_strict else _DECLARATIONS.fullmatch(before)
-        why = "" if is_first else "misplaced"
+        is_right = not rules.is_strict or "<" not in text[piece.start + 1 : piece.end]
+        why = "misplaced" if not is_first else "" if is_right else "version"
     elif piece.form == "close":
         why = "close" if piece.name != parent else ""
     elif piece.form != "other" and not parent and mark.is_late:
@@ -137,20 +137,16 @@ def _piece(text: str, position: int, rules: Rules) -> Piece:
     return Piece(start, end, tag.name, tag.form, notes[0] if notes and rules.is_strict else None, tag.attributes)
 
 
-def _faults(piece: Piece, parent: str, before: str) -> int:
-    """Return what urdfdom does not know, misses, or cannot read as numbers in a piece in an element, and text before it."""
-    faults = int(parent in CHILDREN and bool(before.strip()))
-    if parent in ATTRIBUTES and piece.form in ("open", "empty"):
-        faults += (parent != "robot" or piece.name in ATTRIBUTES) and piece.name not in CHILDREN.get(parent, ())
-        faults += sum(key not in piece.attributes for key in REQUIRED.get(piece.name, ()))
-        faults += sum(not _is_right(piece.name, *pair) for pair in piece.attributes.items())
-    return faults
-
-
-def _is_right(tag: str, key: str, value: str) -> bool:
-    parts = PARTS.get(key, ())
-    is_read = not parts or "$" in value or (len(value.split()) == len(parts) and not _NO_NUMBERS.search(value))
-    return tag not in ATTRIBUTES or ((key in ATTRIBUTES[tag] or ":" in key) and is_read)
+def _faults(piece: Piece, parent: str) -> int:
+    """Return what urdfdom does not know, misses, or cannot read as numbers in a tag in an element."""
+    if parent not in ATTRIBUTES or piece.form not in ("open", "empty"):
+        return 0
+    known = ATTRIBUTES.get(piece.name, piece.attributes)
+    faults = sum(key not in piece.attributes for key in REQUIRED.get(piece.name, ()))
+    for key, value in piece.attributes.items():
+        is_number = bool(PARTS.get(key)) and "$" not in value
+        faults += (key not in known and ":" not in key) or (is_number and len(value.split()) != len(PARTS[key]))
+    return faults + (piece.name not in CHILDREN.get(parent, ()) and (parent != "robot" or piece.name in ATTRIBUTES))
 
 
 def remaining(text: str, *, is_urdf: bool = False) -> int:

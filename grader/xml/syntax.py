@@ -103,16 +103,14 @@ class _Search:
     def steps(self, text: str) -> Iterator[list[Way]]:
         """Yield the ways to bring the parser further, the best first, until the text can be read."""
         for _ in range(_MAX_ERRORS):
-            every = (self._ways(text, rules) for rules in dict.fromkeys((self.rules, self.rules._replace(is_urdf=False))))
-            ways = next(filter(None, every), None)
-            if ways is None:
+            if not (ways := self._ways(text)):
                 return
             yield ways
             text = ways[0].after
 
-    def _ways(self, text: str, rules: Rules) -> list[Way]:
+    def _ways(self, text: str) -> list[Way]:
         self.left -= len(text)
-        stop = scan(text, rules)
+        stop = scan(text, self.rules)
         if not stop.why or self.left < 0:
             return []
         found: dict[str, tuple[tuple[int, bool, int], Way]] = {}
@@ -120,7 +118,7 @@ class _Search:
         for stage in (operations.likely(), operations.characters()):
             for name, *changes in islice(stage, _MAX_TRIES):
                 way = _way(text, name, changes)
-                rank = self._rank(text, stop, rules, way) if self.left > 0 and way.after not in found else None
+                rank = self._rank(text, stop, way) if self.left > 0 and way.after not in found else None
                 if rank is not None:
                     found[way.after] = rank, way
             if any(not faults for (_, _, faults), _ in found.values()):
@@ -128,14 +126,14 @@ class _Search:
         ways = [way for _, way in sorted(found.values(), key=lambda pair: pair[0])]
         return ways[:_MAX_WAYS] + [way for way in ways[_MAX_WAYS:] if way.name in _LOSSY][:1]
 
-    def _rank(self, text: str, stop: Scan, rules: Rules, way: Way) -> tuple[int, bool, int] | None:
+    def _rank(self, text: str, stop: Scan, way: Way) -> tuple[int, bool, int] | None:
         """Return how far the parser is from the end, whether text is lost, and the faults for urdfdom; None if no further."""
         if way.after == text:
             return None
         mark = next((mark for mark in reversed(stop.marks) if mark.position <= way.changes[0][0]), Mark())
         limit = min(stop.at + _WINDOW + max(len(way.after) - len(text), 0), len(way.after) + 1)
         self.left -= limit - mark.position
-        after = scan(way.after, rules, mark, limit)
+        after = scan(way.after, self.rules, mark, limit)
         if len(way.after) - after.at >= len(text) - stop.at:
             return None
         return len(way.after) - after.at if after.at < limit else -1, way.name in _LOSSY, after.faults
@@ -193,11 +191,10 @@ class _Operations:
             yield "text", (start, min(end, wrong.end), "")
 
     def characters(self) -> Iterator[tuple[str, *tuple[Change, ...]]]:
-        """Yield the insertion or deletion of one character near the error, and the removal of what is wrong."""
+        """Yield the insertion or deletion of one character near the error."""
         wrong, text = self.stop.wrong, self.text
         if wrong.form not in ("open", "close", "empty"):
             return
-        yield "text", (wrong.start, wrong.end, "")
         for at, old in enumerate(text[wrong.start : wrong.end + 1], wrong.start):
             for new in " " if old.isalnum() and text[at - 1].isalnum() else ('"', ">", "/>", "<", "=", "/", "'", " "):
                 yield _said("", new), (at, at, new)
@@ -235,11 +232,11 @@ class _Operations:
         inner = self.open if is_end else self.open[: names.index(closing.name)] if closing.name in names else []
         if inner:
             yield "+/", (top.end - 1, top.end, "/>")
-            plain = [piece for piece in self.open[:-1] if not piece.attributes][:3]
-            yield from (("slash", (piece.start, piece.end, f"</{piece.name}>")) for piece in plain)
+            if not top.attributes:
+                yield "slash", (top.start, top.end, f"</{top.name}>")
             yield "close", *self._places(tags, closing.start, inner)
             yield "close", self._closed(closing.start, inner)
-            yield from (("drop", self._removed(piece)) for piece in self.open[:3])
+            yield "drop", self._removed(top)
         if is_end:
             return
         last = self.stop.marks[-1].opened
@@ -279,7 +276,7 @@ class _Operations:
         return not is_first or markup.indentation(self.text, outer.start) < indent
 
     def _comment(self, piece: Piece) -> Iterator[tuple[str, *tuple[Change, ...]]]:
-        """Yield the ends of a comment: what looks like one, the end of its line, before the next tag; or without -- in it."""
+        """Yield the ends of a comment: what looks like one, or before the next tag; or without -- in it."""
         text, start, end = self.text, piece.start + 4, piece.end if piece.at is not None else piece.end - 3
         limit = text.find("<", start) if text.find("<", start) >= 0 else len(text)
         if piece.at is None and limit > end:
@@ -287,9 +284,8 @@ class _Operations:
             yield "comment", *((start + dash.start(), start + dash.end(), "-") for dash in dashes)
         if near := _NEAR.search(text, start, min(limit, start + _MAX_LOOKED)):
             yield "comment", (*near.span(), "-->")
-        for stop in (text.find("\n", start, limit), limit):
-            at = len(text[:stop].rstrip())
-            yield "comment", (at, at, " -->" if stop >= 0 else "")
+        last = len(text[:limit].rstrip())
+        yield "comment", (last, last, " -->")
 
     def _rewritten(self, piece: Piece) -> Iterator[tuple[str, *tuple[Change, ...]]]:
         """Yield the ways to write a malformed tag with the words that it has."""
@@ -308,10 +304,11 @@ class _Operations:
             yield "version", (piece.start, end, _XML)
         is_leaf = not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
         is_empty = "/" in tail or "\\" in tail or is_leaf
+        blank = " " if tail[:1].isspace() and tail.strip() else ""
         forms = [f"</{name}>"] if slash else []
         for pairs in () if slash else _attributes(name, rest):
             values = "".join(f' {key}="{value}"' for key, value in pairs.items())
-            forms += [f"<{name}{values}{'/' * empty}>" for empty in (is_empty, not is_empty)]
+            forms += [f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty)]
         yield from ((_said(body, form), (piece.start, end, form)) for form in forms)
 
 
