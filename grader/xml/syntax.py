@@ -123,8 +123,7 @@ class _Search:
                     found[way.after] = rank, way
             if any(not faults for (_, _, faults), _ in found.values()):
                 break
-        ways = [way for _, way in sorted(found.values(), key=lambda pair: pair[0])]
-        return ways[:_MAX_WAYS] + [way for way in ways[_MAX_WAYS:] if way.name in _LOSSY][:1]
+        return [way for _, way in sorted(found.values(), key=lambda pair: pair[0])][:_MAX_WAYS]
 
     def _rank(self, text: str, stop: Scan, way: Way) -> tuple[int, bool, int] | None:
         """Return how far the parser is from the end, whether text is lost, and the faults for urdfdom; None if no further."""
@@ -305,11 +304,10 @@ class _Operations:
         is_leaf = not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
         is_empty = "/" in tail or "\\" in tail or is_leaf
         blank = " " if tail[:1].isspace() and tail.strip() else ""
-        forms = [f"</{name}>"] if slash else []
-        for pairs in () if slash else _attributes(name, rest):
-            values = "".join(f' {key}="{value}"' for key, value in pairs.items())
-            forms += [f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty)]
-        yield from ((_said(body, form), (piece.start, end, form)) for form in forms)
+        values = "".join(f' {key}="{value}"' for key, value in _attributes(name, rest).items())
+        forms = (f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty))
+        for form in [f"</{name}>"] if slash else forms:
+            yield _said(body, form), (piece.start, end, form)
 
 
 def _said(old: str, new: str) -> str:
@@ -321,22 +319,19 @@ def _said(old: str, new: str) -> str:
     return next((key for key in _WAYS if changed.get(key[0], {}).keys() & set(key[1:])), "tag")
 
 
-def _attributes(tag: str, rest: str) -> Iterator[dict[str, str]]:
-    """Yield the attributes that the text after the name of a tag may stand for: one that is repeated is renamed, or dropped."""
+def _attributes(tag: str, rest: str) -> dict[str, str]:
+    """Return the attributes that the text after the name of a tag may stand for: one that is repeated is renamed."""
     known = list(TAGS[tag if tag in TAGS else closest(tag, TAGS) or "geometry"].attributes)
     words = "|".join(map(re.escape, known)) or r"[A-Za-z_][\w:.\-]*"
     key = re.compile(rf"(?<![\w:.\-])([A-Za-z_][\w:.\-]*)?\s*=+\s*|(?<!\S)({words})\s*:?\s*(?=[{_QUOTES}])")
-    keys = list(key.finditer(rest)) or list(re.finditer(rf"\b({words})()\s+", rest) if known else ())
-    spans = [(found[1] or found[2] or "", found.start(), found.end()) for found in keys] or [("", 0, 0)]
+    spans = [(found[1] or found[2] or "", found.start(), found.end()) for found in key.finditer(rest)] or [("", 0, 0)]
     ends = [*(start for _, start, _ in spans[1:]), len(rest)]
     pairs = [(name, _value(rest[start:end])) for (name, _, start), end in zip(spans, ends, strict=True)]
     free = [name for name in known if name not in [name for name, _ in pairs]]
     named: dict[str, str] = {}
-    for name, value in pairs if keys or pairs[0][1] else ():
+    for name, value in pairs if rest.strip() else ():
         named[name if name and name not in named else free.pop(0) if free else name or "name"] = value
-    yield named
-    if len({name for name, _ in pairs}) < len(pairs):
-        yield dict(reversed(pairs))
+    return named
 
 
 def _value(text: str) -> str:
