@@ -114,8 +114,6 @@ def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]
         why = "second" if rules.is_strict or (rules.is_urdf and piece.name in ATTRIBUTES) else ""
     elif piece.form != "other" and not parent and rules.is_urdf and piece.name != "robot":
         why = "root"
-    elif rules.is_strict and (prefix := piece.name.rpartition(":")[0]):
-        why = "" if re.compile(rf"xmlns:{re.escape(prefix)}\s*=").search(text, 0, piece.end) else "prefix"
     return why, piece
 
 

@@ -56,7 +56,6 @@ _WAYS = {
     "version": ("a malformed XML declaration", f"write {_XML}"),
     "misplaced": ("an XML declaration that is not at the top", "remove the XML declaration"),
     "reference": ("an & that is not escaped", "write &amp; for &"),
-    "prefix": ("the namespace of xacro is missing", "declare xmlns:xacro"),
 }
 
 _LOSSY = ("drop", "text")
@@ -174,9 +173,6 @@ class _Operations:
             yield "+<", (start, start, "<")
         elif why == "reference":
             yield "reference", (start, start + 1, "&amp;")
-        elif why == "prefix":
-            at = markup.name_end(text, (tags or [wrong])[0].start)
-            yield "prefix", (at, at, ' xmlns:xacro="http://www.ros.org/wiki/xacro"')
         elif why == "misplaced":
             yield "misplaced", self._removed(wrong)
             yield "text", (int(text.startswith("\ufeff")), start, "")
@@ -238,17 +234,15 @@ class _Operations:
             yield "drop", self._removed(top)
         if is_end:
             return
-        last = self.stop.marks[-1].opened
-        inside = [piece for piece, mark in zip(self.stop.pieces, self.stop.marks, strict=False) if mark.opened is last][::-1]
-        inside = [piece for piece in inside if piece.form in ("open", "empty")]
-        empty = [piece for piece in inside if piece.form == "empty" and piece.name == closing.name]
-        yield from (("begin", self._begun(piece)) for piece in empty[:1])
-        first = list(takewhile(lambda piece: piece.name in CHILDREN.get(closing.name, ()), inside))
-        yield from (("open", (piece.start, piece.start, f"<{closing.name}>")) for piece in first[-1:])
+        last, every = self.stop.marks[-1].opened, zip(self.stop.pieces, self.stop.marks, strict=True)
+        inside = [piece for piece, mark in every if mark.opened is last and piece.form in ("open", "empty")][::-1]
+        for piece in [piece for piece in inside if piece.form == "empty" and piece.name == closing.name][:1]:
+            yield "begin", self._begun(piece)
+        for piece in list(takewhile(lambda piece: piece.name in CHILDREN.get(closing.name, ()), inside))[-1:]:
+            yield "open", (piece.start, piece.start, f"<{closing.name}>")
         yield "extra", self._removed(closing)
         if self.open:
             yield "name", (closing.start, closing.end, f"</{top.name}>")
-        if self.open and not (self.is_urdf and top.name in ATTRIBUTES):
             yield "tag", self._named(top, closing.name)
 
     def _places(self, tags: list[Piece], end: int, inner: list[Piece]) -> Iterator[Change]:
@@ -299,10 +293,7 @@ class _Operations:
         (slash, name), inner = head.groups(), plain[head.end() :]
         rest = inner.rstrip("?\\/> \t\r\n")
         tail = inner[len(rest) :]
-        if name.lower() == "xml" and not slash:
-            yield "version", (piece.start, end, _XML)
-        is_leaf = not body.endswith(">") and name in ATTRIBUTES and name not in CHILDREN
-        is_empty = "/" in tail or "\\" in tail or is_leaf
+        is_empty = "/" in tail or "\\" in tail
         blank = " " if tail[:1].isspace() and tail.strip() else ""
         values = "".join(f' {key}="{value}"' for key, value in _attributes(name, rest).items())
         forms = (f"<{name}{values}{blank}{'/' * empty}>" for empty in (is_empty, not is_empty))
