@@ -104,8 +104,8 @@ def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
         why = "comment" if inner in text[piece.start + 4 : piece.end - 3] else ""
     elif piece.name == "<?" and not text.startswith("<?xml-", piece.start):
-        before = text[: piece.start]
-        is_first = before in ("", "\ufeff") if rules.is_strict else _DECLARATIONS.fullmatch(before)
+        head = text[: piece.start]
+        is_first = head in ("", "\ufeff") if rules.is_strict else _DECLARATIONS.fullmatch(head)
         is_right = not rules.is_strict or "<" not in text[piece.start + 1 : piece.end]
         why = "misplaced" if not is_first else "" if is_right else "version"
     elif piece.form == "close":

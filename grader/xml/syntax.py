@@ -79,7 +79,9 @@ def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Pro
         yield _joined(source, [ways[0] for ways in first])
     others = ((index, way) for index in reversed(range(len(first))) for way in first[index][1:])
     for index, way in islice(others, _MAX_FOUND):
-        yield _joined(source, [*(ways[0] for ways in first[:index]), way, *(ways[0] for ways in search.steps(way.after))])
+        yield _joined(
+            source, [*(ways[0] for ways in first[:index]), way, *(ways[0] for ways in search.steps(way.after))]
+        )
 
 
 def _joined(source: Source, ways: list[Way]) -> Proposal:
@@ -241,7 +243,7 @@ class _Operations:
         for piece in list(takewhile(lambda piece: piece.name in CHILDREN.get(closing.name, ()), inside))[-1:]:
             yield "open", (piece.start, piece.start, f"<{closing.name}>")
         yield "extra", self._removed(closing)
-        if self.open:
+        if self.open and not inner:
             yield "name", (closing.start, closing.end, f"</{top.name}>")
             yield "tag", self._named(top, closing.name)
 
@@ -293,6 +295,8 @@ class _Operations:
         (slash, name), inner = head.groups(), plain[head.end() :]
         rest = inner.rstrip("?\\/> \t\r\n")
         tail = inner[len(rest) :]
+        if name.lower() == "xml" and not slash:
+            yield "version", (piece.start, end, _XML)
         is_empty = "/" in tail or "\\" in tail
         blank = " " if tail[:1].isspace() and tail.strip() else ""
         values = "".join(f' {key}="{value}"' for key, value in _attributes(name, rest).items())

@@ -113,7 +113,7 @@ def test_one_mistake_in_many_places_is_one_hint(tmp_path: Path) -> None:
     text = REFERENCE.replace('xyz="0 0 0.1"', 'xyz="0, 0, 0.1"').replace('xyz="0 0 0.025"', 'xyz="0, 0, 0.025"')
     (found,) = searched(written(tmp_path, text)).found
     assert [edit.new for edit in found.edits] == ['xyz="0 0 0.1"', 'xyz="0 0 0.025"', 'xyz="0 0 0.1"']
-    assert found.proposal.said == "separate the numbers by spaces"
+    assert found.proposal.action == "separate the numbers by spaces"
 
 
 def test_joint_of_each_link_is_a_hint_of_its_own() -> None:
