@@ -16,6 +16,7 @@ from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 _MAX_ERRORS = 40  # of one text
 _MAX_TRIES = 400  # at one error
 _MAX_WAYS = 4  # at one error that grading decides among
+_MAX_KEPT = 40  # at one error, each with its text
 _MAX_FOUND = 8
 _MAX_READ = 3_000_000  # characters
 _MAX_LOOKED = 2_000  # characters of a comment
@@ -122,6 +123,8 @@ class _Search:
                 rank = self._rank(text, stop, way) if self.left > 0 and way.after not in found else None
                 if rank is not None:
                     found[way.after] = rank, way
+                if len(found) > _MAX_KEPT:
+                    del found[max(reversed(found), key=lambda after: found[after][0])]
             if any(not faults for (_, _, faults), _ in found.values()):
                 break
         return [way for _, way in sorted(found.values(), key=lambda pair: pair[0])][:_MAX_WAYS]
