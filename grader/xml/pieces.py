@@ -11,7 +11,6 @@ _ENDS = {"<!--": "-->", "<![CDATA[": "]]>", "<?": "?>", "<!": ">"}
 _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
-_DECLARATIONS = re.compile(r"\ufeff?\s*(?:<\?[^<>]*>\s*)*")  # what TinyXML2 accepts before one
 
 
 class Piece(NamedTuple):
@@ -104,8 +103,8 @@ def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
         why = "comment" if inner in text[piece.start + 4 : piece.end - 3] else ""
     elif piece.name == "<?" and not text.startswith("<?xml-", piece.start):
-        head = text[: piece.start]
-        is_first = head in ("", "\ufeff") if rules.is_strict else _DECLARATIONS.fullmatch(head)
+        is_blank = start == piece.start and (not mark.position or text.endswith("?>", 0, mark.position))
+        is_first = piece.start == text.startswith("\ufeff") if rules.is_strict else is_blank
         is_right = not rules.is_strict or "<" not in text[piece.start + 1 : piece.end]
         why = "misplaced" if not is_first else "" if is_right else "version"
     elif piece.form == "close":
