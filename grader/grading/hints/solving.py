@@ -176,13 +176,14 @@ class Solver:
 
     def _column(self, ask: Callable[[Values], Values | None], values: Values, index: int) -> Values | None:
         """Return how what is measured changes with one of the values; None where it cannot be told."""
-        step = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
-        changed = tuple(value + step if other == index else value for other, value in enumerate(values))
-        before, after = ask(values), ask(changed)
-        if before is None or after is None:
-            return None
-        column = tuple((b - a) / step for a, b in zip(before, after, strict=True))
-        return column if any(abs(value) > 1e-6 for value in column) else tuple(0.0 for _ in column)
+        size = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
+        before = ask(values)
+        for step in (size, -size):  # a channel of a colour ends at 1
+            after = ask(tuple(value + step if other == index else value for other, value in enumerate(values)))
+            if before is not None and after is not None:
+                column = tuple((b - a) / step for a, b in zip(before, after, strict=True))
+                return column if any(abs(value) > 1e-6 for value in column) else tuple(0.0 for _ in column)
+        return None
 
     def _residual(self, slot: Slot, values: Values) -> Values | None:
         sets = self._difference.with_twins(slot.sets(values, _precisely))
