@@ -366,9 +366,7 @@ def test_a_single_urdf_is_graded_on_its_own_part() -> None:
     report = grade(LAB, single)
     assert report.parts == ("task1",)
     assert (report.score, report.max_score, report.pending) == (Decimal(70), Decimal(70), Decimal(0))
-    assert report.notes == (
-        "only task1 is graded: task2, task3 and questions need the whole folder",
-    )
+    assert report.notes == ("only task1 is graded: task2, task3 and questions need the whole folder",)
     assert grade(LAB, single, ["task1"]).notes == ()
 
 

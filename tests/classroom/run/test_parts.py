@@ -147,8 +147,6 @@ def test_a_single_urdf_is_graded_on_what_it_can_meet(top: Path) -> None:
     done = grader("grade", top / "class/birch.urdf", "--format", "json")
     report = json.loads(done.stdout)
     assert (report["parts"], report["score"], report["max_score"]) == (["task1"], 62, 70)
-    assert report["notes"] == [
-        "only task1 is graded: task2, task3 and questions need the whole folder"
-    ]
+    assert report["notes"] == ["only task1 is graded: task2, task3 and questions need the whole folder"]
     done = grader("grade", top / "class/birch.urdf", "--part", "task2")
     assert (done.returncode, "task2 needs more than a URDF" in done.stderr) == (2, True)
