@@ -1,30 +1,20 @@
 """Choose the edit of a state that makes a failed criterion pass: a piece of the difference, a solved number, or few pieces together."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from decimal import Decimal
-from functools import cached_property
 from importlib import import_module
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
-from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
-from grader.grading.hints.model import Model
+from grader.grading.hints.look import Look
 from grader.grading.hints.solving import Solver, slots
-from grader.grading.hints.targets import Targets, targets_of
-from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, joined
-from grader.grading.subjects import named_links
+from grader.grading.hints.trials import Edits, Results, State, Trials, joined
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.difference import Difference
-from grader.robot.edits.draft import Draft, Set
-from grader.robot.edits.numbers import values_of, written
-from grader.robot.edits.pieces import CONVENTION, KNOWN, SOLVED, STRUCTURE, Piece
-from grader.robot.kinematics import Configuration
-from grader.submission.raw_xacro import raw_xacro_proposals
-from grader.submission.urdf import Read
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -41,133 +31,6 @@ class Proven(NamedTuple):
 
     proposal: Proposal
     gain: Decimal
-
-
-class Look:
-    """A state that is looked at: its pieces, and the lost criteria that pass with each."""
-
-    def __init__(
-        self, trials: Trials, state: State, reference: Draft | None, package: "Callable[[], Package | None]"
-    ) -> None:
-        self.trials, self.state, self.reference = trials, state, reference
-        self._package = package
-        urdf = state.submission.urdf
-        self.draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
-        self._passing: dict[int, frozenset[str]] = {}
-        self._kept: list[Piece] = []  # whose ids are known
-
-    @cached_property
-    def model(self) -> Model:
-        """The robot, to ask what criteria measure."""
-        assert self.draft is not None
-        return Model(self.trials, self.state, self.draft)
-
-    @cached_property
-    def difference(self) -> Difference:
-        """The robot beside the reference's."""
-        assert self.draft is not None
-        return Difference(self.draft, self.reference or self.draft)
-
-    @cached_property
-    def pieces(self) -> list[Piece]:
-        """The difference to the reference."""
-        if self.draft is None:
-            return []
-        with self.trials.isolated():
-            found = [
-                Piece(it.cause, it.action, "", (), it.edits)
-                for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)
-            ]
-            return [*found, *self.difference.pieces]
-        return []
-
-    def with_links(self, criterion: Criterion) -> Criterion:
-        """Return a criterion with the names of the links that selectors mean, where each means one."""
-        if criterion.has_selectors and self.draft is not None:
-            with suppress(MissingElement, NotDecided):
-                return replace(criterion, arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
-        return criterion
-
-    def targets(self, criterion: Criterion) -> Targets:
-        """Return the links on which a criterion depends."""
-        if self.draft is None:
-            return Targets((), ())
-        return targets_of([self.with_links(criterion)], self.draft.robot, (self.reference or self.draft).robot)
-
-    def relevant(self, criterion: Criterion) -> list[Piece]:
-        """Return the pieces that may decide a criterion, the most plausible first: those where its failure is."""
-        if criterion.check.subject in ("package", "submission"):
-            return []
-        place = self.state.results[criterion.id].outcome.location
-        links = {*(targets := self.targets(criterion)).shown, *targets.moved, ""}
-        is_all = criterion.check.subject == "urdf" or len(links) == 1
-        found = [piece for piece in self.pieces if is_all or piece.link in links]
-        at = {id(piece): self.draft.line(piece.element) for piece in found if piece.element is not None and self.draft}
-        near = [abs(at.get(id(piece), 0) - place.line) if place is not None else 0 for piece in found]
-        order = sorted(range(len(found)), key=lambda index: (found[index].rank, near[index] > 0, index))
-        return [found[index] for index in order]
-
-    def passing(self, piece: Piece, wanted: Sequence[str]) -> frozenset[str]:
-        """Return the wanted criteria that pass with a piece, as far as a quick look tells."""
-        if id(piece) not in self._passing:
-            self._kept.append(piece)
-            if piece.sets:
-                results = self.model.results(piece.sets, wanted).values()
-                found = frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
-            else:
-                found = self.trials.passing(self.state, piece.edits, wanted)
-            self._passing[id(piece)] = found
-        return self._passing[id(piece)]
-
-    def shrunk(self, piece: Piece, passes: frozenset[str]) -> Piece:
-        """Return a piece without changes of numbers that nothing needs."""
-        if not piece.sets or piece.rank == CONVENTION or piece.is_mistake:
-            return piece
-        first = piece.sets[0]
-        own = [first, *self._others(piece)]
-        for one in [*own] if len(own) > 1 else ():
-            fewer = [other for other in own if other is not one]
-            smaller = self.difference.of_sets(fewer, piece.rank) if fewer else piece
-            if fewer and passes <= self.passing(smaller, [*passes]):
-                piece, own = smaller, fewer
-        first, element = own[0], own[0].element
-        if len(own) > 1:
-            return piece
-        old, new = values_of(element.get(first.attribute) if element is not None else None), values_of(first.value)
-        off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
-        if len(old) != len(new) or len(off) < 2:
-            return piece
-        for index in off:
-            kept = tuple(old[index] if other == index else value for other, value in enumerate(new))
-            smaller = (
-                self.difference.of_sets([first._replace(value=written(kept))], piece.rank) if kept != old else piece
-            )
-            if kept != old and passes <= self.passing(smaller, [*passes]):
-                piece, new = smaller, kept
-        return piece
-
-    def _others(self, piece: Piece) -> list[Set]:
-        first = piece.sets[0]
-        return [one for one in piece.sets[1:] if one.owner is first.owner and one.tag == first.tag]
-
-    def proposals(self, piece: Piece) -> Iterator[Proposal]:
-        """Yield the edits of the text that a piece stands for."""
-        assert self.draft is not None
-        for way, edits in enumerate(self.draft.ways(piece.sets) if piece.sets else [piece.edits]):
-            if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
-
-    def of_package(self, criterion: Criterion) -> list[Proposal]:
-        """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""
-        found: list[Proposal] = []
-        if criterion.check.subject not in ("urdf", "robot"):
-            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
-
-            wanted = [(criterion.check.looks_at, criterion.arguments)]
-            found += package_proposals(self.state.submission.package, self._package(), wanted, self.trials.isolated)
-        with self.trials.isolated():
-            found += raw_xacro_proposals(self.state.submission) if criterion.check.subject == "urdf" else ()
-        return found
 
 
 class Choice:
@@ -374,6 +237,3 @@ def _score(results: Results) -> Decimal:
 
 def _lost(results: Results) -> Decimal:
     return sum((result.criterion.points for result in results.values() if result.is_lost), Decimal(0))
-
-
-__all__ = ["Choice", "NoTrialsLeft"]
