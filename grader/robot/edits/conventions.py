@@ -33,7 +33,7 @@ def conventions(difference: Difference) -> Iterator[Piece]:
             is_turn = moved.translation == (0.0, 0.0, 0.0)
             what = "the directions of x and y" if is_turn else "the origin"
             own = draft.joint_of(link.name)
-            before = _placed(own, IDENTITY, moved.inverse()) if own is not None else ()
+            before = _placed(own, IDENTITY, moved.inverse()) if own is not None and not is_turn else ()
             sets = (*before, *_moved(draft, link.name, moved))
             yield Piece(
                 f"{what} of the frame {link.name!r}",
