@@ -54,7 +54,7 @@ def test_frames_without_the_prefix(tmp_path: Path) -> None:
         "the Fixed Frame is 'base_footprint'; it should be 'robot1/base_footprint', because the frame_prefix of "
         "robot_state_publisher is 'robot1/'"
     )
-    assert [edit["new"] for edit in frame["hints"][0]["edits"]] == ["robot1/base_footprint"]
+    assert [(edit["old"], edit["new"]) for edit in frame["hints"][0]["edits"]] == [("", "robot1/")]
     assert model["message"] == (
         "the TF Prefix of the RobotModel display is '', so it looks for frames like 'LINK'; robot_state_publisher "
         "publishes 'robot1/LINK'"

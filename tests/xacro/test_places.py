@@ -74,7 +74,7 @@ def test_reports_name_the_calls(tmp_path: Path) -> None:
     (tmp_path / "my_robot.urdf.xacro").write_text(text)
     column = text.split("\n")[2].index("size=") + 1
     place = f"my_robot.urdf.xacro:3:{column}, in macro wheel, called at my_robot.urdf.xacro:4"
-    for options in ((), ("--format", "markdown")):
+    for options in (("--verbose",), ("--format", "markdown")):
         done = run(("grade", tmp_path / "my_robot.urdf.xacro", *options))
         assert place in " ".join(done.stdout.decode().split()), options
     problem = json.loads(run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "json")).stdout)["problems"][0]

@@ -132,7 +132,10 @@ class Choice:
         module, _, name = criterion.check.suggests.partition(":")
         if look.draft is not None and name:
             make = getattr(import_module(module), name)
-            arguments = look.with_links(criterion).arguments
+            failed = [look.with_links(it) for it in self._trials.rubric.criteria if it.id in lost]
+            own = look.with_links(criterion).arguments
+            others = [it.arguments for it in failed if it.arguments.get("link") == own.get("link")]
+            arguments = {key: value for given in (*others, own) for key, value in given.items()}
             yield from self._passing(look, make(look.difference, arguments), criterion.id, lost)
 
     def _package_edits(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
@@ -150,7 +153,8 @@ class Choice:
     def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
         """Yield two edits: the first makes a criterion pass and others fail, which the second repairs."""
         name = criterion.id
-        firsts = [piece for piece in look.relevant(criterion) if name in look.passing(piece, lost)]
+        plausible = [piece for piece in look.relevant(criterion) if piece.rank < STRUCTURE]
+        firsts = [piece for piece in plausible if name in look.passing(piece, lost)]
         for first in islice((it for piece in firsts for it in islice(look.proposals(piece), 1)), _MAX_FIRST):
             middle = self._trials.applied(look.state, first.edits)
             if middle is None or not middle.lost:

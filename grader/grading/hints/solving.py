@@ -17,6 +17,7 @@ from grader.xml.urdf_format import TAGS
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
 _STEP = 1e-4
 _ROUNDS = 6
+_FLAT, _WILD = 1e-6, 1e3  # slopes that are none, and that are a leap
 _DIGITS = range(2, 7)
 _SHORT = 3  # decimals of a number that a person would write
 _MAX_SLOTS = 60
@@ -178,12 +179,15 @@ class Solver:
         """Return how what is measured changes with one of the values; None where it cannot be told."""
         size = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
         before = ask(values)
+        found: list[Values] = []
         for step in (size, -size):  # a channel of a colour ends at 1
             after = ask(tuple(value + step if other == index else value for other, value in enumerate(values)))
             if before is not None and after is not None:
-                column = tuple((b - a) / step for a, b in zip(before, after, strict=True))
-                return column if any(abs(value) > 1e-6 for value in column) else tuple(0.0 for _ in column)
-        return None
+                found.append(tuple((b - a) / step for a, b in zip(before, after, strict=True)))
+                if max(map(abs, found[-1])) < _WILD:
+                    break
+        column = min(found, key=lambda column: max(map(abs, column)), default=None)
+        return tuple(value if abs(value) > _FLAT else 0.0 for value in column) if column is not None else None
 
     def _residual(self, slot: Slot, values: Values) -> Values | None:
         sets = self._difference.with_twins(slot.sets(values, _precisely))

@@ -49,13 +49,17 @@ def _inertial(difference: Difference, own: Element, link: Link, mass: float | No
         known = zip(_INERTIA, moments, inertial.inertia, strict=True)
         of_inertia = tuple(Set(element, "inertia", name, number(value)) for name, value, old in known if value != old)
         of_centre = (Set(element, "origin", "xyz", centre),)
+        of_mass = (Set(element, "mass", "value", f"{mass:.6g}"),) if mass not in (None, inertial.mass) else ()
         for sets, what in (
+            (of_mass, "the mass"),
             (of_inertia, "the inertia"),
             (of_centre, "the centre of mass"),
-            (of_inertia + of_centre, "inertia and centre of mass"),
+            ((*of_mass, *of_inertia), "mass and inertia"),
+            ((*of_inertia, *of_centre), "inertia and centre of mass"),
         ):
             action = f"set {what} of {{}} to that of its shapes"
-            yield difference.piece(own, f"{what} of {{}}", action, sets=sets)
+            if sets:
+                yield difference.piece(own, f"{what} of {{}}", action, sets=sets)
 
 
 def _solid(link: Link, mass: float) -> MassProperties | None:

@@ -38,7 +38,7 @@ CLASS = {
     "pine/notes.txt": "I was ill.",
 }
 STUDENTS = {re.split(r"[/.]", path)[0]: path for path in CLASS}
-NEGATE = "negate the roll of the joint of 'right_wheel'"
+NEGATE = "negate the roll of the joint origin of 'right_wheel'"
 HEADING = "Edits that would fix the most\n"
 
 
@@ -126,7 +126,7 @@ def test_a_class_is_grouped_by_the_proven_edit(graded: Path) -> None:
     """Each change with the number of students, the most frequent first, with its diff, its criteria and points."""
     assert section(saved(graded, "stats.txt")) == (
         "  Each edit was tested: the listed criteria pass, and no other criterion fails.\n"
-        "  5 students: negate the roll of the joint of 'right_wheel'\n"
+        "  5 students: negate the roll of the joint origin of 'right_wheel'\n"
         '        - rpy="1.57 0 0"\n'
         '        + rpy="-1.57 0 0"\n'
         "        right-wheel-placed, right-wheel-forward, right-wheel-axis and\n"
@@ -136,7 +136,7 @@ def test_a_class_is_grouped_by_the_proven_edit(graded: Path) -> None:
         '        - xyz="0.15 0 0.2"\n'
         '        + xyz="0.15 0 0.225"\n'
         "        lidar-frame and lidar-on-top pass, +8 points\n"
-        "  1 student: set the colour of the visual of 'base_link' to 0 0.6 0 1\n"
+        "  1 student: set the green of the material color of 'green' to 0.6\n"
         '        - rgba="0 1 0 1"\n'
         '        + rgba="0 0.6 0 1"\n'
         "        base-green passes, +6 points"
@@ -194,7 +194,7 @@ def test_a_moved_class_is_reported(tmp_path: Path) -> None:
     (tmp_path / "class/birch.urdf").unlink()
     done = stats(tmp_path)
     assert [line for line in section(done).splitlines() if "student" in line] == [
-        "  1 student: set the colour of the visual of 'base_link' to 0 0.6 0 1"
+        "  1 student: set the green of the material color of 'green' to 0.6"
     ]
     why = "no hints for 2 submissions, which have changed or moved since the last run: run `grader batch` again"
     assert done.stderr == f"grader: {why}\n"
