@@ -196,7 +196,7 @@ COLLISION = RIGHT[RIGHT.index("    <collision>") : RIGHT.index("  </link>")]
 @pytest.mark.parametrize(
     ("old", "new", "cause"),
     [
-        ('<mass value="2"/>', '<mass value="2000"/>', "the value of the inertial mass of 'arm'"),
+        ('<mass value="2"/>', '<mass value="2000"/>', "the mass of the link 'arm'"),
         ('ixx="0.06125"', 'ixx="0.6125"', "the decimal point of the ixx of the inertial inertia of 'arm'"),
         (
             '<origin xyz="0 0 0.3"/>\n      <mass',

@@ -53,17 +53,18 @@ class Choice:
             lambda: self._passing(look, look.relevant(criterion), name, lost),
             lambda: self._suggested(look, criterion, lost),
             lambda: self._package_edits(look, criterion),
-            lambda: self._repaired(look, criterion, lost),
+            lambda: self._repaired(look, criterion, lost, STRUCTURE),
             lambda: self._solved(look, criterion, lost),
             lambda: self._of_whole(look, criterion, other_frames, lost),
+            lambda: self._repaired(look, criterion, lost, STRUCTURE + 1),
             lambda: self._together(look, criterion),
         )
         best: Proven | None = None
         for number, way in enumerate(ways if is_solving else ways[: _REPAIRED + 1]):
             is_good = best is not None and best.proposal.rank < STRUCTURE
-            if best is not None and is_good and (number != _REPAIRED or not self._is_short(look, best, lost)):
-                continue
             with self._trials.isolated():
+                if best is not None and is_good and (number != _REPAIRED or not self._is_short(look, best, lost)):
+                    continue
                 found = self._best(state, name, way())
                 best = min(filter(None, (best, found)), key=_order, default=None)
         return best.proposal if best is not None else None
@@ -150,10 +151,10 @@ class Choice:
         solver = Solver(look.model, look.difference, criterion.id, look.state.results[criterion.id].outcome)
         yield from self._passing(look, solver.pieces(slots(look.draft, shown, moved)), criterion.id, lost)
 
-    def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
-        """Yield two edits: the first makes a criterion pass and others fail, which the second repairs."""
+    def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str], below: int) -> Iterator[Proposal]:
+        """Yield two edits, the first below a rank: it makes a criterion pass and others fail, which the second repairs."""
         name = criterion.id
-        plausible = [piece for piece in look.relevant(criterion) if piece.rank < STRUCTURE]
+        plausible = [piece for piece in look.relevant(criterion) if piece.rank < below]
         firsts = [piece for piece in plausible if name in look.passing(piece, lost)]
         for first in islice((it for piece in firsts for it in islice(look.proposals(piece), 1)), _MAX_FIRST):
             middle = self._trials.applied(look.state, first.edits)

@@ -18,6 +18,7 @@ from grader.submission.urdf import Read
 Results = Mapping[str, Result]
 Edits = tuple[Edit, ...]
 
+_TEXT_STEPS = 2  # that it costs more to read a text than elements that are changed
 _MAX_STEPS = 3000  # of one submission
 _HARMFUL = ("rejects", "drops", "undetermined")
 _PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
@@ -115,7 +116,7 @@ class Trials:
             return None
 
     def _spend(self, submission: Submission) -> None:
-        self.spend(1 + submission.cost)
+        self.spend(_TEXT_STEPS * (1 + submission.cost))
 
     def spend(self, steps: int) -> None:
         """Charge steps. Raises NoTrialsLeft."""

@@ -131,8 +131,7 @@ def test_a_class_is_grouped_by_the_proven_edit(graded: Path) -> None:
         '        + rpy="-1.57 0 0"\n'
         "        right-wheel-placed, right-wheel-forward, right-wheel-axis and\n"
         "        right-wheel-clear pass, +10 points\n"
-        "  4 students: add half of the length of the cylinder of 'lidar' to z of the\n"
-        "    joint of 'lidar'\n"
+        "  4 students: set z of the joint origin of 'lidar' to 0.225\n"
         '        - xyz="0.15 0 0.2"\n'
         '        + xyz="0.15 0 0.225"\n'
         "        lidar-frame and lidar-on-top pass, +8 points\n"
@@ -212,11 +211,11 @@ def test_text_of_students_is_escaped(tmp_path: Path) -> None:
     """Comments in an element that is replaced neither colour the terminal, nor reverse it, nor command a runner."""
     sneaky = "<!-- [red]\u202e\n::error::x -->"
     text = (ROOT / "submissions/caster-a-cylinder/my_robot.urdf").read_text(encoding="utf-8")
-    at = text.index("<geometry>", text.index('<link name="caster_wheel"')) + len("<geometry>")
-    make(tmp_path / "class", {"ash.urdf": text[:at] + sneaky + text[at:]})
+    at = text.index("/>", text.index("<cylinder", text.index('<link name="caster_wheel"')))
+    make(tmp_path / "class", {"ash.urdf": f"{text[:at]}>{sneaky}</cylinder>{text[at + 2 :]}"})
     batch(tmp_path)
     shown, as_json = section(stats(tmp_path)), stats(tmp_path, "--format", "json").stdout
-    assert "- <geometry><!-- [red]\\u202e" in shown
+    assert "<!-- [red]\\u202e" in shown
     assert not re.search(r"^\s*::", shown, re.MULTILINE)
     for output in (shown, as_json):
         assert "\u202e" not in output
