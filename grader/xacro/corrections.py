@@ -47,8 +47,8 @@ class Corrector:
             if unknown is not None:
                 for edits in self._respelled(refusal.place, refusal.attribute, unknown, counts):
                     yield Correction(edits, _UNKNOWN, "correct the name")
-                yield from self._included(refusal.place, unknown.name)
-                yield from self._defined(refusal.place, unknown, numbers)
+                included = [*self._included(refusal.place, unknown.name)]
+                yield from included or self._defined(refusal.place, unknown, numbers)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
                 yield Correction(
                     self._given(refusal.place, lacking, value),
