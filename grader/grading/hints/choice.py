@@ -10,7 +10,7 @@ from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.look import Look
 from grader.grading.hints.solving import Solver, slots
-from grader.grading.hints.trials import Edits, Results, State, Trials, joined
+from grader.grading.hints.trials import Edits, Results, State, Trials, joined, together
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
-_REPAIRED = 3  # the number of the way by two edits
+_WAYS = 4  # before numbers are solved for
 _MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
@@ -53,20 +53,17 @@ class Choice:
             lambda: self._passing(look, look.relevant(criterion), name, lost),
             lambda: self._suggested(look, criterion, lost),
             lambda: self._package_edits(look, criterion),
-            lambda: self._repaired(look, criterion, lost, STRUCTURE),
+            lambda: self._repaired(look, criterion, lost, SOLVED),
             lambda: self._solved(look, criterion, lost),
             lambda: self._of_whole(look, criterion, other_frames, lost),
-            lambda: self._repaired(look, criterion, lost, STRUCTURE + 1),
+            lambda: self._repaired(look, criterion, lost, STRUCTURE),
             lambda: self._together(look, criterion),
         )
         best: Proven | None = None
-        for number, way in enumerate(ways if is_solving else ways[: _REPAIRED + 1]):
-            is_good = best is not None and best.proposal.rank < STRUCTURE
-            with self._trials.isolated():
-                if best is not None and is_good and (number != _REPAIRED or not self._is_short(look, best, lost)):
-                    continue
-                found = self._best(state, name, way())
-                best = min(filter(None, (best, found)), key=_order, default=None)
+        for way in ways if is_solving else ways[:_WAYS]:
+            if best is None or best.proposal.rank >= STRUCTURE:
+                with self._trials.isolated():
+                    best = min(filter(None, (best, self._best(state, name, way()))), key=_order, default=None)
         return best.proposal if best is not None else None
 
     def convention(self, state: State) -> Proposal | None:
@@ -81,16 +78,6 @@ class Choice:
                 if after is not None and not after.lost:
                     return proposal
         return None
-
-    def _is_short(self, look: Look, best: Proven, lost: Sequence[str]) -> bool:
-        """Return whether an edit leaves another criterion of its link lost, which two edits may gain as well."""
-        after = self._trials.applied(look.state, best.proposal.edits)
-        left = [
-            it
-            for it in self._trials.rubric.criteria
-            if it.id in lost and after is not None and after.results[it.id].is_lost
-        ]
-        return any(best.proposal.link in look.targets(it).moved[:1] for it in left if it.check.subject == "robot")
 
     def _best(self, state: State, name: str, proposals: Iterable[Proposal]) -> Proven | None:
         """Return the proven edit that gains most, of equals the smallest; one that gains all ends the search."""
@@ -151,10 +138,10 @@ class Choice:
         solver = Solver(look.model, look.difference, criterion.id, look.state.results[criterion.id].outcome)
         yield from self._passing(look, solver.pieces(slots(look.draft, shown, moved)), criterion.id, lost)
 
-    def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str], below: int) -> Iterator[Proposal]:
-        """Yield two edits, the first below a rank: it makes a criterion pass and others fail, which the second repairs."""
+    def _repaired(self, look: Look, criterion: Criterion, lost: Sequence[str], rank: int) -> Iterator[Proposal]:
+        """Yield two edits up to a rank: the first makes a criterion pass and others fail, which the second repairs."""
         name = criterion.id
-        plausible = [piece for piece in look.relevant(criterion) if piece.rank < below]
+        plausible = [piece for piece in look.relevant(criterion) if piece.rank <= rank]
         firsts = [piece for piece in plausible if name in look.passing(piece, lost)]
         for first in islice((it for piece in firsts for it in islice(look.proposals(piece), 1)), _MAX_FIRST):
             middle = self._trials.applied(look.state, first.edits)
@@ -164,10 +151,10 @@ class Choice:
             other = Look(self._trials, middle, self._reference, self._package)
             target = next(it for it in self._trials.rubric.criteria if it.id == broken)
             for piece in other.relevant(target):
-                if broken in other.passing(piece, (broken,)):
+                if piece.rank <= rank and broken in other.passing(piece, (broken,)):
                     for second in islice(other.proposals(piece), 1):
                         edits = joined(look.state.submission, first.edits, second.edits)
-                        yield _together(first, second, edits)
+                        yield together([first, second], edits)
 
     def _together(self, look: Look, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the fewest pieces of the difference with which a criterion passes, if they are few."""
@@ -178,12 +165,9 @@ class Choice:
         if len(kept) > _MAX_PLACES:
             self.causes[criterion.id] = list(dict.fromkeys(piece.cause for piece in kept))[:_MAX_PLACES]
         elif len(kept) > 1:
-            proposals = [next(look.proposals(piece), None) for piece in kept]
-            if all(proposals):
-                first, *others = [it for it in proposals if it is not None]
-                for other in others:
-                    first = _together(first, other, (*first.edits, *other.edits))
-                yield first
+            proposals = [it for piece in kept for it in islice(look.proposals(piece), 1)]
+            if len(proposals) == len(kept):
+                yield together(proposals, tuple(edit for it in proposals for edit in it.edits))
 
     def _fewest(self, look: Look, pieces: list[Piece], name: str) -> list[Piece]:
         """Return the pieces that a criterion needs to pass, of those that make it pass all together; none if these do not."""
@@ -227,13 +211,6 @@ def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:
             found.append(piece)
             seen |= keys
     return found
-
-
-def _together(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
-    leading = tuple(sorted(dict.fromkeys(edits), key=lambda edit: edit not in first.edits))
-    return Proposal(
-        leading, f"{first.cause} and {second.cause}", f"{first.action} and {second.action}", first.link, SOLVED
-    )
 
 
 def _score(results: Results) -> Decimal:

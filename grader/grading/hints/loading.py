@@ -1,12 +1,12 @@
 """Repair a URDF step by step until ROS 2 loads it: each step makes ROS 2 read on, or reject or drop less."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.trials import Edits, State, Trials, gained, joined
+from grader.grading.hints.trials import Edits, State, Trials, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft
@@ -37,22 +37,6 @@ class Step(NamedTuple):
     after: State
 
 
-class Hint(NamedTuple):
-    """A repair that is proven, and the criteria that pass with it."""
-
-    proposal: Proposal
-    edits: Edits
-    gains: Mapping[str, Decimal]
-    is_union: bool = False  # whether it is all others together
-
-
-class Repair(NamedTuple):
-    """The proven repairs of a URDF, and the state after all."""
-
-    hints: list[Hint]
-    final: State
-
-
 def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
@@ -69,31 +53,18 @@ def _loose(robot: Robot | None) -> int:
     return len(robot.links) - len({joint.child for joint in robot.joints}) if robot is not None else 0
 
 
-def repaired(trials: Trials, reference: Draft | None) -> Repair:
-    """Return the hints of the steps, each alone if it gains something alone, and all together. Raises NoTrialsLeft."""
-    start = final = trials.start
+def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], State]:
+    """Return the repairs of a URDF as it is, without edits where one needs those before it; and the state after all.
+
+    Raises NoTrialsLeft.
+    """
+    final = trials.start
     taken: list[Proposal] = []
     for step in _steps(trials, reference):
-        edits = joined(start.submission, final.edits, step.proposal.edits)
+        edits = joined(trials.start.submission, final.edits, step.proposal.edits)
         taken.append(step.proposal._replace(edits=_alone(edits, final.edits)))
         final = step.after._replace(edits=edits)
-    groups = _grouped(taken)
-    hints = [_proven(trials, proposal) for proposal in groups if proposal.edits] if len(groups) > 1 else []
-    known = {name for hint in hints if hint is not None for name in hint.gains}
-    if set(gained(start.results, final.results)) - known:
-        chain = _proven(trials, _chained(groups, final.edits))
-        is_union = len(hints) > 1 and len([hint for hint in hints if hint is not None]) == len(groups)
-        hints.append(chain._replace(is_union=is_union) if chain is not None else None)
-    return Repair([hint for hint in hints if hint is not None], final)
-
-
-def _proven(trials: Trials, proposal: Proposal) -> Hint | None:
-    """Return a repair that gains something, graded from scratch."""
-    after = trials.applied(trials.start, proposal.edits, whole=True)
-    if after is None or after.lost:
-        return None
-    gains = gained(trials.start.results, after.results)
-    return Hint(proposal, proposal.edits, gains) if gains else None
+    return _grouped(taken), final
 
 
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
@@ -186,27 +157,16 @@ def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
     for proposal in proposals:
         added_for = proposal.link if not any(edit.old for edit in proposal.edits) else ""
         groups.setdefault((proposal.cause, proposal.action, added_for), []).append(proposal)
-    return [_together(group) for group in groups.values()]
+    return [_as_one(group) for group in groups.values()]
 
 
-def _together(group: list[Proposal]) -> Proposal:
+def _as_one(group: list[Proposal]) -> Proposal:
     links = {proposal.link for proposal in group}
     edits = tuple(edit for proposal in group for edit in proposal.edits) if all(p.edits for p in group) else ()
     return group[0]._replace(edits=edits, link=links.pop() if len(links) == 1 else "")
 
 
-def _chained(proposals: list[Proposal], edits: Edits) -> Proposal:
-    """Return several steps as one proposal."""
-    causes = dict.fromkeys(proposal.cause for proposal in proposals)
-    actions = dict.fromkeys(proposal.action for proposal in proposals)
-    return Proposal(edits, " and ".join(causes), " and ".join(actions))
-
-
 def _alone(together: Edits, before: Edits) -> Edits:
     """Return the edits that were added; none where they change what earlier ones wrote."""
     added = tuple(edit for edit in together if edit not in before)
-    if len(added) + len(before) == len(together):
-        return added
-    (last,) = added if len(added) == 1 else (None,)
-    same = next((edit for edit in before if last and edit[:4] == last[:4] and last.new.startswith(edit.new)), None)
-    return (last._replace(new=last.new.removeprefix(same.new)),) if last and same and not last.old else ()
+    return added if len(added) + len(before) == len(together) else ()

@@ -77,17 +77,13 @@ class Look:
         return targets_of([self.with_links(criterion)], self.draft.robot, (self.reference or self.draft).robot)
 
     def relevant(self, criterion: Criterion) -> list[Piece]:
-        """Return the pieces that may decide a criterion, the most plausible first: those where its failure is."""
+        """Return the pieces that may decide a criterion, the most plausible first."""
         if criterion.check.subject in ("package", "submission"):
             return []
-        place = self.state.results[criterion.id].outcome.location
         links = {*(targets := self.targets(criterion)).shown, *targets.moved, ""}
         is_all = criterion.check.subject == "urdf" or len(links) == 1
-        found = [piece for piece in self.pieces if is_all or piece.link in links]
-        at = {id(piece): self.draft.line(piece.element) for piece in found if piece.element is not None and self.draft}
-        near = [abs(at.get(id(piece), 0) - place.line) if place is not None else 0 for piece in found]
-        order = sorted(range(len(found)), key=lambda index: (found[index].rank, near[index] > 0, index))
-        return [found[index] for index in order]
+        found = (piece for piece in self.pieces if is_all or piece.link in links)
+        return sorted(found, key=lambda piece: piece.rank)
 
     def passing(self, piece: Piece, wanted: Sequence[str]) -> frozenset[str]:
         """Return the wanted criteria that pass with a piece, as far as a quick look tells."""
@@ -103,34 +99,12 @@ class Look:
 
     def shrunk(self, piece: Piece, passes: frozenset[str]) -> Piece:
         """Return a piece without changes of numbers that nothing needs."""
-        if not piece.sets or piece.rank == CONVENTION or piece.is_mistake:
-            return piece
-        first = piece.sets[0]
-        own = [first, *self._others(piece)]
-        for one in [*own] if len(own) > 1 else ():
-            fewer = [other for other in own if other is not one]
-            smaller = self.difference.of_sets(fewer, piece.rank) if fewer else piece
-            if fewer and passes <= self.passing(smaller, [*passes]):
-                piece, own = smaller, fewer
-        first, element = own[0], own[0].element
-        if len(own) > 1:
-            return piece
-        old, new = values_of(element.get(first.attribute) if element is not None else None), values_of(first.value)
-        off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
-        if len(old) != len(new) or len(off) < 2:
-            return piece
-        for index in off:
-            kept = tuple(old[index] if other == index else value for other, value in enumerate(new))
-            smaller = (
-                self.difference.of_sets([first._replace(value=written(kept))], piece.rank) if kept != old else piece
-            )
-            if kept != old and passes <= self.passing(smaller, [*passes]):
-                piece, new = smaller, kept
+        if piece.sets and piece.rank != CONVENTION and not piece.is_mistake:
+            for sets in _fewer(piece):
+                smaller = self.difference.of_sets(sets, piece.rank)
+                if passes <= self.passing(smaller, [*passes]):
+                    return self.shrunk(smaller, passes)
         return piece
-
-    def _others(self, piece: Piece) -> list[Set]:
-        first = piece.sets[0]
-        return [one for one in piece.sets[1:] if one.owner is first.owner and one.tag == first.tag]
 
     def proposals(self, piece: Piece) -> Iterator[Proposal]:
         """Yield the edits of the text that a piece stands for."""
@@ -150,3 +124,17 @@ class Look:
         with self.trials.isolated():
             found += raw_xacro_proposals(self.state.submission) if criterion.check.subject == "urdf" else ()
         return found
+
+
+def _fewer(piece: Piece) -> Iterator[list[Set]]:
+    """Yield what a piece sets of its first element, without one attribute or with one of its numbers as it was."""
+    first = piece.sets[0]
+    own = [one for one in piece.sets if one.owner is first.owner and one.tag == first.tag]
+    for place, one in enumerate(own):
+        if len(own) > 1:
+            yield own[:place] + own[place + 1 :]
+            continue
+        old, new = values_of(one.element.get(one.attribute) if one.element is not None else None), values_of(one.value)
+        off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
+        for index in off if len(old) == len(new) and len(off) > 1 else ():
+            yield [one._replace(value=written((*new[:index], old[index], *new[index + 1 :])))]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
 from grader.grading.hints.choice import Choice
-from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, costs_of, gained, joined
+from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, costs_of, gained, joined, together
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
@@ -74,7 +74,7 @@ class Search:
                 self.final = after._replace(edits=joined(self.trials.start.submission, self.final.edits, best.edits))
 
     def _rounds(self) -> None:
-        for is_solving in (False, True, False):  # what the reference has comes first
+        for is_solving in (False, True):  # what the reference has comes first
             while self._round(self.final, is_solving=is_solving):
                 pass
 
@@ -105,11 +105,12 @@ class Search:
             return
         from grader.grading.hints.loading import repaired  # late: most robots load
 
-        repair = repaired(self.trials, self._reference)
-        for proposal, edits, gains, is_union in repair.hints:
-            own = Found(_UNION, edits, gains, tuple(self.found)) if is_union else Found(proposal, edits, gains)
-            self.found.append(own)
-        self.final = repair.final
+        repairs, self.final = repaired(self.trials, self._reference)
+        is_each = len(repairs) > 1 and [self._add(it, it.edits) for it in repairs if it.edits] == [True] * len(repairs)
+        known = {name for found in self.found for name in found.gains}
+        if set(gained(self.trials.start.results, self.final.results)) - known:
+            whole, after = (_UNION, tuple(self.found)) if is_each else (together(repairs, self.final.edits), ())
+            self._add(whole, self.final.edits, after=after)
 
     def _by_cost(self, results: Results) -> list[str]:
         """Return the failed criteria, those with which most points are lost first."""
@@ -122,23 +123,25 @@ class Search:
         all_edits = joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
         if len(alone) + len(state.edits) == len(all_edits):
-            if self._add(proposal, alone, name, ()):
+            if self._add(proposal, alone, name):
                 return True
             for before in list(self.found):
                 if self._add(proposal, joined(submission, before.edits, ()) + alone, name, (before,)):
                     return True
         return self._add(proposal, all_edits, name, tuple(self.found))
 
-    def _add(self, proposal: Proposal, edits: Edits, name: str, after: tuple[Found, ...]) -> bool:
+    def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[Found, ...] = ()) -> bool:
+        """Add edits if they are proven, graded from scratch, and gain the points of a criterion; return whether they are."""
         start = self.trials.start
         state = self.trials.applied(start, edits, whole=True)
         if state is None or state.lost:
             return False
         gains = gained(start.results, state.results)
         edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed or creates(start.submission, edit))
-        if name in gains:
+        is_proven = bool(gains) and name in (*gains, "")
+        if is_proven:
             self.found.append(Found(proposal, edits, gains, after))
-        return name in gains
+        return is_proven
 
     def _combine(self) -> None:
         """Find which of the proven edits make a criterion pass together that no single one does."""

@@ -5,11 +5,12 @@ from contextlib import contextmanager
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.edits import composed
+from grader.edits import Proposal, composed
 from grader.errors import InputError
 from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
+from grader.robot.edits.pieces import SOLVED
 from grader.source import Edit
 from grader.submission.editing import content, edited_files, with_files, with_urdf
 from grader.submission.submission import Submission
@@ -185,3 +186,12 @@ def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]
         renames = [edit for edit in (*first, *second) if edit.path == path and edit.renamed]
         found += (*composed(text, path, *halves), *renames[-1:])
     return tuple(found)
+
+
+def together(proposals: Sequence[Proposal], edits: Edits) -> Proposal:
+    """Return several proposals as one, with these edits: those of the first one come first."""
+    causes = dict.fromkeys(proposal.cause for proposal in proposals)
+    actions = dict.fromkeys(proposal.action for proposal in proposals)
+    rank = max(SOLVED, *(proposal.rank for proposal in proposals))
+    ordered = tuple(sorted(dict.fromkeys(edits), key=lambda edit: edit not in proposals[0].edits))
+    return Proposal(ordered, " and ".join(causes), " and ".join(actions), proposals[0].link, rank)

@@ -42,7 +42,7 @@ def _inertial(difference: Difference, own: Element, link: Link, mass: float | No
         values = empty_element("inertia", dict(zip(_INERTIA, map(number, solid.inertia), strict=True)))
         text = f'<inertial>\n  <origin xyz="{centre}"/>\n  <mass value="{solid.mass:.6g}"/>\n  {values}\n</inertial>'
         edits = difference.draft.insert(own, text)
-        yield difference.piece(own, "the <inertial> of {} is missing", "add the <inertial> of {}", edits=edits)
+        yield difference.piece(own, "the <inertial> of {} is missing", "add the <inertial> of {}", edits)
     elif inertial is not None and child_of(element, "inertia") is not None:
         T_link_inertial = placed_by(IDENTITY, inertial.origin)
         moments = turned(solid.inertia, T_link_inertial.inverse().rotation)
@@ -81,20 +81,20 @@ def _collisions(difference: Difference, own: Element, link: Link) -> Iterator[Pi
     if shown and not collisions:
         edits = draft.insert(own, "\n".join(texts))
         yield difference.piece(
-            own, "the <collision> of {} is missing", "add a <collision> of {} like the visual", edits=edits
+            own, "the <collision> of {} is missing", "add a <collision> of {} like the visual", edits
         )
         return
     for collision, visual, text in zip(collisions, shown, texts, strict=False):
         for tag in ("origin", "geometry"):
             cause = f"the collision {tag} of {{}}"
             yield difference.piece(
-                own, cause, f"make {cause} that of the visual", edits=_like(difference, collision, visual, tag)
+                own, cause, f"make {cause} that of the visual", _like(difference, collision, visual, tag)
             )
         replaced = draft.replace(collision, text)
-        yield difference.piece(own, "the collision of {}", "make the collision of {} like the visual", edits=replaced)
+        yield difference.piece(own, "the collision of {}", "make the collision of {} like the visual", replaced)
     for extra in collisions[len(shown) :]:
         cause = "a collision of {} that is not shown"
-        yield difference.piece(own, cause, "remove a collision of {}", edits=draft.remove(extra), rank=KNOWN)
+        yield difference.piece(own, cause, "remove a collision of {}", draft.remove(extra), rank=KNOWN)
 
 
 def _like(difference: Difference, collision: Element, visual: Element, tag: str) -> Edits:

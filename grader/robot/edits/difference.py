@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
-from grader.difference import Node, Step, is_alike, likeness, paired, steps
+from grader.difference import Node, Step, paired, steps
 from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of, escaped
 from grader.robot.edits.numbers import number, values_of
-from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal
+from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, PARTS, TAGS
 
@@ -51,7 +51,7 @@ class Difference(PieceMaker):
         mine = [_node(found) for found in self.draft.root.iterchildren("material")]
         pairs = paired(mine, [_node(found) for found in self.reference.root.iterchildren("material")])
         for own_node, like in pairs.both:
-            if own_node.values.get("name") and (own_node.keys == like.keys or likeness(own_node, like) > 0.5):
+            if own_node.values.get("name"):
                 names["material"][like.values.get("name", "")] = own_node.values["name"]
         return names
 
@@ -60,17 +60,7 @@ class Difference(PieceMaker):
         """The pieces, each once: values first, then what moves, is added and is removed."""
         own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
         found_steps = steps(own, like)
-        self.wanted = {
-            (step.own.of, step.name): value
-            for step in found_steps
-            if step.verb in ("set", "unset") and (value := _wanted(step))
-        }
-        found = [*self._pieces(found_steps), *self._joint_names(), *self._ends()]
-        unique: dict[object, Piece] = {}
-        for piece in found:
-            if piece.sets or piece.edits:
-                unique.setdefault(piece.sets or piece.edits, piece)
-        return list(unique.values())
+        return unique([*self._pieces(found_steps), *self._joint_names(), *self._ends()])
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -88,21 +78,13 @@ class Difference(PieceMaker):
     def _ends(self) -> Iterator[Piece]:
         """Exchange the parent and the child of a joint."""
         for joint in self.draft.joints():
-            ends = [child_of(joint, role) for role in ENDS]
             names = [end_of(joint, role) for role in ENDS]
             likes = [self.reference.joint_of(name) for name in names]
             if any(like is not None and [end_of(like, role) for role in ENDS] == names[::-1] for like in likes):
-                one, other = ends
-                assert one is not None  # both are named
-                assert other is not None
-                edits = self.draft.exchange(one, other, "link")
-                yield self.piece(
-                    joint,
-                    "parent and child of {} are swapped",
-                    "swap parent and child of {}",
-                    edits=edits,
-                    rank=STRUCTURE,
-                )
+                ends = [(child_of(joint, role), other) for role, other in zip(ENDS, ENDS[::-1], strict=True)]
+                edits = tuple(it for end, other in ends if end is not None for it in self.draft.rename_tag(end, other))
+                cause, action = "parent and child of {} are swapped", "swap parent and child of {}"
+                yield self.piece(joint, cause, action, edits, rank=STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
@@ -114,7 +96,6 @@ class Difference(PieceMaker):
         added = [
             step.like for step in found if step.like is not None and step.verb == "add" and step.own.tag == "robot"
         ]
-        removed = [step.own for step in found if step.verb == "remove"]
         is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
         for _, group in groupby(found, key=is_set):
             those = [*group]
@@ -124,24 +105,15 @@ class Difference(PieceMaker):
             match step.verb:
                 case "rename":
                     edits = self.draft.rename_attribute(step.own.of, step.name, step.other)
-                    yield self.piece(
-                        step.own.of,
-                        f"the name of the attribute {step.other} of {{}}",
-                        f"rename {step.name} of {{}} to {step.other}",
-                        edits=edits,
-                    )
+                    cause = f"the name of the attribute {step.other} of {{}}"
+                    yield self.piece(step.own.of, cause, f"rename {step.name} of {{}} to {step.other}", edits)
                 case "retag" if step.like is not None:
-                    edits = self.draft.rename_tag(step.own.of, step.like.tag)
-                    yield self.piece(
-                        step.own.of,
-                        f"the name of the tag <{step.like.tag}>",
-                        f"rename the tag to <{step.like.tag}>",
-                        edits=edits,
-                    )
+                    edits, tag = self.draft.rename_tag(step.own.of, step.like.tag), f"<{step.like.tag}>"
+                    yield self.piece(step.own.of, f"the name of the tag {tag}", f"rename the tag to {tag}", edits)
                 case "move" if step.parent is not None and step.like is not None:
                     yield self.moved(step.own.of, step.parent.of)
                 case "add" if step.like is not None:
-                    yield from self._added(step, added, removed)
+                    yield from self._added(step, added)
                 case "remove":
                     yield from self._removed(step.own)
 
@@ -154,23 +126,24 @@ class Difference(PieceMaker):
             yield from self._renamed(element, values.pop("name"))
         if "" in values:
             text = values.pop("")
-            yield self.piece(
-                element, "the text of {}", f"set the text of {{}} to {text}", edits=self.draft.write_text(element, text)
-            )
-        groups = [(name,) for name in values] + ([tuple(values)] if len(values) > 1 else [])
-        for names in groups:
-            yield self.of_sets([Set(element, "", name, values[name]) for name in names])
+            edits = self.draft.write_text(element, text)
+            yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
+        yield from self._each([Set(element, "", name, value) for name, value in values.items()])
+
+    def _each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+        """Yield the pieces that set each value alone, and all together."""
+        yield from (self.of_sets([one]) for one in sets)
+        if len(sets) > 1:
+            yield self.of_sets(sets)
 
     def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used, or where it is defined."""
         tag, old = str(element.tag), element.get("name") or ""
-        cause, action = f"the name of a {tag}", f"correct the name of a {tag}"
-        if tag == "link" and sum(link.get("name") == old for link in self.draft.links()) == 1:
-            yield self.piece(element, cause, action, edits=renamed(self.draft, old, name), link=name)
-        yield from (
-            self.piece(element, cause, action, edits=edits, link=name if tag == "link" else "")
-            for edits in self.draft.write(element, "name", name)
-        )
+        own = (Set(element, "", "name", name),)
+        everywhere = renamed(self.draft, old, name) if tag == "link" else own
+        for sets in filter(None, dict.fromkeys((everywhere, own))):
+            cause, link = f"the name of a {tag}", name if tag == "link" else ""
+            yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
 
     def text(self, element: Element) -> str:
         """Return an element of the reference as it is written, with the robot's names."""
@@ -182,7 +155,7 @@ class Difference(PieceMaker):
                 text = re.sub(pattern, rf"\g<1>{name}\g<3>", text) if old != new else text
         return text
 
-    def _added(self, step: Step, added: Sequence[Node], removed: Sequence[Node]) -> Iterator[Piece]:
+    def _added(self, step: Step, added: Sequence[Node]) -> Iterator[Piece]:
         """Add an element: a link with its joint and its materials where these are missing, too."""
         like, parent = step.like, step.own.of
         assert like is not None
@@ -191,22 +164,16 @@ class Difference(PieceMaker):
             yield from self._inner(parent, element)
             return
         if tag not in ("joint", "link"):
-            spare = [
-                it.of for it in removed if any(is_alike(it, inner) for inner in like.walk())
-            ]  # it is put into the new one
-            away = tuple(edit for it in spare for edit in self.draft.remove(it))
             text = self.text(element)
-            there = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
-            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", edits=(*away, *there))
+            edits = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
+            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", edits)
             return
         name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
         joints = [it.of for it in added if tag == "link" and it.tag == "joint"]
         own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
         text = "\n\n".join([self.text(element), *map(self.text, own)])
         what = f"the link {name!r}" if tag == "link" else f"the joint of {name!r}"
-        yield Piece(
-            f"{what} is missing", f"add {what}", name, (), (*self.draft.append(text), *self._materials(element))
-        )
+        yield Piece(f"{what} is missing", f"add {what}", name, (), (*self.draft.append(text), *self.materials(element)))
 
     def _ends_of(self, joint: Element) -> list[str]:
         return [end_of(joint, role) for role in ENDS]
@@ -215,7 +182,7 @@ class Difference(PieceMaker):
         """Return whether the links at the ends of a joint of the reference are there, once a link is added."""
         return all(name == link or self.draft.link(name) is not None for name in self._ends_of(joint))
 
-    def _materials(self, element: Element) -> Edits:
+    def materials(self, element: Element) -> Edits:
         """Return the edits that define the materials of an element of the reference that the robot does not define."""
         names = dict.fromkeys(found.get("name") or "" for found in element.iter("material"))
         texts = [
@@ -228,55 +195,28 @@ class Difference(PieceMaker):
         return self.draft.insert(self.draft.root, "\n".join(texts)) if texts else ()
 
     def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
-        tag = str(element.tag)
-        own = child_of(parent, tag)
-        values = {str(key): str(value) for key, value in element.attrib.items()}
-        if own is not None and tag in ("origin", "axis"):  # one with default values only, which does not count
-            sets = [
-                Set(own, "", name, value)
-                for name, value in values.items()
-                if normal(tag, name, own.get(name)) != normal(tag, name, value)
-            ]
-            yield from (self.of_sets([one]) for one in sets)
-            if len(sets) > 1:
-                yield self.of_sets(sets)
+        """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
+        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        if tag in ("origin", "axis"):  # one with default values only does not count
+            values = {str(key): str(value) for key, value in element.attrib.items()}
+            mine = {name: own.get(name) if own is not None else None for name in values}
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
+            yield from self._each([Set(parent, tag, name, values[name]) for name in off])
             return
-        if tag in ("origin", "axis") and not len(element):
-            yield self.of_sets([Set(parent, tag, name, value) for name, value in values.items()])
-            if len(values) > 1:
-                yield from (
-                    self.of_sets([Set(parent, tag, name, value)])
-                    for name, value in values.items()
-                    if normal(tag, name, value) != normal(tag, name, None)
-                )
-            return
-        others = [child for child in parent if parent.tag == "geometry" and child.tag in CHILDREN["geometry"]]
         cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
-        if others:
-            twins = [shape for geometry in self._twin_shapes(parent, others[0]) for shape in geometry]
-            edits = tuple(
-                edit for shape in (others[0], *twins) for edit in self.draft.replace(shape, self.text(element))
-            )
-            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
-        else:
+        shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
+        if shape is None:
             edits = (*self.draft.insert(parent, self.text(element)), *self._materials_in(element))
-        yield self.piece(parent, cause, action, edits=edits)
-
-    def _twin_shapes(self, geometry: Element, shape: Element) -> list[Element]:
-        """Return the geometry of the collision of a visual, if it is the same shape."""
-        visual = geometry.getparent()
-        link = visual.getparent() if visual is not None and visual.tag == "visual" else None
-        if link is None or visual is None:
-            return []
-        index = [*link.iterchildren("visual")].index(visual)
-        found = [child_of(twin, "geometry") for twin in [*link.iterchildren("collision")][index : index + 1]]
-        mine = [(shape.tag, sorted(shape.attrib.items()))]
-        return [it for it in found if it is not None and [(one.tag, sorted(one.attrib.items())) for one in it] == mine]
+        else:
+            alike = [it for geometry in twins_of(parent) for it in geometry if _is_equal(it, shape)]
+            edits = tuple(edit for it in (shape, *alike) for edit in self.draft.replace(it, self.text(element)))
+            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
+        yield self.piece(parent, cause, action, edits)
 
     def _materials_in(self, element: Element) -> Edits:
         parent = element.getparent()
         is_use = element.tag == "material" and parent is not None and not len(element)
-        return self._materials(parent if is_use and parent is not None else element)
+        return self.materials(parent if is_use and parent is not None else element)
 
     def _removed(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
@@ -285,27 +225,21 @@ class Difference(PieceMaker):
             defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
             yield from (self.of_sets([Set(element, "", name, value)], SOLVED) for name, value in defaults.items())
             return
-        if element.getparent() is not None and (element.getparent().tag != "geometry"):  # there the shape is replaced
-            yield self.piece(
-                element,
-                f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}",
-                f"remove the extra <{tag}>",
-                edits=self.draft.remove(element),
-                rank=STRUCTURE,
-            )
+        if element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
+            cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
+            yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
 
 
-def renamed(draft: Draft, old: str, new: str) -> Edits:
-    """Return the edits that give a link another name, also where joints name it."""
-    own = draft.link(old)
-    ways = draft.write(own, "name", new) if own is not None else []
-    edits = ways[0] if ways else ()
-    for found in draft.joints():
-        for role in ENDS:
-            end = child_of(found, role)
-            if end is not None and end.get("link") == old:
-                edits += draft.write(end, "link", new)[0]
-    return tuple(dict.fromkeys(edits))  # a parameter of xacro can be both names
+def renamed(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+    """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
+    own = [link for link in draft.links() if link.get("name") == old]
+    ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
+    sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
+    return sets if len(own) == 1 else sets[:0]
+
+
+def _is_equal(one: Element, other: Element) -> bool:
+    return (one.tag, sorted(one.attrib.items())) == (other.tag, sorted(other.attrib.items()))
 
 
 def _wanted(step: Step) -> str | None:

@@ -12,6 +12,7 @@ from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
 from grader.source import Edit, Location, Source
 from grader.xml.parsing import Element, make_element
+from grader.xml.urdf_format import PARTS
 
 Edits = tuple[Edit, ...]
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
@@ -133,7 +134,8 @@ class Draft:
             elif one.attribute in element.attrib:
                 others = self._siblings(element, one.attribute, sets)
                 done |= {(it, one.attribute) for it in others}
-                value = merged(element.get(one.attribute) or "", one.value)
+                is_numeric = bool(PARTS.get(one.attribute))
+                value = merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
                 ways = self._written(element, one.attribute, value, others)
                 found = [(*before, *more) for before in found for more in ways]
             else:
@@ -173,14 +175,6 @@ class Draft:
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""
         return self.source.tag(self._tags[element]).line
-
-    def set(self, element: Element, attribute: str, value: str) -> list[Edits]:
-        """Return the ways to give an attribute other numbers; those that stay the same stay as they are written."""
-        return self.write(element, attribute, merged(element.get(attribute) or "", value))
-
-    def write(self, element: Element, attribute: str, value: str) -> list[Edits]:
-        """Return the ways to give an attribute another text."""
-        return self._written(element, attribute, value, {})
 
     def _written(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""
@@ -247,17 +241,6 @@ class Draft:
             for attribute in map(str, element.keys()):
                 found.setdefault(self.source.tag(tag, attribute), (element, attribute))
         return found
-
-    def exchange(self, one: Element, other: Element, attribute: str) -> Edits:
-        """Return the edits that exchange what two elements have in an attribute, as it is written."""
-        places = [self.source.element(self._tags[element]) for element in (one, other)]
-        found = [(source.text, markup.attribute(source.text, start, attribute)) for source, start in places]
-        values = [text[it.value_start : it.value_end] for text, it in found if it is not None]
-        if len(values) < len(places):
-            return ()
-        return tuple(
-            with_attribute(*place, attribute, value) for place, value in zip(places, reversed(values), strict=True)
-        )
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""

@@ -1,10 +1,10 @@
 """Pieces of edits: what is set or changed, named by what is wrong with it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from grader.robot.edits.draft import Draft, Edits, Set, child_of
-from grader.robot.edits.numbers import named, values_of
+from grader.robot.edits.numbers import Values, named, values_of
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
@@ -38,21 +38,18 @@ class PieceMaker:
         self.draft, self.reference = draft, reference
         links, materials = ([one.name for one in found] for found in (reference.robot.links, reference.robot.materials))
         self.known = {*links, *materials}
-        self.wanted: dict[
-            tuple[Element, str], str
-        ] = {}  # what the reference has instead of values, by element and attribute
 
     def piece(
         self,
         element: Element,
         cause: str,
         action: str,
-        *,
-        tag: str = "",
-        sets: tuple[Set, ...] = (),
         edits: Edits = (),
+        *,
+        sets: tuple[Set, ...] = (),
         rank: int = 0,
         link: str = "",
+        tag: str = "",
     ) -> Piece:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for what it is called."""
         place = self.draft.described(element, tag, self.known)
@@ -63,89 +60,52 @@ class PieceMaker:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
         tag = first.tag or str(first.owner.tag)
-        old: list[float] = []
-        new: list[float] = []
-        parts: list[str] = []
-        unit = ""
-        is_numeric, is_mistake = True, False
         missing = [one.attribute for one in sets if one.element is None or one.attribute not in one.element.attrib]
-        for one in sets:
-            known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
-            before = _read(one, known.default if known else None)
-            is_numeric = is_numeric and known is not None and bool(known.parts)
-            if known is not None and known.parts:
-                unit = known.unit
-                old += (
-                    before or [0.0] * len(known.parts) if len(before) != len(known.parts) and len(sets) > 1 else before
-                )
-                new += values_of(one.value)
-                parts += [part or one.attribute for part in known.parts]
+        changes = [_change(one, tag, is_one=len(sets) == 1) for one in sets]
         names = " and ".join(one.attribute for one in sets)
+        what, is_mistake, is_turned = "{}" if tag in ENDS else f"the {names} of {{}}", False, False
         if first.element is None:
             cause, action = "{} is missing", f"add <{tag}>"
-        elif missing and len(missing) == len(sets):
-            cause, action = f"the {names} of {{}} is missing", f"add the {names} of {{}}"
-        elif is_numeric:
-            mistake = named("{} of [place]", parts, unit, tuple(old), tuple(new))
-            cause, action = (text.replace("[place]", "{}") for text in mistake[:2])
-            is_mistake = mistake.is_mistake
+        elif len(missing) == len(sets):
+            cause, action = f"{what} is missing", f"add {what}"
+        elif None not in changes:
+            parts = [part for change in changes if change for part in change[0]]
+            old = tuple(value for change in changes if change for value in change[1])
+            new = tuple(value for change in changes if change for value in change[2])
+            unit = TAGS[tag].attributes[sets[-1].attribute].unit
+            is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
+            cause, action, is_mistake = named("{} of [place]", parts, unit, old, new)
+            cause, action = (text.replace("[place]", "{}") for text in (cause, action))
         else:
-            what = "{}" if tag in ENDS else f"the {names} of {{}}"
             cause, action = what, f"set {what} to {' and '.join(one.value for one in sets)}"
-        is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
-        all_sets = self.with_twins(sets, is_known=rank == KNOWN)
         is_guess = (is_turned and not is_mistake) or (first.element is None and rank == SOLVED)
-        rank = STRUCTURE if tag in ENDS else FITTED if is_guess else rank
-        return self.piece(first.owner, cause, action, tag=first.tag, sets=all_sets, rank=rank)._replace(
+        rank, sets = STRUCTURE if tag in ENDS else FITTED if is_guess else rank, self.with_twins(sets)
+        return self.piece(first.owner, cause, action, sets=sets, rank=rank, tag=first.tag)._replace(
             is_mistake=is_mistake
         )
 
-    def with_twins(self, sets: Sequence[Set], *, is_known: bool = False) -> tuple[Set, ...]:
+    def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""
         found = [*sets]
-        for one in sets:
-            element = one.element
-            for sibling in self.draft.siblings(element) if element is not None and is_known else ():
-                wanted = self.wanted.get((sibling, one.attribute)) if sibling is not element else None
-                found += [Set(sibling, "", one.attribute, wanted)] if wanted is not None else []
         for one in [*found]:
             owner, tag = (one.owner, one.tag) if one.tag else (one.owner.getparent(), str(one.owner.tag))
-            if owner is None or (tag != "origin" and owner.tag != "geometry"):
-                continue
-            visual = owner if tag == "origin" else owner.getparent()
-            link = visual.getparent() if visual is not None and visual.tag == "visual" else None
-            if link is None:
-                continue
-            index = [*link.iterchildren("visual")].index(visual)  # type: ignore[arg-type]
-            twins = [*link.iterchildren("collision")][index : index + 1]
-            for twin in (*twins, *(link.iterchildren("inertial") if tag == "origin" and index == 0 else ())):
-                inner = twin if tag == "origin" else child_of(twin, "geometry")
-                if (
-                    inner is not None
-                    and (tag == "origin" or child_of(inner, tag) is not None)
-                    and self._is_twin(owner, inner, tag, one)
-                ):
-                    found.append(Set(inner, tag, one.attribute, one.value))
+            if owner is not None and (tag == "origin" or owner.tag == "geometry"):
+                alike = [twin for twin in twins_of(owner) if self._is_twin(owner, twin, tag, one)]
+                found += [Set(twin, tag, one.attribute, one.value) for twin in alike]
         return tuple(found)
 
-    def _is_twin(self, owner: Element, inner: Element, tag: str, one: Set) -> bool:
+    def _is_twin(self, owner: Element, twin: Element, tag: str, one: Set) -> bool:
         """Return whether another element has the value that a visual has, and the reference does not say otherwise."""
-        mine, its = (
-            normal(tag, one.attribute, found.get(one.attribute) if found is not None else None)
-            for found in (child_of(owner, tag), child_of(inner, tag))
-        )
-        if mine != its or (inner.tag == "inertial" and not mine.strip("0 ")):
+        mine, its = (_value(child_of(found, tag), tag, one.attribute) for found in (owner, twin))
+        is_inertial = twin.tag == "inertial"
+        if mine != its or (is_inertial and not mine.strip("0 ")) or (tag != "origin" and child_of(twin, tag) is None):
             return False
         like = self.reference.link(self.draft.link_of(owner))
-        part = inner if tag == "origin" else inner.getparent()
-        other = child_of(like, str(part.tag)) if like is not None and part is not None else None
-        if other is None:
-            return True
-        place = child_of(other, "geometry") if tag != "origin" else other
+        part = twin.tag if tag == "origin" else "collision"
+        other = child_of(like, str(part)) if like is not None else None
+        place = child_of(other, "geometry") if other is not None and tag != "origin" else other
         found = child_of(place, tag) if place is not None else None
-        return normal(tag, one.attribute, found.get(one.attribute) if found is not None else None) == normal(
-            tag, one.attribute, one.value
-        )
+        return other is None or _value(found, tag, one.attribute) == normal(tag, one.attribute, one.value)
 
     def moved(self, element: Element, parent: Element) -> Piece:
         """Return the piece that moves an element into another one."""
@@ -153,15 +113,46 @@ class PieceMaker:
         there = self.draft.append(text) if parent is self.draft.root else self.draft.insert(parent, text)
         was = element.getparent()
         cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
-        return self.piece(
-            element, cause, f"move <{element.tag}> into <{parent.tag}>", edits=(*self.draft.remove(element), *there)
-        )
+        edits = (*self.draft.remove(element), *there)
+        return self.piece(element, cause, f"move <{element.tag}> into <{parent.tag}>", edits)
 
 
-def _read(one: Set, default: str | None) -> list[float]:
-    element = one.element
-    text = element.get(one.attribute) if element is not None else None
-    return [*values_of(default if text is None else text)]
+def twins_of(owner: Element) -> list[Element]:
+    """Return what may be the same as a visual, or as its geometry: that of the collision; for a visual also the inertial."""
+    visual = owner.getparent() if owner.tag == "geometry" else owner
+    link = visual.getparent() if visual is not None and visual.tag == "visual" else None
+    if link is None or visual is None:
+        return []
+    index = [*link.iterchildren("visual")].index(visual)
+    twins = [*link.iterchildren("collision")][index : index + 1]
+    if owner.tag == "geometry":
+        return [found for twin in twins for found in twin.iterchildren("geometry")][:1]
+    return [*twins, *(link.iterchildren("inertial") if index == 0 else ())]
+
+
+def unique(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces that change something, each once."""
+    found: dict[object, Piece] = {}
+    for piece in pieces:
+        if piece.sets or piece.edits:
+            found.setdefault(piece.sets or piece.edits, piece)
+    return list(found.values())
+
+
+def _value(element: Element | None, tag: str, attribute: str) -> str:
+    return normal(tag, attribute, element.get(attribute) if element is not None else None)
+
+
+def _change(one: Set, tag: str, *, is_one: bool) -> tuple[list[str], Values, Values] | None:
+    """Return the parts of the numbers that are set, the old and the new ones; None for a text."""
+    known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
+    if known is None or not known.parts:
+        return None
+    text = one.element.get(one.attribute) if one.element is not None else None
+    old = values_of(known.default if text is None else text)
+    if len(old) != len(known.parts) and not is_one:
+        old = old or (0.0,) * len(known.parts)
+    return [part or one.attribute for part in known.parts], old, values_of(one.value)
 
 
 def normal(tag: str, attribute: str, text: str | None) -> str:

@@ -7,8 +7,8 @@ from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.edits.difference import Difference, renamed
-from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of
-from grader.robot.edits.pieces import Piece
+from grader.robot.edits.draft import Draft, Set, child_of, end_of
+from grader.robot.edits.pieces import ENDS, Piece, unique
 from grader.robot.edits.readable import is_readable, readable
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, JOINT_TYPES, REQUIRED, TAGS, missing_element
@@ -17,20 +17,7 @@ _MAX_PIECES = 40  # for one problem
 _MAX_NAMES = 4
 _MAX_ELEMENTS, _MAX_MOVED = 3000, 6
 _MAX_PROBLEMS = 60
-_REMOVABLE = (
-    "material",
-    "inertial",
-    "collision",
-    "visual",
-    "limit",
-    "dynamics",
-    "mimic",
-    "safety_controller",
-    "calibration",
-    "joint",
-    "link",
-)
-_ENDS = ("parent", "child")
+_KEPT = ("robot", "origin", "axis", "parent", "child", "geometry", *CHILDREN["geometry"])  # what no edit removes
 
 
 def repairable(problems: tuple[Problem, ...]) -> list[Problem]:
@@ -65,324 +52,162 @@ def _misplaced(difference: Difference) -> Iterator[Piece]:
 def pieces_for(difference: Difference, problem: Problem) -> list[Piece]:
     """Return the edits that may undo a problem, the most plausible first."""
     found = difference.draft.places().get(problem.location)
-    if found is None:
-        return []
-    element, attribute = found
-    unique: dict[object, Piece] = {}
-    for piece in _pieces(difference, element, attribute):
-        if piece.sets or piece.edits:
-            unique.setdefault(piece.sets or piece.edits, piece)
-        if len(unique) == _MAX_PIECES:
-            break
-    return list(unique.values())
+    return unique(_pieces(difference, *found))[:_MAX_PIECES] if found is not None else []
 
 
 def _pieces(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
-    draft, tag = difference.draft, str(element.tag)
     if attribute is not None:
         yield from _of_value(difference, element, attribute)
-        yield from _respelt(difference, element, attribute)
-    else:
-        yield from _retagged(difference, element)
-    for inner in (element, *element):
-        yield from _shapes(difference, inner)
-    owner = draft.owner(element)
-    yield from _as_in_reference(difference, owner)
+    yield from _respelt(difference, element, attribute)
+    owner = difference.draft.owner(element)
+    changes = ((piece, piece.element) for piece in difference.pieces if piece.element is not None)
+    yield from (piece for piece, changed in changes if difference.draft.owner(changed) is owner)
     yield from _missing(difference, element)
     yield from _names(difference, element, attribute)
-    if tag in ("joint", *_ENDS) or (tag == "link" and attribute is None):
+    if element.tag in ("joint", *ENDS) or (element.tag == "link" and attribute is None):
         yield from _connections(difference, owner)
-    removable: Element | None = element
-    while removable is not None and removable is not draft.root:
-        if removable.tag in _REMOVABLE:
-            yield difference.piece(
-                removable,
-                f"an error in <{removable.tag}>",
-                f"remove the <{removable.tag}>",
-                edits=draft.remove(removable),
-            )
-        removable = removable.getparent()
-
-
-def _as_in_reference(difference: Difference, owner: Element) -> Iterator[Piece]:
-    for piece in difference.pieces:
-        if piece.element is not None and difference.draft.owner(piece.element) is owner:
-            yield piece
+    for around in (element, *element.iterancestors()):
+        if around.tag in TAGS and around.tag not in _KEPT:
+            edits = difference.draft.remove(around)
+            yield difference.piece(around, f"an error in <{around.tag}>", f"remove the <{around.tag}>", edits)
 
 
 def _of_value(difference: Difference, element: Element, attribute: str) -> Iterator[Piece]:
     """Write numbers as ROS 2 reads them, here and wherever the mistake is the same; a type as it is called."""
-    draft, text = difference.draft, element.get(attribute) or ""
+    text = element.get(attribute) or ""
     if not is_readable(attribute, text):
         for new, cause, action in readable(attribute, text):
-            everywhere = tuple(_same_mistake(draft, cause))
             own = Set(element, "", attribute, new)
-            if len(everywhere) > 1 and own in everywhere:
-                yield difference.piece(
-                    element,
-                    cause,
-                    action,
-                    edits=tuple(
-                        edit for one in everywhere for edit in draft.write(one.owner, one.attribute, one.value)[0]
-                    ),
-                )
-            yield from (
-                difference.piece(element, cause, action, edits=edits) for edits in draft.write(element, attribute, new)
-            )
+            everywhere = tuple(_same_mistake(difference.draft, cause))
+            for sets in (everywhere, (own,)) if own in everywhere else ((own,),):
+                yield difference.piece(element, cause, action, sets=sets)
     if attribute == "type":
-        near = text.strip().lower() if text.strip().lower() in JOINT_TYPES else closest(text, JOINT_TYPES)
-        for wanted in (near, "fixed"):
-            for edits in draft.write(element, "type", wanted) if wanted else ():
-                yield difference.piece(element, "the type of {}", f"set the type of {{}} to {wanted}", edits=edits)
+        for wanted in (text.strip().lower(), closest(text, JOINT_TYPES), "fixed"):
+            if wanted in JOINT_TYPES:
+                yield difference.of_sets([Set(element, "", "type", wanted)])
 
 
 def _same_mistake(draft: Draft, cause: str) -> Iterator[Set]:
     for element in draft.root.iter():
         for attribute in ATTRIBUTES.get(str(element.tag), ()):
             text = element.get(attribute)
-            if text is not None and not is_readable(attribute, text):
-                found = next(readable(attribute, text), None)
-                if found is not None and found[1] == cause:
-                    yield Set(element, "", attribute, found[0])
+            found = next(readable(attribute, text), None) if text and not is_readable(attribute, text) else None
+            if found is not None and found[1] == cause:
+                yield Set(element, "", attribute, found[0])
 
 
-def _respelt(difference: Difference, element: Element, attribute: str) -> Iterator[Piece]:
-    """Rename an attribute that ROS 2 does not know."""
-    tag = str(element.tag)
+def _respelt(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
+    """Rename a tag or an attribute that ROS 2 does not know where it is."""
+    tag, parent = str(element.tag), element.getparent()
+    allowed = CHILDREN.get(str(parent.tag), ()) if parent is not None else (tag,)
+    if attribute is None and tag not in allowed:
+        names = [name for name in allowed if {*map(str, element.keys())} & {*REQUIRED.get(name, ())}]
+        for name in dict.fromkeys(filter(None, (closest(tag, allowed), *names))):
+            edits = difference.draft.rename_tag(element, name)
+            yield difference.piece(element, f"the name of the tag <{name}>", f"rename the tag to <{name}>", edits)
     missing = [name for name in ATTRIBUTES.get(tag, ()) if element.get(name) is None]
-    if attribute in ATTRIBUTES.get(tag, ()) or not missing:
-        return
-    alias = TAGS[tag].aliases.get(attribute) or closest(attribute, missing)
-    for name in dict.fromkeys(filter(None, (alias, *REQUIRED.get(tag, ())))):
-        if name in missing:
-            edits = difference.draft.rename_attribute(element, attribute, name)
-            yield difference.piece(
-                element, f"the name of the attribute {name}", f"rename {attribute} to {name}", edits=edits
-            )
-
-
-def _retagged(difference: Difference, element: Element) -> Iterator[Piece]:
-    """Rename a tag that ROS 2 does not know where it is, and attributes of the element."""
-    parent = element.getparent()
-    allowed = CHILDREN.get(str(parent.tag), ()) if parent is not None else ()
-    if element.tag not in allowed:
-        by_attributes = [
-            name for name in allowed if REQUIRED.get(name) and set(map(str, element.keys())) & set(REQUIRED[name])
-        ]
-        for name in dict.fromkeys(filter(None, (closest(str(element.tag), allowed), *by_attributes))):
-            yield difference.piece(
-                element,
-                f"the name of the tag <{name}>",
-                f"rename the tag to <{name}>",
-                edits=difference.draft.rename_tag(element, name),
-            )
-    for name in map(str, element.keys()):
-        yield from _respelt(difference, element, name)
-    for child in element:
-        if isinstance(child.tag, str) and child.tag not in CHILDREN.get(str(element.tag), ()):
-            near = closest(child.tag, CHILDREN.get(str(element.tag), ()))
-            if near:
-                yield difference.piece(
-                    child,
-                    f"the name of the tag <{near}>",
-                    f"rename the tag to <{near}>",
-                    edits=difference.draft.rename_tag(child, near),
-                )
-
-
-def _shapes(difference: Difference, element: Element) -> Iterator[Piece]:
-    """Put a shape that is outside of <geometry> into one."""
-    draft = difference.draft
-    if element.tag in ("visual", "collision"):
-        empty = [found for found in element.iterchildren("geometry") if not len(found)]
-        for shape in element:
-            if shape.tag in CHILDREN["geometry"]:
-                edits: Edits = sum((draft.remove(found) for found in empty), ())
-                yield difference.piece(
-                    element,
-                    "a shape outside <geometry>",
-                    "put the shape into <geometry>",
-                    edits=(*edits, *draft.wrap(shape, "geometry")),
-                )
+    for old in map(str, element.keys()) if attribute is None else (attribute,):
+        likely = (TAGS[tag].aliases.get(old), closest(old, missing), *REQUIRED[tag]) if tag in TAGS else ()
+        for new in dict.fromkeys(likely) if old not in ATTRIBUTES.get(tag, ()) else ():
+            if new in missing:
+                edits = difference.draft.rename_attribute(element, old, new)
+                yield difference.piece(element, f"the name of the attribute {new}", f"rename {old} to {new}", edits)
 
 
 def _missing(difference: Difference, element: Element) -> Iterator[Piece]:
-    """Add the attributes and children that an element needs, with usual values; define a material."""
+    """Add the attributes and children that an element needs, with usual values; put shapes into <geometry>."""
     draft, tag = difference.draft, str(element.tag)
     missing = {name: TAGS[tag].attributes[name].usual for name in REQUIRED.get(tag, ()) if element.get(name) is None}
     if missing and all(missing.values()):
-        names = " and ".join(missing)
-        yield difference.piece(
-            element,
-            f"the {names} of {{}} is missing",
-            f"add the {names} of {{}}",
-            edits=draft.add_attributes(element, missing),
-        )
-    needed = (
-        [*TAGS[tag].needed, *(["limit"] if element.get("type") in ("revolute", "prismatic") else [])]
-        if tag in TAGS
-        else []
-    )
-    if "limit" in needed and child_of(element, "limit") is None:
-        yield from (
-            difference.piece(element, "the type of {}", "set the type of {} to continuous", edits=edits)
-            for edits in draft.write(element, "type", "continuous")
-        )
-    for child in needed:
-        text = missing_element(child) if child_of(element, child) is None else None
-        if text is not None:
-            yield difference.piece(
-                element,
-                f"the <{child}> of {{}} is missing",
-                f"add the <{child}> of {{}}",
-                edits=draft.insert(element, text),
-            )
-    if tag == "material" and element.getparent() is not draft.root:
-        like = difference.reference.link(draft.link_of(element))
-        for found in like.iter("material") if like is not None else ():
-            defined = difference.reference.material(found.get("name") or "")
-            colour = child_of(defined, "color") if defined is not None else None
-            if colour is not None:
-                text = (
-                    f'<material name="{element.get("name") or ""}">\n  {difference.reference.text(colour)}\n</material>'
-                )
-                yield difference.piece(
-                    element,
-                    "a material that is not defined",
-                    "define the material under <robot>",
-                    edits=draft.insert(draft.root, text),
-                )
+        yield difference.of_sets([Set(element, "", name, value) for name, value in missing.items()])
+    is_limited = element.get("type") in ("revolute", "prismatic")
+    for child in (*(TAGS[tag].needed if tag in TAGS else ()), *(["limit"] if is_limited else [])):
+        if child_of(element, child) is not None:
+            continue
+        if child == "limit":
+            yield difference.of_sets([Set(element, "", "type", "continuous")])
+        inside = [it for it in element if it.tag in CHILDREN.get(child, ())]
+        text = missing_element(child)
+        if inside:
+            edits = draft.wrap(inside[0], child)
+            yield difference.piece(element, f"a shape outside <{child}>", f"put the shape into <{child}>", edits)
+        elif text is not None:
+            edits = draft.insert(element, text)
+            yield difference.piece(element, f"the <{child}> of {{}} is missing", f"add the <{child}> of {{}}", edits)
+    like = difference.reference.link(draft.link_of(element)) if tag == "material" else None
+    if like is not None and (edits := difference.materials(like)):
+        cause, action = "a material that is not defined", "define the material under <robot>"
+        yield difference.piece(element, cause, action, edits)
+    elif like is not None:
+        definitions = (difference.reference.material(it.get("name") or "") for it in like.iter("material"))
+        for colour in (it for found in definitions if found is not None for it in found.iter("color")):
+            yield difference.of_sets([Set(element, "color", "rgba", colour.get("rgba") or "")])
 
 
 def _names(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
     """Give an element a name, or another name where it has that of another one; remove a copy."""
     draft, tag = difference.draft, str(element.tag)
-    if tag not in ("robot", "link", "joint", "material") or attribute not in (None, "name"):
+    if "name" not in REQUIRED.get(tag, ()) or attribute not in (None, "name"):
         return
-    name = element.get("name")
-    same = (
-        [other for other in draft.root.iterchildren(tag) if other.get("name") == name]
-        if element.getparent() is draft.root
-        else [element]
-    )
+    name, is_definition = element.get("name"), element.getparent() is draft.root
+    same = [it for it in draft.root.iterchildren(tag) if it.get("name") == name] if is_definition else [element]
     for other in same if name is None or len(same) > 1 else ():
+        cause = f"the name of the {tag} is missing" if name is None else f"a duplicate {tag} name"
         for new in _free_names(difference, other):
-            ways = draft.write(other, "name", new) if name is not None else [draft.add_attributes(other, {"name": new})]
-            cause = f"a duplicate {tag} name" if name is not None else f"the name of the {tag} is missing"
-            yield from (
-                difference.piece(other, cause, f"name the {tag}", edits=edits, link=new if tag == "link" else "")
-                for edits in ways
-            )
+            sets, link = (Set(other, "", "name", new),), new if tag == "link" else ""
+            yield difference.piece(other, cause, f"name the {tag}", sets=sets, link=link)
     for other in reversed(same) if len(same) > 1 else ():
-        yield difference.piece(other, f"a duplicate {tag}", f"remove one copy of the {tag}", edits=draft.remove(other))
-    if tag == "material" and len(same) == 1 and name is not None:
-        known = [str(found.get("name")) for found in draft.root.iterchildren("material")]
-        used = dict.fromkeys(
-            str(found.get("name")) for found in draft.root.iter("material") if found.get("name") not in known
-        )
-        near = closest(name, known) if element.getparent() is not draft.root else None
-        for new in dict.fromkeys(filter(None, (near, *known))) if element.getparent() is not draft.root else used:
-            yield from (
-                difference.piece(element, "the name of a material", "correct the name of the material", edits=edits)
-                for edits in draft.write(element, "name", new)
-            )
-        for found in draft.root.iterchildren("material") if element.getparent() is not draft.root else ():
-            if found.get("name") == near or not any(
-                it is not found and it.get("name") == found.get("name") for it in draft.root.iter("material")
-            ):
-                yield from (
-                    difference.piece(
-                        found,
-                        "the name of a material",
-                        "correct the name of the definition of the material",
-                        edits=edits,
-                    )
-                    for edits in draft.write(found, "name", name)
-                )
+        yield difference.piece(other, f"a duplicate {tag}", f"remove one copy of the {tag}", draft.remove(other))
+    if tag == "material" and name is not None and not is_definition:
+        defined = [*draft.root.iterchildren("material")]
+        names = [str(it.get("name")) for it in defined]
+        for new in dict.fromkeys(filter(None, (closest(name, names), *names))):
+            yield difference.of_sets([Set(element, "", "name", new)])
+        yield from (difference.of_sets([Set(it, "", "name", name)]) for it in defined)
 
 
 def _free_names(difference: Difference, element: Element) -> list[str]:
     """Return names that an element may get: those that are used and not defined, and those of the reference."""
     draft, tag = difference.draft, str(element.tag)
     taken = {other.get("name") for other in draft.root.iterchildren(tag)}
-    ends = [end_of(joint, role) for joint in draft.joints() for role in _ENDS]
+    known, child = difference.reference.robot, end_of(element, "child")
     likes = {
-        "robot": [difference.reference.root.get("name") or "robot"],
-        "link": [*ends, *(link.name for link in difference.reference.robot.links)],
+        "link": [*(end_of(joint, role) for joint in draft.joints() for role in ENDS), *(it.name for it in known.links)],
         "joint": [
-            *(joint.name for joint in difference.reference.robot.joints if joint.child == end_of(element, "child")),
-            f"{end_of(element, 'child') or 'new'}_joint",
+            *(joint.name for joint in known.joints if joint.child == child),
+            f"{child or 'new'}_joint",
             "new_joint",
         ],
         "material": [
-            *(found.get("name") or "" for found in draft.root.iter("material")),
-            *(one.name for one in difference.reference.robot.materials),
-            "material",
+            *(it.get("name") or "" for it in draft.root.iter("material")),
+            *(it.name for it in known.materials),
         ],
-    }[tag]
+    }.get(tag, [difference.reference.root.get("name") or tag])
     return [name for name in dict.fromkeys(likes) if name and name not in taken][:_MAX_NAMES]
 
 
 def _connections(difference: Difference, owner: Element) -> Iterator[Piece]:
-    """Connect links: name the end of a joint, rename or add the link that it names, add the joint of a loose link."""
+    """Connect links: name the end of a joint, rename or add the link that it names."""
     draft = difference.draft
     links = [link.get("name") or "" for link in draft.links()]
     children = {end_of(joint, "child") for joint in draft.joints()}
     loose = [name for name in links if name and name not in children]
-    for joint in [owner] if owner.tag == "joint" else draft.joints():
-        for role in _ENDS:
-            end, given = child_of(joint, role), end_of(joint, role)
-            other = end_of(joint, "parent" if role == "child" else "child")
-            if given in links and owner.tag != "joint":
-                continue
-            near = closest(given, links) if given else None
-            for name in dict.fromkeys(filter(None, (near, *loose[:_MAX_NAMES]))):
-                if name in (other, given):
-                    continue
-                ways = (
-                    [draft.insert(joint, f'<{role} link="{name}"/>')]
-                    if end is None
-                    else draft.ways([Set(end, "", "link", name)])
-                )
-                yield from (
-                    difference.piece(joint, f"the {role} of {{}}", f"correct the {role} of {{}}", edits=edits)
-                    for edits in ways
-                )
-            if given and given not in links:
-                unknown = [name for name in links if not difference.reference.robot.has_link(name)]
-                for name in dict.fromkeys(
-                    filter(None, (closest(given, unknown), *(name for name in loose if name in unknown)))
-                ):
-                    yield difference.piece(
-                        joint,
-                        "the name of a link",
-                        "correct the name of the link",
-                        edits=renamed(draft, name, given),
-                        link=given,
-                    )
-                like = difference.reference.link(given)
-                text = difference.text(like) if like is not None else f'<link name="{given}"/>'
-                yield difference.piece(
-                    joint,
-                    "the link of a joint is missing",
-                    "add the link that the joint names",
-                    edits=draft.append(text),
-                    link=given,
-                )
-    for name in loose:
-        like = difference.reference.joint_of(name)
-        if like is not None:
-            yield Piece(
-                f"the joint of {name!r} is missing",
-                f"add the joint of {name!r}",
-                name,
-                (),
-                draft.append(difference.text(like)),
-            )
-    if owner.tag == "link" and owner.get("name") in loose:
-        for other in [name for name in links if name != owner.get("name")][:_MAX_NAMES]:
-            child = owner.get("name")
-            text = f'<joint name="{child}_joint" type="fixed">\n  <parent link="{other}"/>\n  <child link="{child}"/>\n</joint>'
-            yield difference.piece(
-                owner, "a link that is not connected", "connect the link by a joint", edits=draft.append(text)
-            )
+    unknown = [name for name in links if not difference.reference.robot.has_link(name)]
+    joints = [owner] if owner.tag == "joint" else draft.joints()
+    for joint, (role, opposite) in ((joint, roles) for joint in joints for roles in (ENDS, ENDS[::-1])):
+        given = end_of(joint, role)
+        if given in links and owner.tag != "joint":
+            continue
+        for name in dict.fromkeys(filter(None, (closest(given, links), *loose[:_MAX_NAMES]))):
+            if name not in (end_of(joint, opposite), given):
+                yield difference.of_sets([Set(joint, role, "link", name)])
+        if given and given not in links:
+            for name in dict.fromkeys(filter(None, (closest(given, unknown), *loose))):
+                if name in unknown:
+                    sets = renamed(draft, name, given)
+                    cause, action = "the name of a link", "correct the name of the link"
+                    yield difference.piece(joint, cause, action, sets=sets, link=given)
+            like = difference.reference.link(given)
+            text = difference.text(like) if like is not None else f'<link name="{given}"/>'
+            cause, action = "the link of a joint is missing", "add the link that the joint names"
+            yield difference.piece(joint, cause, action, draft.append(text), link=given)
