@@ -5,10 +5,9 @@ from math import pi
 
 from grader.robot.edits.difference import Difference
 from grader.robot.edits.draft import Draft, Set, child_of, end_of
-from grader.robot.edits.numbers import Values, values_of, written
+from grader.robot.edits.numbers import Values, rounded, values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
-from grader.robot.frames import placed_by
-from grader.robot.model import Box, Origin
+from grader.robot.model import Box
 from grader.robot.transforms import IDENTITY, Transform, rotation_from_rpy
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
@@ -21,28 +20,21 @@ def conventions(difference: Difference) -> Iterator[Piece]:
     yield from _other_units(difference)
     draft = difference.draft
     for link in draft.robot.links:
-        joints = [joint for joint in draft.robot.joints if joint.parent == link.name]
-        if len(joints) < 2 or not difference.reference.robot.has_link(link.name):
-            continue
-        turns = ((0.0, 0.0, -pi / 2), (0.0, 0.0, pi / 2), (0.0, 0.0, pi))
-        lifts = [shape.geometry.size[2] / 2 for shape in link.visuals[:1] if isinstance(shape.geometry, Box)]
-        for moved in (
-            *(Transform(rotation_from_rpy(turn)) for turn in turns),
-            *(_lifted(sign * lift) for lift in lifts for sign in (1, -1)),
-        ):
-            is_turn = moved.translation == (0.0, 0.0, 0.0)
-            what = "the directions of x and y" if is_turn else "the origin"
-            own = draft.joint_of(link.name)
-            before = _placed(own, IDENTITY, moved.inverse()) if own is not None and not is_turn else ()
-            sets = (*before, *_moved(draft, link.name, moved))
-            yield Piece(
-                f"{what} of the frame {link.name!r}",
-                f"correct {what} of the frame {link.name!r}",
-                "",
-                sets,
-                (),
-                CONVENTION,
-            )
+        is_base = sum(joint.parent == link.name for joint in draft.robot.joints) > 1
+        if is_base and difference.reference.robot.has_link(link.name):
+            lifts = [shape.geometry.size[2] / 2 for shape in link.visuals[:1] if isinstance(shape.geometry, Box)]
+            turns = (Transform(rotation_from_rpy((0.0, 0.0, yaw))) for yaw in (-pi / 2, pi / 2, pi))
+            yield from (_whole(draft, link.name, "the directions of x and y", turn) for turn in turns)
+            for height in (sign * lift for lift in lifts for sign in (1, -1)):
+                yield _whole(draft, link.name, "the origin", Transform(translation=(0.0, 0.0, height)))
+
+
+def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
+    """Return the piece that moves the frame of a link, and nothing that is seen; a turned frame turns the robot with it."""
+    own = draft.joint_of(link) if T_new_old.rotation == IDENTITY.rotation else None
+    before = _placed(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
+    cause = f"{what} of the frame {link!r}"
+    return Piece(cause, f"correct {cause}", "", (*before, *_moved(draft, link, T_new_old)), (), CONVENTION)
 
 
 def other_frames(difference: Difference) -> Iterator[Piece]:
@@ -52,59 +44,48 @@ def other_frames(difference: Difference) -> Iterator[Piece]:
         joint, other = draft.joint_of(link.name), difference.reference.joint_of(link.name)
         if joint is None or other is None:
             continue
-        old, new = (
-            Transform(rotation_from_rpy(_values(child_of(it, "origin"), "rpy")), _values(child_of(it, "origin"), "xyz"))
-            for it in (joint, other)
-        )
+        old, new = _pose(joint), _pose(other)
         for wanted in (new, Transform(new.rotation, old.translation), Transform(old.rotation, new.translation)):
             T_new_old = wanted.inverse() @ old
-            sets = [
-                Set(joint, "origin", name, written(value))
-                for name, value, before in (("xyz", wanted.translation, old.translation), ("rpy", wanted.rpy, old.rpy))
-                if _differ(value, before)
-            ]
+            sets = [*_set(joint, old, wanted)]
             axis = child_of(joint, "axis")
-            direction = (values_of(axis.get("xyz")) if axis is not None else ()) or (1.0, 0.0, 0.0)
-            turned = T_new_old.rotate((direction[0], direction[1], direction[2])) if len(direction) == 3 else direction
+            direction = _values(axis, "xyz") if axis is not None else (1.0, 0.0, 0.0)
+            turned = T_new_old.rotate(direction)
             if joint.get("type") != "fixed" and _differ(turned, direction):
-                sets.append(Set(joint, "axis", "xyz", written(tuple(round(value, 4) + 0.0 for value in turned))))
+                sets.append(Set(joint, "axis", "xyz", written(rounded(turned, 4))))
             moved = [*_moved(draft, link.name, T_new_old)]
             if sets and moved:
-                yield difference.piece(
-                    joint,
-                    f"the frame {link.name!r}",
-                    f"correct the frame {link.name!r}; what it shows stays where it is",
-                    sets=(*sets, *moved),
-                    rank=CONVENTION,
-                )
+                cause, action = "the frame {!r}", "correct the frame {!r}; what it shows stays where it is"
+                texts = cause.format(link.name), action.format(link.name)
+                yield difference.piece(joint, *texts, sets=(*sets, *moved), rank=CONVENTION)
 
 
 def _differ(one: Values, other: Values) -> bool:
     return any(abs(a - b) > 1e-3 for a, b in zip(one, other, strict=True))
 
 
-def _lifted(height: float) -> Transform:
-    return Transform(translation=(0.0, 0.0, height))
-
-
 def _moved(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
     """Yield the values with which the frame of a link is moved, and all that is in it stays together."""
     own = draft.link(link)
-    for part in own if own is not None else ():
-        if part.tag in ("visual", "collision", "inertial"):
-            yield from _placed(part, T_new_old)
-    for joint in draft.joints():
-        if end_of(joint, "parent") == link:
-            yield from _placed(joint, T_new_old)
+    parts = own.iterchildren("visual", "collision", "inertial") if own is not None else ()
+    for part in (*parts, *(joint for joint in draft.joints() if end_of(joint, "parent") == link)):
+        yield from _placed(part, T_new_old)
 
 
 def _placed(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
-    found = child_of(owner, "origin")
-    old = Origin(_values(found, "xyz"), _values(found, "rpy"))
-    pose = placed_by(T_new_old, old) @ T_old_new
-    for name, before, after in (("xyz", old.xyz, pose.translation), ("rpy", old.rpy, pose.rpy)):
+    old = _pose(owner)
+    return _set(owner, old, T_new_old @ old @ T_old_new)
+
+
+def _set(owner: Element, old: Transform, new: Transform) -> Iterator[Set]:
+    for name, before, after in (("xyz", old.translation, new.translation), ("rpy", old.rpy, new.rpy)):
         if _differ(before, after):
-            yield Set(owner, "origin", name, written(tuple(round(value, 4) + 0.0 for value in after)))
+            yield Set(owner, "origin", name, written(rounded(after, 4)))
+
+
+def _pose(owner: Element) -> Transform:
+    found = child_of(owner, "origin")
+    return Transform(rotation_from_rpy(_values(found, "rpy")), _values(found, "xyz"))
 
 
 def _values(element: Element | None, name: str) -> tuple[float, float, float]:
@@ -123,10 +104,9 @@ def _other_units(difference: Difference) -> Iterator[Piece]:
     if not any(value >= _LARGE for element, _, values in found for value in values if element.tag != "origin"):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
-        sets = tuple(
-            Set(element, "", name, written(tuple(value / factor for value in values)))
-            for element, name, values in found
-        )
-        yield Piece(
-            f"the unit of all lengths: {unit}, not metres", "convert all lengths to metres", "", sets, (), CONVENTION
-        )
+        metres = [
+            (element, name, written(tuple(value / factor for value in values))) for element, name, values in found
+        ]
+        sets = tuple(Set(element, "", name, value) for element, name, value in metres)
+        cause = f"the unit of all lengths: {unit}, not metres"
+        yield Piece(cause, "convert all lengths to metres", "", sets, (), CONVENTION)
