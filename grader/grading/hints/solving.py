@@ -12,7 +12,7 @@ from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import TAGS
+from grader.xml.urdf_format import CHILDREN, TAGS
 
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
 _STEP = 1e-4
@@ -21,7 +21,7 @@ _FLAT, _WILD = 1e-6, 1e3  # slopes that are none, and that are a leap
 _DIGITS = range(2, 7)
 _SHORT = 3  # decimals of a number that a person would write
 _MAX_SLOTS = 60
-_OF_JOINT = (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz"), ("limit", ""), ("mimic", ""), ("dynamics", ""))
+_ADDED = ("origin", "axis")  # elements that a person adds to give them a value
 
 
 class Slot(NamedTuple):
@@ -42,46 +42,33 @@ class Slot(NamedTuple):
 
 
 def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[Slot]:
-    """Yield the numbers of what links show, and of the joints that move links."""
-    for link in moved:
-        joint = draft.joint_of(link)
-        for tag, attribute in _OF_JOINT if joint is not None else ():
-            assert joint is not None
-            if tag != "axis" or joint.get("type") not in ("fixed", "floating"):
-                yield from _slot(joint, tag, attribute)
-    for link in shown:
-        own = draft.link(link)
-        for part in own if own is not None else ():
-            if part.tag in ("visual", "inertial"):
-                yield from _slot(part, "origin", "xyz")
-                yield from _slot(part, "origin", "rpy")
-                for inner in part.iter("box", "cylinder", "sphere", "mesh", "mass", "inertia"):
-                    yield from _slot(
-                        inner, "", "size" if inner.tag == "box" else "scale" if inner.tag == "mesh" else ""
-                    )
-            for used in part.iter("material"):
-                defined = draft.material(used.get("name") or "")
-                for colour in defined.iter("color") if defined is not None else ():
-                    yield from _slot(colour, "", "rgba")
+    """Yield the numbers of the joints that move links, and of what links show."""
+    joints = [joint for link in moved for joint in [draft.joint_of(link)] if joint is not None]
+    links = [own for link in shown for own in [draft.link(link)] if own is not None]
+    parts = [part for own in links for part in own.iterchildren("visual", "inertial")]
+    colours = [draft.material(used.get("name") or "") for part in parts for used in part.iterchildren("material")]
+    for owner in (*joints, *parts, *(found for found in colours if found is not None)):
+        tags = ("origin",) if owner.get("type") in ("fixed", "floating") else _ADDED
+        for tag in (tag for tag in tags if tag in CHILDREN[str(owner.tag)]):
+            yield from _slots(owner, tag)
+        for element in owner.iterdescendants(*(tag for tag in TAGS if tag not in _ADDED)):
+            yield from _slots(element, "")
 
 
-def _slot(owner: Element, tag: str, attribute: str) -> Iterator[Slot]:
-    element = child_of(owner, tag) if tag else owner
-    if element is None and tag not in ("origin", "axis"):
-        return
-    known = TAGS[tag or str(owner.tag)].attributes
-    names = (attribute,) if attribute else tuple(name for name, one in known.items() if len(one.parts) == 1)
-    texts = [element.get(name) if element is not None else None for name in names]
-    given = [
-        values_of(text if text is not None else known[name].default) for name, text in zip(names, texts, strict=True)
-    ]
-    if element is None and tag == "axis":
-        given = [(1.0, 0.0, 0.0)]
-    parts = [len(known[name].parts) for name in names]
-    kept = [index for index, values in enumerate(given) if len(values) == parts[index]]
-    if (kept and len(kept) == len(names)) or (not attribute and kept):
-        values = tuple(value for index in kept for value in given[index])
-        yield Slot(owner, tag, tuple(names[index] for index in kept), values, known[names[kept[0]]].unit)
+def _slots(owner: Element, tag: str) -> Iterator[Slot]:
+    """Yield the numbers of an element, or of its child with a tag, which may be missing: those of a vector, else all together."""
+    element, known = child_of(owner, tag) if tag else owner, TAGS[tag or str(owner.tag)].attributes
+    names = [name for name, one in known.items() if one.parts]
+    vectors = [name for name in names if len(known[name].parts) > 1]
+    for those in (*([name] for name in vectors), [name for name in names if name not in vectors]):
+        given: dict[str, Values] = {}
+        for name in those:
+            default = "1 0 0" if (tag, element) == ("axis", None) else known[name].default
+            values = values_of(element.get(name, default) if element is not None else default)
+            given |= {name: values} if len(values) == len(known[name].parts) else {}
+        if given:
+            unit = known[next(iter(given))].unit
+            yield Slot(owner, tag, tuple(given), tuple(value for values in given.values() for value in values), unit)
 
 
 class Solver:
