@@ -25,6 +25,15 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
+LOOKS_AT = {
+    "shows_box": ("box", "visual"),
+    "shows_cylinder": ("cylinder", "visual"),
+    "shows_sphere": ("sphere", "visual"),
+    "shows_colour": ("material",),
+    "shows_grey": ("material",),
+    "shows_nothing": ("visual",),
+}
+
 _ALIGNED = cos(radians(1.0))
 
 Shown = TypeVar("Shown", Box, Cylinder, Sphere)

@@ -16,6 +16,8 @@ from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.source import LazyLocation
 from grader.text import counted
 
+LOOKS_AT = dict.fromkeys(("collision_matches_visual", "collides_as"), ("collision",))
+
 SUGGESTS = dict.fromkeys(("collision_matches_visual", "collides_as"), "grader.robot.edits.bodies:body_pieces")
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known

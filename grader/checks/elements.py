@@ -25,6 +25,8 @@ from grader.xml.element_values import (
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import WantedElement, readable
 
+LOOKS_AT = {"element_present": ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration")}
+
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _MAX_NAMED = 5  # elements and values in a message
 

@@ -13,6 +13,8 @@ from grader.robot.transforms import IDENTITY_ROTATION, Vector
 from grader.source import LazyLocation
 from grader.text import enumerated
 
+LOOKS_AT = {"bottom_at_height": ("visual/origin",)}
+
 _UP: Vector = (0.0, 0.0, 1.0)
 
 

@@ -17,6 +17,8 @@ from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
+LOOKS_AT = {"mass_is": ("mass", "inertial"), "inertia_plausible": ("inertial",)}
+
 SUGGESTS = dict.fromkeys(("inertia_plausible", "mass_is"), "grader.robot.edits.bodies:body_pieces")
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
 _ROUNDING = 0.01  # of the largest principal moment: what rounded numbers may add to it in a thin plate, where the others are equal to it

@@ -14,6 +14,13 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
+LOOKS_AT = {
+    "joint_limits": ("limit",),
+    "joint_axis": ("axis",),
+    "mimics": ("mimic",),
+    "joint_dynamics": ("dynamics",),
+}
+
 _EXACT = 1e-6  # for numbers that a URDF states as they are expected
 
 

@@ -17,6 +17,8 @@ from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import quoted
 
+LOOKS_AT = {"shows_mesh": ("mesh", "visual")}
+
 _ANGLE = 1.0  # degrees that a mesh may be turned
 _BEST_FIRST = ("passed", "pending", "failed")
 

@@ -13,6 +13,8 @@ from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, degrees_between, dot, minus, unit
 
+LOOKS_AT = {"axis_along": ("axis",)}
+
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
 # The smallest relative motion of lowest and highest point, as a share of that of a level wheel: 45 degrees off level.

@@ -23,8 +23,8 @@ FileKind = Literal["urdf", "launch", "rviz"]
 LOOKS_AT = {
     "package_found": (MANIFEST, SETUP),
     "package_type": (MANIFEST,),
-    "build_installs": (SETUP,),
-    "installs_files": (SETUP,),
+    "build_installs": (SETUP, "file"),
+    "installs_files": (SETUP, "file"),
     "setup_imports": (SETUP,),
 }
 

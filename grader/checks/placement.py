@@ -20,6 +20,8 @@ from grader.robot.shapes import UnknownShape
 from grader.robot.transforms import Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 
+LOOKS_AT = {"frame_at": ("joint/origin",), "centre_at": ("visual/origin",)}
+
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
 _UP: Vector = (0.0, 0.0, 1.0)
 _NOT_TURNED: Vector = (0.0, 0.0, 0.0)

@@ -15,6 +15,8 @@ from grader.robot.sampling import SINGLE
 from grader.robot.selectors import selected_link
 from grader.text import counted, enumerated, quoted
 
+LOOKS_AT = {"kinematics_match_reference": ("joint/origin",)}
+
 Match = Literal["name", "order"]
 Samples = Annotated[
     int, Constraint("from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000})

@@ -103,10 +103,10 @@ class Check:
 
     `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
     submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
-    for the grader's own. `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF
-    on which the result depends: hints propose edits of these. `suggests` is
-    the function that yields edits for it, as "module:function", where neither the reference nor the numbers that it measures lead to
-    them.
+    for the grader's own. `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result
+    depends: hints propose edits of these; or the tags of a URDF (`limit`, `visual/origin`, `joint@type`): `rubric test` suggests the
+    check where a mutant of these survives. `suggests` is the function that yields edits for it, as "module:function", where neither
+    the reference nor the numbers that it measures lead to them.
     """
 
     name: str
@@ -195,6 +195,14 @@ def find_check(name: str) -> Check | None:
         packages = enumerated(sorted(map(_package_of, entries)))
         raise InputError(f"the check {name} is in several packages, {packages}: uninstall all but one")
     return _load(name, entries[0]) if entries else None
+
+
+def usable_check(name: str) -> Check | None:
+    """Return the check of this name; None for one that cannot be used: a rubric that names it is refused."""
+    try:
+        return find_check(name)
+    except InputError:
+        return None
 
 
 def _load(name: str, entry: "EntryPoint") -> Check:

@@ -16,6 +16,13 @@ from grader.text import counted, enumerated
 from grader.xml import catalogue as xml_catalogue
 from grader.xml.urdf_format import JOINT_TYPES, JointType
 
+LOOKS_AT = {
+    "urdf_loads": ("joint", "link"),
+    "held_by": ("parent", "child", "joint", "joint@type"),
+    "joints_named": ("joint@name",),
+    "counts": ("joint", "joint@type", "link"),
+}
+
 _OF_XML = kinds_in(vars(xml_catalogue).values())
 
 

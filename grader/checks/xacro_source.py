@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
     from grader.xacro.inventory import Definitions
 
+LOOKS_AT = {"xacro_uses": ("xacro:property", "xacro:macro", "xacro:include")}
+
 _MAX_NAMED = 5  # names in a message
 
 

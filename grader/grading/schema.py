@@ -4,9 +4,8 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from grader.checks.registry import Check, check_names, find_check
+from grader.checks.registry import Check, check_names, usable_check
 from grader.checks.toml_types import TomlType, described
-from grader.errors import InputError
 from grader.grading.keys import CRITERION, DEFAULTS, RUBRIC, KeyTable
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -15,7 +14,7 @@ _Schema = dict[str, Any]
 
 def rubric_schema() -> _Schema:
     """Return the JSON Schema of a rubric, with the arguments of every check, also of installed plug-ins."""
-    named = {name: _usable(name) for name in check_names()}
+    named = {name: usable_check(name) for name in check_names()}
     checks = [check for check in named.values() if check is not None]
     facts = [check.documentation.fact if check is not None else "" for check in named.values()]
     schema, criterion = RUBRIC.schema, CRITERION.schema
@@ -34,13 +33,6 @@ def rubric_schema() -> _Schema:
     complete = {"properties": {"criterion": {"items": {"$ref": "#/$defs/complete"}}}}
     schema |= {"if": {"not": {"required": ["defaults"]}}, "then": complete}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
-
-
-def _usable(name: str) -> Check | None:
-    try:
-        return find_check(name)
-    except InputError:  # in another package: a rubric that names it is refused
-        return None
 
 
 def _complete(checks: Iterable[Check]) -> _Schema:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from fnmatch import fnmatchcase
 from random import Random
 
-from grader.checks.registry import check_names
+from grader.checks.registry import check_names, usable_check
 from grader.grading.report import Result
 from grader.mutation.diffs import hunk
 from grader.mutation.margins import margin_of
@@ -30,7 +30,7 @@ class MutationTest:
         self.caught = self.same = 0
         self.survivors: list[Survivor] = []
         self.faults: list[Loss] = []
-        self.checks = set(check_names())
+        self.checks = [check for name in check_names() if (check := usable_check(name)) is not None]
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 

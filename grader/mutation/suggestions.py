@@ -1,8 +1,8 @@
-"""Which check to try for a mutant that survived: a table of what it changes."""
+"""Which check to try for a mutant that survived: one that looks at what it changes."""
 
-from collections.abc import Collection, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Collection, Iterable, Sequence
 
+from grader.checks.registry import Check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
@@ -10,59 +10,12 @@ from grader.mutation.references import texts
 from grader.robot.model import Robot
 from grader.text import enumerated
 
-
-class Rule(NamedTuple):
-    """The checks that look at an attribute or tag. `inside` are tags that must be around it, `@name` names an attribute."""
-
-    what: str
-    checks: tuple[str, ...]
-    inside: str = ""
-
-
 # What ROS 2 does with a mutant, and the check that looks at that.
 _VERDICTS = {
     "rejected": ("ROS 2 rejects it, and no criterion says so", "urdf_loads"),
     "degraded": ("ROS 2 drops content of it, and no criterion says so", "without_problems"),
 }
 _MEASURED = ("link", "links", "joints", "leader", "name", "file", "files")
-# The first rule that matches counts.
-_RULES = (
-    Rule("limit", ("joint_limits",)),
-    Rule("safety_controller", ("element_present",)),
-    Rule("calibration", ("element_present",)),
-    Rule("dynamics", ("joint_dynamics",)),
-    Rule("mimic", ("mimics",)),
-    Rule("axis", ("joint_axis", "axis_along")),
-    Rule("mass", ("mass_is",)),
-    Rule("inertial", ("inertia_plausible", "mass_is")),
-    Rule("collision", ("collision_matches_visual", "collides_as")),
-    Rule("gazebo", ("element_present",)),
-    Rule("ros2_control", ("element_present",)),
-    Rule("transmission", ("element_present",)),
-    Rule("sensor", ("element_present",)),
-    Rule("mesh", ("shows_mesh",)),
-    Rule("box", ("shows_box",)),
-    Rule("cylinder", ("shows_cylinder",)),
-    Rule("sphere", ("shows_sphere",)),
-    Rule("material", ("shows_colour", "shows_grey")),
-    Rule("@type", ("held_by", "counts"), "joint"),
-    Rule("@name", ("joints_named",), "joint"),
-    Rule("parent", ("held_by",)),
-    Rule("child", ("held_by",)),
-    Rule("origin", ("centre_at", "bottom_at_height"), "visual"),
-    Rule("origin", ("frame_at", "kinematics_match_reference"), "joint"),
-    Rule("visual", ("shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "shows_nothing")),
-    Rule("joint", ("held_by", "counts", "urdf_loads")),
-    Rule("link", ("counts", "urdf_loads")),
-    Rule("xacro:property", ("xacro_uses",)),
-    Rule("xacro:macro", ("xacro_uses",)),
-    Rule("xacro:include", ("xacro_uses",)),
-    Rule("package.xml", ("package_found", "package_type")),
-    Rule("setup.py", ("build_installs", "installs_files", "setup_imports")),
-    Rule("launch", ("launch_starts", "launch_finds_files", "launch_found")),
-    Rule("rviz", ("rviz_display_on", "rviz_fixed_frame", "rviz_found")),
-    Rule("file", ("installs_files", "build_installs")),
-)
 
 
 def suggestion(
@@ -71,18 +24,18 @@ def suggestion(
     robot: Robot | None,
     verdict: str,
     tolerated: Collection[str],
-    known: Collection[str],
+    known: Sequence[Check],
 ) -> str:
     """Return what may catch a mutant that survived, as a clause.
 
     `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `tolerated` are the criteria that measure another value
-    than on the reference, `known` the checks that exist.
+    than on the reference, `known` the checks that exist, which declare what they look at.
     """
     used = {criterion.check.name for criterion in rubric.criteria}
     effect, check = _VERDICTS.get(verdict, ("", ""))
-    if check in known and check not in used:
+    if check in (it.name for it in known) and check not in used:
         return f"{effect}; try {check}"
-    checks = [name for name in _checks_for(mutant.tags) if name in known]
+    checks = _checks_for(mutant.tags, known)
     names = _names(mutant, robot)
     near = [found for found in rubric.criteria if found.check.name in checks and names & _measured(found)]
     others = [name for name in checks if name not in {found.check.name for found in near}][:2]
@@ -96,11 +49,17 @@ def suggestion(
     return f"no criterion looks at it; {attempt}" if attempt else "no criterion looks at it, and no check does"
 
 
-def _checks_for(tags: Sequence[str]) -> Iterator[str]:
-    for rule in _RULES:
-        if rule.what in tags and (not rule.inside or rule.inside in tags):
-            yield from rule.checks
-            return
+def _checks_for(tags: Sequence[str], known: Iterable[Check]) -> list[str]:
+    """Return the checks that look at what changed: at the innermost of the tags around it that any check looks at."""
+    depths = {check.name: max((_depth(place, tags) for place in check.looks_at), default=0) for check in known}
+    deepest = max(depths.values(), default=0)
+    return [name for name, depth in depths.items() if depth == deepest > 0]
+
+
+def _depth(place: str, tags: Sequence[str]) -> int:
+    """Return how deep the tags contain a place such as `limit`, `visual/origin` or `joint@type`, from 1; 0 if they do not."""
+    names = place.replace("@", "/@").split("/")
+    return tags.index(names[-1]) + 1 if all(name in tags for name in names) else 0
 
 
 def _measured(criterion: Criterion) -> set[str]:
