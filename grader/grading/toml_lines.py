@@ -17,26 +17,23 @@ _TOKEN = re.compile(
 def key_lines(text: str) -> dict[Path, int]:
     """Return the line of every table header and key of a valid TOML text, by its path; arrays count from 0."""
     lines: dict[Path, int] = {(): 1}
-    for line, path in statement_paths(text):
+    for line, path in _statement_paths(text):
         for length in range(len(path)):
             lines.setdefault(path[: length + 1], line)
     return lines
 
 
-def statement_paths(text: str) -> Iterator[tuple[int, Path]]:
-    """Yield the line and the path of every table header and key of a TOML text, also of those that are there already.
-
-    The last one may be cut off or broken.
-    """
+def _statement_paths(text: str) -> Iterator[tuple[int, Path]]:
+    """Yield the line and the path of every table header and key."""
     counts: dict[Path, int] = {}
     table: Path = ()
-    for line, tokens in statements(text):
+    for line, tokens in _statements(text):
         if tokens[0] == "[":
-            is_array = tokens[1:2] == ["["]
-            table = _table(_names(_until("]", tokens[1 + is_array :])), counts, is_array=is_array)
+            is_array = tokens[1] == "["
+            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
             yield line, table
         else:
-            yield line, (*table, *_names(_until("=", tokens)))
+            yield line, (*table, *_names(tokens[: tokens.index("=")]))
 
 
 def _table(names: list[str], counts: dict[Path, int], *, is_array: bool) -> Path:
@@ -58,7 +55,7 @@ def line_of(lines: dict[Path, int], path: Path) -> int:
     return lines[path]
 
 
-def statements(text: str) -> list[tuple[int, list[str]]]:
+def _statements(text: str) -> list[tuple[int, list[str]]]:
     """Return each header and key with its value as tokens, and the line on which it begins."""
     statements: list[tuple[int, list[str]]] = []
     line, depth = 1, 0
@@ -76,18 +73,7 @@ def statements(text: str) -> list[tuple[int, list[str]]]:
     return statements
 
 
-def _until(end: str, tokens: list[str]) -> list[str]:
-    return tokens[: tokens.index(end)] if end in tokens else tokens
-
-
 def _names(tokens: list[str]) -> list[str]:
     """Return the keys that tokens stand for, quoted ones without their quotes."""
     names = [token for token in tokens if token != "."][:_MAX_DEPTH]
-    return [_unquoted(token) if token[0] in "\"'" else token for token in names]
-
-
-def _unquoted(token: str) -> str:
-    try:
-        return next(iter(tomllib.loads(f"{token}=0")))
-    except tomllib.TOMLDecodeError:  # in a broken statement
-        return token
+    return [next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names]
