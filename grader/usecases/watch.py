@@ -18,6 +18,7 @@ from grader.report.screen import draw
 from grader.text import printable_path
 from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.file_events import Watched, changes
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
 # The report that was shown last, all of its text, whatever the terminal's width, and the texts of files that its hints change.
@@ -77,10 +78,6 @@ def _changes(request: GradeRequest, besides: set[Path], warn: Warn) -> Iterator[
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
     rubric = _rubric_file(request, warn)
-    try:
-        from grader.usecases.file_events import Watched, changes
-    except ImportError:
-        raise InputError("--watch needs watchfiles: pip install 'urdf-grader[watch]'") from None
     own = frozenset(os.path.realpath(file) for _, file in request.saves)
     return changes(Watched(Path(request.path), rubric, own, besides))
 
