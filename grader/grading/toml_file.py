@@ -70,7 +70,7 @@ def _mistake(error: str, text: str) -> str:
     said, line, column, _ = re.split(_PLACE, error)
     row, at = (int(line), int(column) - 1) if line else (len(lines), len(lines[-1]))
     before, after = lines[row - 1][:at][-_MAX_WIDTH:], lines[row - 1][at:][:_MAX_WIDTH]
-    what = f"{said[0].lower()}{said[1:]}: {(before + after).strip()}"
+    what = f"{said[0].lower()}{said[1:]}: {(before + after).strip() or 'an empty line'}"
     for pattern, advice in _MISTAKES:
         if match := re.match(pattern, f"{said}\n{before}\n{after}"):
             what = advice.format(match[match.lastindex or 0])

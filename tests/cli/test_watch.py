@@ -227,7 +227,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put(text.replace("points = 6", "points = -6"), rubric)
         assert "lab.toml:" in watch.err.until("\n")
         put("id = [", rubric)
-        watch.err.until("invalid value")
+        watch.err.until("invalid value: an empty line")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
         watch.out.until("now failed: lidar-place\nremoved: lidar-frame\n")
 

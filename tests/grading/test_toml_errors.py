@@ -49,8 +49,8 @@ OTHERS = [
     ('id = "b"', '3:9: cannot overwrite a value: id = "b"'),
     ("[late]\na = 1\n[late]", "5:6: cannot declare ('late',) twice: [late]"),
     ('reference = "C:\\Users"', '3:18: invalid hex value: reference = "C:\\Users"'),
-    ("requires = [", "4:1: invalid value: "),
-    ('feedback = """Look.\nurdf = "a"', "5:1: unterminated string: "),
+    ("requires = [", "4:1: invalid value: an empty line"),
+    ('feedback = """Look.\nurdf = "a"', "5:1: unterminated string: an empty line"),
     ("a =\u00a01", "3:4: invalid value: a =\\xa01"),
 ]
 
