@@ -119,7 +119,7 @@ def test_the_rubric_works_without_the_file(top: Path) -> None:
         ),
         ("\nbox = ''", "2: the rubric small has no question 'box'; there are: essay"),
         ("essay = 3", "1: the answer to essay must be a string"),
-        ("essay = ", "1:9: essay has no value"),
+        ("essay = ", "1:9: invalid value: essay ="),
     ],
 )
 def test_mistakes_in_the_file_have_lines(tmp_path: Path, answers: str, why: str) -> None:
