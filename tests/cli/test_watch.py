@@ -13,7 +13,7 @@ from typing import IO, Self
 import pytest
 
 from grader.files.folder import is_looked_at, read_folder
-from grader.usecases.file_events import Watched, _stamps, changes
+from grader.usecases.watch import Watched, _stamps, changes
 from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
@@ -227,7 +227,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put(text.replace("points = 6", "points = -6"), rubric)
         assert "lab.toml:" in watch.err.until("\n")
         put("id = [", rubric)
-        watch.err.until("invalid value: an empty line")
+        watch.err.until("invalid value: id = [")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
         watch.out.until("now failed: lidar-place\nremoved: lidar-frame\n")
 
