@@ -47,7 +47,6 @@ LIBRARIES = {
     "sqlite3": {"classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},
-    "watchfiles": {"usecases"},
     "csv": {"classroom"},
 }
 

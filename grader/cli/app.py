@@ -4,8 +4,9 @@ import os
 import re
 import sys
 from collections.abc import Sequence
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext, redirect_stderr, suppress
 from importlib import import_module
+from io import StringIO
 from itertools import dropwhile
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,7 +15,6 @@ import typer
 
 from grader import __version__
 from grader.cli.interrupts import quiet_interrupts
-from grader.cli.options import SHELLS
 from grader.cli.output import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
@@ -28,7 +28,7 @@ COMMANDS = (
     "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "gradebook", "rubric",
 )  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
-COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
+_COMPLETION = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")
 _OPTION = re.compile(r"--[^=]+")  # such as --comment, whose value may be -1
 
@@ -44,14 +44,6 @@ def _root(
         bool,
         typer.Option("--version", "-V", help="Print the version and exit.", callback=_print_version, is_eager=True),
     ] = False,
-    show_completion: Annotated[
-        str | None,
-        typer.Option(metavar="[SHELL]", help="Print the completion script for a shell.", autocompletion=lambda: SHELLS),
-    ] = None,
-    install_completion: Annotated[
-        str | None,
-        typer.Option(metavar="[SHELL]", help="Install the completion script.", autocompletion=lambda: SHELLS),
-    ] = None,
 ) -> None:
     """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
 
@@ -73,7 +65,7 @@ def make_app(names: Sequence[str]) -> typer.Typer:
     app = typer.Typer(
         name="grader",
         no_args_is_help=True,
-        add_completion=False,
+        add_completion=len(names) > 1,
         rich_markup_mode=None,  # plain help takes a third of the time
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
@@ -126,13 +118,7 @@ def _discard_reports(words: Sequence[str]) -> None:
 def _run(arguments: Sequence[str]) -> int:
     try:
         if os.environ.get("_GRADER_COMPLETE"):
-            from grader.cli.completion import complete
-
-            return complete(make_app, COMMANDS)
-        if arguments and arguments[0].partition("=")[0] in COMPLETION_OPTIONS:
-            from grader.cli.completion import set_up
-
-            return set_up(arguments)
+            return _complete()
         app = make_app(_command(arguments) or COMMANDS)
         is_limited = arguments and arguments[0] in _LIMITED and "--watch" not in arguments
         with outer_limits() if is_limited else nullcontext():
@@ -150,7 +136,19 @@ def _run(arguments: Sequence[str]) -> int:
         return ExitCode.NOT_GRADED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other_error(error)
+    if result == 1 and arguments[0] in _COMPLETION:  # typer's code for a shell that it does not know
+        return ExitCode.NOT_GRADED
     return result if isinstance(result, int) else ExitCode.PASSED
+
+
+def _complete() -> int:
+    """Print the completions of the word at the cursor; nothing if there is an error, which the shell would show."""
+    with redirect_stderr(StringIO()), suppress(Exception):
+        try:
+            make_app(COMMANDS)(prog_name="grader")
+        except SystemExit as end:  # its code tells fish whether there are completions
+            return end.code if isinstance(end.code, int) else 0
+    return 0
 
 
 def _command(arguments: Sequence[str]) -> list[str]:

@@ -30,9 +30,7 @@ def quiet_interrupts() -> Iterator[None]:
 
     def ignored(found: "sys.UnraisableHookArgs") -> None:
         if issubclass(found.exc_type, KeyboardInterrupt):
-            Timer(
-                _DELAY, signal.pthread_kill, (main_thread().ident, signal.SIGINT)
-            ).start()  # not here: an exception in a hook is printed, too
+            Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
         elif not (arrived and issubclass(found.exc_type, ResourceWarning)):
             hook(found)
 

@@ -12,8 +12,6 @@ from grader.usecases import DEFAULT_RUBRIC
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
 
-SHELLS = ["bash", "zsh", "fish"]
-
 
 def rubric_ids() -> list[str]:
     """Return the ids of the shipped rubrics."""

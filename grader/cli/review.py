@@ -28,7 +28,6 @@ def review(
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
     ] = None,
-    opens: Annotated[bool, typer.Option("--open", help="Open the pictures of each item, or the page.")] = False,
     html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
     port: Annotated[
         int,
@@ -56,7 +55,7 @@ def review(
 
       grader review --gradebook lab6.db --criterion answer-floating-link
 
-      grader review --gradebook lab6.db --pictures pictures --open
+      grader review --gradebook lab6.db --pictures pictures
 
       grader review --gradebook lab6.db --section A --anonymous
 
@@ -74,7 +73,7 @@ def review(
 
         if pictures is not None:
             raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")
-        write_stdout(review_in_browser(gradebook, scope, port, TERMINAL, opens=opens))
+        write_stdout(review_in_browser(gradebook, scope, port, TERMINAL))
         return 0
     if port:
         raise InputError("--port needs --html")
@@ -82,5 +81,5 @@ def review(
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    write_stdout(review_all(gradebook, scope, pictures, TERMINAL, opens=opens))
+    write_stdout(review_all(gradebook, scope, pictures, TERMINAL))
     return 0

@@ -8,9 +8,8 @@ from typing import NamedTuple
 from grader.drawing.views import VIEWER
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
-from grader.robot.transforms import Transform, Vector, cross, minus, unit
+from grader.robot.transforms import Transform, Vector, cross, unit
 
-Piece = tuple[float, float]  # shares of the length of a line, or of the angle of an arc
 Extents = tuple[tuple[float, float], ...]  # along x, y and z
 
 _EDGE_ON = 1e-9  # a face whose normal points less to the viewer is seen edge-on
@@ -31,10 +30,6 @@ class Line(NamedTuple):
     def extents(self) -> Extents:
         """Return the least and the largest coordinates."""
         return tuple((min(pair), max(pair)) for pair in zip(self.start, self.end, strict=True))
-
-    def cut(self, start: float, end: float) -> "Line":
-        """Return the part between two shares of the length."""
-        return Line(self.at(start), self.at(end))
 
 
 class Arc(NamedTuple):
@@ -61,31 +56,28 @@ class Arc(NamedTuple):
         reaches = map(hypot, self.major, self.minor)
         return tuple((middle - reach, middle + reach) for middle, reach in zip(self.centre, reaches, strict=True))
 
-    def cut(self, start: float, end: float) -> "Arc":
-        """Return the part between two shares of the angle."""
-        whole = self.end - self.start
-        return self._replace(start=self.start + start * whole, end=self.start + end * whole)
-
 
 Curve = Line | Arc
 
 
 class Edge(NamedTuple):
-    """An edge of a shape. `faces_viewer` is false if the shape itself hides it."""
+    """An edge of a shape inside its outline. `faces_viewer` is false if the shape itself hides it."""
 
     curve: Curve
     faces_viewer: bool
 
 
-def edges(shape: Shape, pose: Transform) -> list[Edge]:
-    """Return the edges of a shape with T_view_shape, and the silhouette lines of its curved surface."""
+def inner_edges(shape: Shape, pose: Transform) -> list[Edge]:
+    """Return the edges of a shape with T_view_shape that do not look like a part of its outline."""
     match shape:
         case Box(size=size):
             return [*_box_edges(_columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)), pose)]
         case Cylinder(radius=radius, length=length):
-            return [*_cylinder_edges(_Tube.of(radius, length, pose))]
-        case Sphere(radius=radius):
-            return [Edge(_ball(radius, pose), faces_viewer=True)]
+            tube = _Tube.of(radius, length, pose)
+            near, far = Edge(tube.rim(tube.near, 0.0, pi), True), Edge(tube.rim(tube.far, pi, tau), False)
+            return [near, far] if tube.shows_cap and tube.shows_side else []
+        case Sphere():
+            return []
 
 
 def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
@@ -113,6 +105,7 @@ class _Tube(NamedTuple):
     major: Vector
     minor: Vector
     shows_cap: bool
+    shows_side: bool
 
     @classmethod
     def of(cls, radius: float, length: float, pose: Transform) -> "_Tube":
@@ -124,25 +117,17 @@ class _Tube(NamedTuple):
         up = cross(across, axis)
         near = _moved(pose.translation, axis, length / 2.0)
         far = _moved(pose.translation, axis, -length / 2.0)
-        return cls(near, far, _scaled(across, radius), _scaled(up, radius), shows_cap=axis[2] > _EDGE_ON)
+        return cls(
+            near,
+            far,
+            _scaled(across, radius),
+            _scaled(up, radius),
+            axis[2] > _EDGE_ON,
+            hypot(axis[0], axis[1]) > _EDGE_ON,
+        )
 
     def rim(self, centre: Vector, start: float, end: float) -> Arc:
         return Arc(centre, self.major, self.minor, start, end)
-
-
-def _cylinder_edges(tube: _Tube) -> Iterator[Edge]:
-    is_end_on = hypot(*minus(tube.near, tube.far)[:2]) <= _EDGE_ON
-    if tube.shows_cap:
-        yield Edge(tube.rim(tube.near, 0.0, tau), faces_viewer=True)
-    else:
-        yield Edge(tube.rim(tube.near, 0.0, pi), faces_viewer=True)
-    if not is_end_on:
-        yield Edge(tube.rim(tube.far, 0.0, pi), faces_viewer=True)
-        for sign in (1.0, -1.0):
-            side = Line(_moved(tube.near, tube.major, sign), _moved(tube.far, tube.major, sign))
-            yield Edge(side, faces_viewer=True)
-        if tube.shows_cap:
-            yield Edge(tube.rim(tube.far, pi, tau), faces_viewer=False)
 
 
 def _box_edges(halves: tuple[Vector, Vector, Vector], pose: Transform) -> Iterator[Edge]:
@@ -153,8 +138,9 @@ def _box_edges(halves: tuple[Vector, Vector, Vector], pose: Transform) -> Iterat
         for signs in product((-1.0, 1.0), repeat=2):
             middle = _moved(_moved(pose.translation, halves[first], signs[0]), halves[second], signs[1])
             line = Line(_moved(middle, halves[axis], -1.0), _moved(middle, halves[axis], 1.0))
-            leans = max(signs[0] * to_viewer[first], signs[1] * to_viewer[second])
-            yield Edge(line, faces_viewer=leans > _EDGE_ON)
+            leans = signs[0] * to_viewer[first], signs[1] * to_viewer[second]
+            if min(leans) > _EDGE_ON or max(leans) < -_EDGE_ON:  # the viewer sees both faces beside it, or none
+                yield Edge(line, faces_viewer=leans[0] > 0.0)
 
 
 def _ball(radius: float, pose: Transform) -> Arc:

@@ -9,8 +9,7 @@ from grader.checks.manual import answered
 from grader.errors import RubricError
 from grader.files.reading import read_capped
 from grader.grading.rubric import Rubric, find_rubric, read_rubric
-from grader.grading.toml_file import complain_of, read_toml
-from grader.grading.toml_lines import Path as TomlPath
+from grader.grading.toml_file import TomlPath, complain_of, read_toml
 from grader.names import did_you_mean
 from grader.text import printable_path
 

@@ -4,7 +4,6 @@ import json
 from dataclasses import astuple
 from typing import Any
 
-from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
 from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
@@ -61,7 +60,6 @@ def from_record(
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
     evidence = {proof.id: proof for proof in rubric.evidence}
-    uncertain = data.get("perhaps") or [()] * len(data["evidence"])  # records of earlier versions have none
     return Report(
         _submission(data, originals),
         rubric,
@@ -73,7 +71,7 @@ def from_record(
         ),
         tuple(
             Exhibits(evidence[name], _exhibits(files), _exhibits(perhaps))
-            for name, files, perhaps in zip(data["evidence"], data["exhibits"], uncertain, strict=True)
+            for name, files, perhaps in zip(data["evidence"], data["exhibits"], data["perhaps"], strict=True)
         ),
         _exhibits(data["others"]),
         tuple(data["notes"]),
@@ -86,27 +84,20 @@ def submission_of(text: str) -> GradedSubmission:
     return _submission(json.loads(text))
 
 
-def lacks(text: str) -> tuple[str, ...]:
-    """Return what the submission of a record has evidence for, but no work of this lab: the URDF, the package."""
-    return submission_of(text).lacks
-
-
 def _submission(data: Any, originals: Originals | None = None) -> GradedSubmission:
-    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, *rest = data["submission"]
-    package = GradedPackage(*package) if package is not None else None
-    others = tuple(OtherCandidate(*file) for file in others)
+    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, lacks = data["submission"]
     return GradedSubmission(
         identity,
         path,
         sha256,
-        package,
-        others,
+        GradedPackage(*package) if package is not None else None,
+        tuple(OtherCandidate(*file) for file in others),
         tuple(ignored),
         has_urdf,
         verdict,
         is_single,
         unread,
-        tuple(rest[0]) if rest and isinstance(rest[0], list) else (),  # earlier versions had no list
+        tuple(lacks),
         originals,
     )
 
@@ -135,8 +126,6 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
         return Result(rubric.criteria[entry], same[rubric.criteria[entry].id])
     index, (status, message, measured, expected, tolerance, unit, place, *problem), *rest = entry
     location = _location(place) if place is not None else None
-    if rubric.criteria[index].check.function is answered:
-        expected = None  # records of earlier development versions hold the model answer here
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location, "", *problem)
     return Result(rubric.criteria[index], outcome, *rest)
 

@@ -1,17 +1,47 @@
-"""Read a TOML file, and complain of the mistakes in it: all in one error, each with its line."""
+"""Read a TOML file, and complain of the mistakes in it: all in one error, each with its line, which tomllib does not report of keys."""
 
+import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 from grader.errors import RubricError
-from grader.grading.toml_lines import Path as TomlPath
-from grader.grading.toml_lines import key_lines, line_of
-from grader.text import printable_path
+from grader.text import printable, printable_path
 
+TomlPath = tuple[str | int, ...]
+
+_MAX_DEPTH = 20  # keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
+
+_TOKEN = re.compile(
+    r'''"""(?:\\.|[^\\])*?"""(?!")|\'\'\'.*?\'\'\'(?!\')|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[\[\]{}\n=.]|[^\s"'\#\[\]{}=.]+|[ \t\r]+''',
+    re.DOTALL,
+)
 _MAX_COMPLAINTS = 1000  # lines about one file
+_MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
+_PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
+_SMART = "[“”„‟‘’‚‛«»‹›]"
+# The mistakes that people make: what tomllib says, what is before and what is after the place (a line each), and what to do.
+_MISTAKES = (
+    # name = “lab”, or a string that begins with " and ends with ”
+    (rf".*\n.*\n({_SMART})|Illegal.*\n.*({_SMART})\s*\n$", "{} is not a TOML quote: write straight quotes, \" or '"),
+    (
+        r"(?:Illegal|Found invalid) character '\\n'",
+        'the string has no closing quote on its line: add it, or put a long string between """ and """',
+    ),
+    (r"Invalid value\n.*\n((?i:true|false))\b", "write true and false in lower case, not {}"),
+    # name = lab, and name = lab"
+    (r"Invalid value\n.*\n([^\W\d][^,\]}#\"']*?)\s*[\"']?\s*(?:[,\]}#]|$)", 'a string needs quotes: write "{}"'),
+    (
+        r"Unclosed array\n.*\n(\"[^\"]*\"|'[^']*'|[^\s,\]]+)",
+        "a comma is missing before {}, or a list above has no closing bracket",
+    ),
+    (
+        r"(?:Unclosed inline table|Invalid initial).*\n.*\{.*\n\s*(?:#.*)?$",
+        "a table in braces must be on one line: join the lines, or write it as a [table] after the other keys",
+    ),
+)
 
 
 def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
@@ -22,11 +52,8 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
         raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
-    except tomllib.TOMLDecodeError:
-        from grader.grading.toml_errors import toml_mistakes  # late: most files have none
-
-        found = toml_mistakes(text)
-        raise RubricError(tuple(f"{shown}:{line}:{column}: {what}" for line, column, what, _ in found)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise RubricError((f"{shown}:{_mistake(str(error), text)}",)) from None
     except RecursionError:
         raise RubricError((f"{shown}: lists or tables are nested too deeply",)) from None
     except (ValueError, ArithmeticError):
@@ -43,9 +70,88 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
         raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
+def _mistake(error: str, text: str) -> str:
+    """Return the place of the mistake that a message of tomllib is about, and what to do, else what tomllib says."""
+    lines = text.replace("\r\n", "\n").split("\n")
+    said, line, column, _ = re.split(_PLACE, error)
+    row, at = (int(line), int(column) - 1) if line else (len(lines), len(lines[-1]))
+    before, after = lines[row - 1][:at][-_MAX_WIDTH:], lines[row - 1][at:][:_MAX_WIDTH]
+    what = f"{said[0].lower()}{said[1:]}: {(before + after).strip() or 'an empty line'}"
+    for pattern, advice in _MISTAKES:
+        if match := re.match(pattern, f"{said}\n{before}\n{after}"):
+            what = advice.format(match[match.lastindex or 0])
+            break
+    return f"{row}:{at + 1}: {printable(what)}"
+
+
 def _encoding(data: bytes, at: int) -> str:
     """Return why bytes are not UTF-8 text, after a line if that is known."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return ": this is UTF-16 text; save it as UTF-8"
     line = data.count(b"\n", 0, at) + 1
     return f":{line}: this is not UTF-8 text; save it as UTF-8"
+
+
+def key_lines(text: str) -> dict[TomlPath, int]:
+    """Return the line of every table header and key of a valid TOML text, by its path; arrays count from 0."""
+    lines: dict[TomlPath, int] = {(): 1}
+    for line, path in _statement_paths(text):
+        for length in range(len(path)):
+            lines.setdefault(path[: length + 1], line)
+    return lines
+
+
+def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
+    """Yield the line and the path of every table header and key."""
+    counts: dict[TomlPath, int] = {}
+    table: TomlPath = ()
+    for line, tokens in _statements(text):
+        if tokens[0] == "[":
+            is_array = tokens[1] == "["
+            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
+            yield line, table
+        else:
+            yield line, (*table, *_names(tokens[: tokens.index("=")]))
+
+
+def _table(names: list[str], counts: dict[TomlPath, int], *, is_array: bool) -> TomlPath:
+    """Return the path of a header's table; in an array of tables it is in the last table so far."""
+    path: TomlPath = ()
+    for index, name in enumerate(names):
+        path = (*path, name)
+        if is_array and index == len(names) - 1:
+            counts[path] = counts.get(path, -1) + 1
+        if path in counts:
+            path = (*path, counts[path])
+    return path
+
+
+def line_of(lines: dict[TomlPath, int], path: TomlPath) -> int:
+    """Return the line of a path, or of the innermost table around it that has one."""
+    while path not in lines:
+        path = path[:-1]
+    return lines[path]
+
+
+def _statements(text: str) -> list[tuple[int, list[str]]]:
+    """Return each header and key with its value as tokens, and the line on which it begins."""
+    statements: list[tuple[int, list[str]]] = []
+    line, depth = 1, 0
+    current: list[str] = []
+    for match in _TOKEN.finditer(text):
+        token = match[0]
+        if token == "\n" and depth == 0:
+            current = []
+        elif token.strip() and not token.startswith("#"):
+            if not current:
+                statements.append((line, current))
+            current.append(token)
+            depth += (token in ("[", "{")) - (token in ("]", "}"))
+        line += token.count("\n")
+    return statements
+
+
+def _names(tokens: list[str]) -> list[str]:
+    """Return the keys that tokens stand for, quoted ones without their quotes."""
+    names = [token for token in tokens if token != "."][:_MAX_DEPTH]
+    return [next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names]

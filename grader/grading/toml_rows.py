@@ -5,7 +5,7 @@ from typing import Any
 
 from grader.checks.toml_types import WrongValue
 from grader.grading.keys import KeyTable
-from grader.grading.toml_lines import Path
+from grader.grading.toml_file import TomlPath
 from grader.names import did_you_mean
 
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
@@ -20,10 +20,10 @@ class RowReader:
     """Reads tables; `complaints` are the mistakes so far."""
 
     def __init__(self) -> None:
-        self.complaints: list[tuple[Path, str]] = []
+        self.complaints: list[tuple[TomlPath, str]] = []
         self._guesses = _MAX_GUESSES
 
-    def row(self, where: Path, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
+    def row(self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
         """Return the valid values of a table, converted; complain of the others and of missing ones."""
         parsed: TomlRow = {**defaults}
         for key, value in row.items():
@@ -45,7 +45,7 @@ class RowReader:
         self._guesses -= 1
         return did_you_mean(name, known) if self._guesses >= 0 else ""
 
-    def complain(self, where: Path, message: str) -> None:
+    def complain(self, where: TomlPath, message: str) -> None:
         """Add a mistake in the value of a key."""
         self.complaints.append((where, message))
 

@@ -21,7 +21,7 @@ from grader.grading.keys import (
     TEST,
     KeyTable,
 )
-from grader.grading.toml_lines import Path
+from grader.grading.toml_file import TomlPath
 from grader.grading.toml_rows import RowReader, TomlRow, shown
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
@@ -60,7 +60,7 @@ class Validation:
         part_ids, positions = self._positions("part"), self._positions("criterion")
         self._belongs(("defaults",), self._defaults, part_ids)
         for index, row in enumerate(self.criteria):
-            where: Path = ("criterion", index)
+            where: TomlPath = ("criterion", index)
             if "part" in self.rubric["criterion"][index]:
                 self._belongs(where, row, part_ids)
             self._above((*where, "requires"), row, positions)
@@ -75,7 +75,7 @@ class Validation:
         self._totals()
 
     @property
-    def complaints(self) -> list[tuple[Path, str]]:
+    def complaints(self) -> list[tuple[TomlPath, str]]:
         """The mistakes, each with the path of its key."""
         return self._reader.complaints
 
@@ -87,7 +87,7 @@ class Validation:
         """Read the values that criteria have unless they give others, and the default arguments of checks."""
         defaults = self._row(("defaults",), self.rubric.get("defaults", {}), DEFAULTS)
         for name, given in defaults.pop("with", {}).items():
-            where: Path = ("defaults", "with", name)
+            where: TomlPath = ("defaults", "with", name)
             check = self._check(where, name)
             if not isinstance(given, dict):
                 self._complain(where, f"the arguments of {name} must be a table, not {shown(given)}")
@@ -96,7 +96,7 @@ class Validation:
                 self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
         self._defaults = defaults
 
-    def _examines(self, where: Path, row: TomlRow, check: Check) -> None:
+    def _examines(self, where: TomlPath, row: TomlRow, check: Check) -> None:
         """Complain of a pose for a check of something else, and of a comparison with a reference that the rubric lacks."""
         if "at" in row and "robot" not in check.examined:
             self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
@@ -117,13 +117,13 @@ class Validation:
                 self._complain((key, index, "id"), f"the {key} {name!r} is already used")
         return positions
 
-    def _belongs(self, where: Path, row: TomlRow, parts: Collection[str]) -> None:
+    def _belongs(self, where: TomlPath, row: TomlRow, parts: Collection[str]) -> None:
         part = row.get("part")
         if part is not None and part not in parts:
             hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
-    def _above(self, where: Path, row: TomlRow, positions: Mapping[str, int]) -> None:
+    def _above(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
         """Complain of ids in a list of a criterion, such as `requires`, that are not those of criteria above it."""
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
@@ -141,7 +141,7 @@ class Validation:
                 message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)
 
-    def _carried(self, where: Path, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
+    def _carried(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
         if "carried" not in row:
             return None
         where = (*where, "carried")
@@ -150,7 +150,7 @@ class Validation:
         bound = self._arguments(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None
 
-    def _is_reserved(self, where: Path, row: TomlRow) -> None:
+    def _is_reserved(self, where: TomlPath, row: TomlRow) -> None:
         if row.get("id") == TOTAL:
             self._complain(where, f"the id {TOTAL!r} is reserved for final marks: choose another one")
 
@@ -169,7 +169,7 @@ class Validation:
             if isinstance(row, dict)
         }
 
-    def _arguments(self, where: Path, row: TomlRow) -> BoundCheck | None:
+    def _arguments(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
         """Return the check of a row with its converted arguments; None if there is no such check."""
         name, given = row.get("check"), row.get("with", {})
         check = self._check((*where, "check"), name) if name is not None else None
@@ -182,7 +182,7 @@ class Validation:
                 self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
         return check, {**{key: value for key, value in defaults.items() if key not in given}, **arguments}
 
-    def _parsed_arguments(self, where: Path, check: Check, given: TomlRow) -> TomlRow:
+    def _parsed_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
         """Return the valid arguments of a check, converted; complain of the others."""
         arguments: TomlRow = {}
         for key, value in given.items():
@@ -198,7 +198,7 @@ class Validation:
                 self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shown(value)}")
         return arguments
 
-    def _check(self, where: Path, name: str) -> Check | None:
+    def _check(self, where: TomlPath, name: str) -> Check | None:
         try:
             check = self._find_check(name)
         except InputError as error:  # in another package
@@ -216,7 +216,7 @@ class Validation:
         by_part: dict[str, list[TomlRow]] = {}
         for row in self.criteria:
             by_part.setdefault(row.get("part", ""), []).append(row)
-        declared: list[tuple[Path, TomlRow, str, list[TomlRow]]] = [((), self.rubric, "the rubric", self.criteria)]
+        declared: list[tuple[TomlPath, TomlRow, str, list[TomlRow]]] = [((), self.rubric, "the rubric", self.criteria)]
         for index, part in enumerate(self.parts):
             name = part.get("id", "")
             declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))

@@ -1,4 +1,4 @@
-"""The margin of each tolerance: how far the reference is from it, and which deviations of mutants it separates."""
+"""The margin of each tolerance: how far off the reference is."""
 
 from math import atan2, degrees, hypot
 from typing import NamedTuple
@@ -13,17 +13,12 @@ _NOTHING = 1e-9
 
 
 class Margin(NamedTuple):
-    """The tolerance of a criterion, and deviations in its unit: of the reference, the smallest that failed, the largest that passed.
-
-    `caught` and `passed` are None where no mutant had such a deviation.
-    """
+    """The tolerance of a criterion, and the deviation of the reference in its unit."""
 
     criterion: str
     unit: str
     tolerance: float
     reference: float
-    caught: float | None = None
-    passed: float | None = None
 
     @property
     def is_near(self) -> bool:
@@ -34,18 +29,6 @@ class Margin(NamedTuple):
         """Return whether a mutant has another measured value than the reference."""
         off = deviation(result.outcome)
         return off is not None and abs(off - self.reference) > _CHANGE * self.tolerance
-
-    def with_mutant(self, result: Result) -> "Margin":
-        """Return the margin with the result of a mutant; one that failed or passed for another reason changes nothing."""
-        off = deviation(result.outcome)
-        if off is None or (result.outcome.unit or "") != self.unit:
-            return self
-        is_within = off <= self.tolerance + SLACK
-        if result.outcome.status == "failed" and not is_within:
-            return self._replace(caught=min(off, self.caught if self.caught is not None else off))
-        if result.outcome.status == "passed" and is_within:
-            return self._replace(passed=max(off, self.passed if self.passed is not None else off))
-        return self
 
 
 def margin_of(result: Result) -> Margin | None:

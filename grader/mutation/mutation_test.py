@@ -69,15 +69,14 @@ class MutationTest:
             self.survivors.append(self._survivor(mutant, submission, tolerated))
 
     def _observed(self, results: Iterable[Result]) -> list[str]:
-        """Learn from results which criteria are not idle, and their margins; return those that measure another value."""
+        """Learn from results which criteria are not idle; return those that measure another value."""
         tolerated: list[str] = []
         for result in results:
             name = result.criterion.id
             if result.outcome.status == "failed":
                 self.idle.pop(name, None)
-            if name in self.margins:
-                tolerated += [name] if self.margins[name].is_changed(result) else []
-                self.margins[name] = self.margins[name].with_mutant(result)
+            if name in self.margins and self.margins[name].is_changed(result):
+                tolerated.append(name)
         return tolerated
 
     def _survivor(self, mutant: Mutant, submission: Submission, tolerated: list[str]) -> Survivor:

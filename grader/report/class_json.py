@@ -3,6 +3,7 @@
 from typing import Any
 
 from grader import __version__
+from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.sections import Comparison
@@ -10,7 +11,6 @@ from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.report.as_json import kinds
-from grader.report.class_agreement import agreement_json
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
@@ -31,7 +31,7 @@ def render_class_json(
                 {"students": list(work.students), "same_file": list(map(list, work.same_file))}
                 for work in summary.identical
             ],
-            "agreement": agreement_json(summary.agreement),
+            "agreement": _agreement(summary.agreement),
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_a_look": summary.attention.total,
             "attention": [
@@ -144,4 +144,22 @@ def _comparison(comparison: Comparison) -> dict[str, Any]:
             for section in comparison.sections
         ],
         "differing": [comparison.criteria[position].id for position in comparison.differing],
+    }
+
+
+def _agreement(agreement: Agreement) -> dict[str, Any]:
+    return {
+        "items": agreement.items,
+        "same": agreement.same,
+        "mean_difference_percent": rounded(agreement.mean_difference),
+        "largest": [
+            {
+                "id": item.key,
+                "criterion": item.criterion,
+                "first": exact(item.first),
+                "second": exact(item.second),
+                "max_points": exact(item.maximum),
+            }
+            for item in agreement.largest
+        ],
     }

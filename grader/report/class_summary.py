@@ -6,12 +6,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.attention import Attention
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure, CriterionStatistics
 from grader.classroom.gradebook.summary import ClassSummary
-from grader.report.class_agreement import agreement_lines
 from grader.report.class_words import (
     ATTENTION_NOTE,
     CRITERIA_NOTE,
@@ -58,7 +58,7 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
         _print_criteria(statistics.criteria, adjusted_lines(summary.rubric), console)
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
-    _print_agreement([*agreement_lines(summary.agreement)], console)
+    _print_agreement(summary.agreement, console)
     _print_identical(summary.identical, console)
     _print_attention(summary.attention, console, verbose=verbose)
     for line in filter(None, (*evidence_lines(summary), late_line(summary))):
@@ -98,11 +98,17 @@ def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
         wrapped(console, Text(gain(fix), style="dim"), _INDENT)
 
 
-def _print_agreement(lines: Sequence[str], console: Console) -> None:
-    if lines:
-        _print_heading("Agreement of two graders", console)
+def _print_agreement(agreement: Agreement, console: Console) -> None:
+    if not agreement.items:
+        return
+    _print_heading("Agreement of two graders", console)
+    mean = f"mean difference {agreement.mean_difference:.1f} % of the maximum"
+    lines = [f"{counted(agreement.items, 'item')} marked twice, {agreement.same} with the same points, {mean}"]
+    for item in agreement.largest:
+        points = f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.maximum)} points"
+        lines.append(f"{item.key}, {item.criterion}: {points}")
     for line in lines:
-        wrapped(console, Text(line), 4, Text("  "))
+        wrapped(console, Text(printable(line)), 4, Text("  "))
 
 
 def _print_identical(identical: Sequence[IdenticalWork], console: Console) -> None:

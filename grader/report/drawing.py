@@ -3,15 +3,16 @@
 The element needs no style sheet, script or other file. A page that contains it adds `DARK_RULES` for dark mode.
 """
 
-from itertools import groupby
+from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Any
 
 from lxml import etree
 
+from grader.drawing.curves import Curve, Edge, inner_edges
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.projection import Projection, Stroke, projection
+from grader.drawing.projection import Seen, projection, with_fronts
 from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
 from grader.drawing.views import SIDE, View
 from grader.report.callouts import description
@@ -27,7 +28,6 @@ _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
 _MAX_NAME, _MAX_TITLE = 60, 200  # characters
-_CROWDED = "Too many shapes overlap: edges that are hidden by other shapes are drawn as visible."
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 _NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
@@ -44,8 +44,7 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
     for cell in sheet.cells:
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
-        if not _put_view(put(root, "g"), cell, picture):
-            notes = (*picture.scene.missing, _CROWDED)  # one note for all views
+        _put_view(put(root, "g"), cell, picture)
     put_key(put(root, "g"), sheet, picture, legend=legend)
     return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
@@ -102,34 +101,43 @@ def _root(title: str, words: str) -> Any:
     return root
 
 
-def _put_view(group: Any, cell: Cell, picture: Picture) -> bool:
-    """Add a view, and return whether its hidden edges are known."""
+def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
     labels, below, above = Labels(cell), Signs(), Signs()
     add_ground(below, cell, picture, labels)
     below.put(group)
-    shown = projection(picture.scene, cell.view)
-    _put_bodies(group, cell, shown)
+    _put_bodies(group, cell, projection(picture.scene, cell.view))
     add_outlines(above, cell, picture, labels)
     add_frames(above, cell, picture, labels, framed_links(picture))
     add_wheels(above, cell, picture, labels)
     add_callouts(above, cell, picture, labels)
     above.put(group)
-    return shown.is_complete
 
 
-def _put_bodies(group: Any, cell: Cell, shown: Projection) -> None:
-    """Add the shapes from back to front, then hidden edges, then visible ones; thinner where the shapes are small."""
-    for seen in shown.bodies:
-        body = put(group, "path", "", {"d": path_data(cell, seen.outline, closed=True), **colour(seen.body.rgba)})
-        put(body, "title", text=seen.body.link[:_MAX_NAME])
-    sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in shown.bodies]
+def _put_bodies(group: Any, cell: Cell, bodies: Sequence[Seen]) -> None:
+    """Add the shapes from back to front with their edges, then lighter what others hide; thinner where the shapes are small."""
+    sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
-    hidden = {"stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"}
-    for strokes, attributes in ((shown.hidden, hidden), (shown.visible, {"stroke-width": width})):
-        for look, some in groupby(sorted(strokes, key=_look), _look):
-            path = path_data(cell, (stroke.curve for stroke in some))
-            put(group, "path", look, {"d": path, **attributes})
+    hidden: dict[str, list[Curve]] = {}
+    for seen, fronts in with_fronts(bodies):
+        inner = inner_edges(seen.body.shape, seen.pose)
+        look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
+        d = path_data(cell, seen.outline, closed=True)
+        body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
+        put(body, "title", text=seen.body.link[:_MAX_NAME])
+        # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
+        if front := path_data(cell, (it.curve for it in inner if it.faces_viewer)):
+            put(group, "path", look, {"d": front, **looks})
+        for name, curve in _hidden(seen, inner, fronts):
+            hidden.setdefault(name, []).append(curve)
+    for name, curves in sorted(hidden.items()):
+        d = path_data(cell, curves)
+        put(group, "path", name, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
 
 
-def _look(stroke: Stroke) -> str:
-    return edge_look(stroke.rgba)
+def _hidden(seen: Seen, inner: Sequence[Edge], fronts: Sequence[Seen]) -> Iterator[tuple[str, Curve]]:
+    """Yield the edges of a body that may be hidden, whole, each with a look for the colour of the shape that is around it."""
+    outline = seen.outline if fronts else ()
+    for curve in (*outline, *(edge.curve for edge in inner if fronts or not edge.faces_viewer)):
+        extents = curve.extents()
+        around = next((other for other in reversed(fronts) if other.encloses(extents)), seen)
+        yield edge_look(around.body.rgba), curve

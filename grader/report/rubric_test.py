@@ -12,17 +12,16 @@ from grader.text import counted, enumerated, first_lines, format_points, printab
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
 _DEEPEST = 4  # indentation of a sentence
 _AROUND = 20  # characters of a long line before what changes
-_NOTHING = 1e-3  # of a tolerance
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
-    """Return the result in lines of at most this width: what was graded, what is wrong, the tolerances, the score last."""
+    """Return the result in lines of at most this width: what was graded, what is wrong, the score last."""
     rubric = test.reference.rubric
     lines = [f"{rubric.id}: {rubric.title}", "", *_counts(test), *_reference(test)]
     lines += _losses("These equivalents of the reference lose points:", test.equivalents.losses)
     lines += _losses("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
     lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
-    lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_margins(test.mutants.margins)]
+    lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_near(test.mutants.margins)]
     lines += ["", f"Mutation score: {_percent(test.mutants)} %"]
     text = "\n".join(folded for line in lines for folded in _folded(printable(line), width))
     return without_commands(f"{text}\n")
@@ -131,27 +130,14 @@ def _idle(found: MutantResults) -> Iterator[str]:
         yield from ("", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant.")
 
 
-def _margins(margins: Sequence[Margin]) -> Iterator[str]:
-    if not margins:
-        return
-    width = max(len(margin.criterion) for margin in margins)
-    yield from (
-        "",
-        "Deviations: of the reference, the largest of a mutant that passes, and the smallest of one that fails",
-    )
-    yield f"  {'':{width}}{'tolerance':>12}{'reference':>12}{'passes':>12}{'fails':>12}"
-    for margin in margins:
-        values = (margin.tolerance, margin.reference, margin.passed, margin.caught)
-        cells = ["-" if value is None else _length(value, margin) for value in values]
-        yield f"  {margin.criterion:{width}}" + "".join(f"{cell:>12}" for cell in cells)
+def _near(margins: Sequence[Margin]) -> Iterator[str]:
     for margin in margins:
         if margin.is_near:
             off, limit = _length(margin.reference, margin), _length(margin.tolerance, margin)
-            yield f"The reference is near the limit of {margin.criterion}: {off} off, {limit} allowed."
+            yield from ("", f"The reference is near the limit of {margin.criterion}: {off} off, {limit} allowed.")
 
 
 def _length(value: float, margin: Margin) -> str:
-    value = value if value > margin.tolerance * _NOTHING else 0.0
     if margin.unit == "m":
         return f"{value * 1000:.3g} mm"
     return f"{value:.3g} {margin.unit}".rstrip()

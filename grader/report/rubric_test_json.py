@@ -82,7 +82,5 @@ def _margin(margin: Margin) -> dict[str, Any]:
         "unit": margin.unit or None,
         "tolerance": rounded(margin.tolerance),
         "reference": rounded(margin.reference),
-        "caught": rounded(margin.caught),
-        "passed": rounded(margin.passed),
         "is_near": margin.is_near,
     }

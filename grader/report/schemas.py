@@ -106,7 +106,6 @@ _MARGIN = record(
         "criterion": TEXT,
         "unit": nullable(TEXT),
         **each(POINTS, "tolerance reference"),
-        **each(nullable(POINTS), "caught passed"),
         "is_near": FLAG,
     }
 )

@@ -10,15 +10,16 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.tables import SIZE_LIMIT
+from grader.classroom.run.pool import Processes, processors
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, OutputFormat
 from grader.text import enumerated, printable_path
 from grader.usecases import Warn
-from grader.usecases.class_hints import ProgressDisplay
+from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
-from grader.usecases.export_pages import export_pages
 from grader.usecases.feedback_zip import feedback_zip
 from grader.usecases.grades_csv import grades_csv
 from grader.usecases.lms_files import FILLERS, fill_lms_file, preflight_lines
@@ -61,7 +62,7 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
     _refuse_files(request)
     deadline = read_deadline(request.due)
     if request.target == "html":
-        export_pages(request.gradebook, request.output, request.due, progress, warn)
+        _export_pages(request.gradebook, request.output, request.due, progress, warn)
         return b"", ExitCode.PASSED
     with Gradebook(request.gradebook) as book:
         classes = tuple({run.source for run in book.runs()})
@@ -156,3 +157,17 @@ def _refuse_files(request: ExportRequest) -> None:
             raise GraderError(f"cannot write {printable_path(feedback)}: it is also the file of --into or --output")
     if feedback is not None and feedback.is_file() and not is_zipfile(feedback):
         raise InputError(f"cannot write {printable_path(feedback)}: it exists and is not a zip; name another file")
+
+
+def _export_pages(gradebook: Path, folder: Path | None, due: str | None, progress: ProgressDisplay, warn: Warn) -> None:
+    """Write a page for each student, and the class's page, into a folder. Raises GraderError."""
+    if folder is None:
+        raise GraderError("export html writes a folder of pages: name it with --output DIR")
+    deadline = read_deadline(due)
+    with Gradebook(gradebook) as book:
+        refuse_report_folder(folder, (Format.HTML,), sorted({Path(run.source) for run in book.runs()}))
+        if due:
+            warn_of_due(due, Grades(book).newest_rubric(), warn)
+        search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=True)
+    with Processes(processors(), REPORT_SECONDS) as executor, progress("writing pages") as show:
+        write_reports(executor, gradebook, folder, (Format.HTML,), deadline, warn, show)

@@ -1,10 +1,9 @@
 """Grade what needs manual grading at a terminal, one item at a time."""
 
-from contextlib import nullcontext
+from collections.abc import Sequence
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
@@ -16,8 +15,7 @@ from grader.report.review import mark_text, render_item
 from grader.report.screen import draw
 from grader.text import format_points
 from grader.usecases import Terminal
-from grader.usecases.review_pictures import PictureFolder, WrittenPictures, write_all_pictures
-from grader.usecases.viewer import Viewer
+from grader.usecases.review_pictures import PictureFolder, write_all_pictures
 
 NOTHING = "nothing needs manual grading\n"
 _HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
@@ -25,32 +23,25 @@ _END = "end of the queue: u to undo, b to go back, Enter to end: "
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
 
-def review(
-    gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal: Terminal, *, opens: bool = False
-) -> str:
+def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal: Terminal) -> str:
     """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary.
 
-    Pictures are written into the folder `pictures` first. With `opens`, those of each item are opened in the system's viewer.
+    Pictures are written into the folder `pictures` first.
     """
-    needs_folder = opens and pictures is None
-    with Gradebook(gradebook) as book, TemporaryDirectory() if needs_folder else nullcontext("") as temporary:
+    with Gradebook(gradebook) as book:
         session = ReviewSession(Grades(book, answers=True), scope)
         if not session.queue:
             return NOTHING
         book.check_writable()
-        folder = PictureFolder(session, book, pictures or Path(temporary)) if pictures or opens else None
-        written = write_all_pictures(session, folder, terminal.show) if folder and pictures else {}
-        viewer = Viewer(terminal.warn) if opens else None
+        folder = PictureFolder(session, book, pictures) if pictures else None
+        written = write_all_pictures(session, folder, terminal.show) if folder else {}
         try:
             while session.item is not None or _at_end(session, terminal):
                 assert session.item is not None
                 queued = session.queue[session.position]
                 if folder is not None and queued not in written:
                     written[queued] = folder.write(session.item)
-                found = written.get(queued, WrittenPictures())
-                _show(session, found, terminal)
-                if viewer is not None:
-                    viewer.open(map(str, found.files))
+                _show(session, written.get(queued, ()), terminal)
                 if not _go_on(session, terminal):
                     break
         except KeyboardInterrupt:
@@ -72,12 +63,12 @@ def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
     return session.item is not None
 
 
-def _show(session: ReviewSession, pictures: WrittenPictures, terminal: Terminal) -> None:
+def _show(session: ReviewSession, pictures: Sequence[str], terminal: Terminal) -> None:
     assert session.item is not None
     position = f"{session.position + 1} of {len(session.queue)}"
     used = session.comments()
     comments = {number: text for number, text in session.numbered_comments().items() if text in used}
-    page = partial(render_item, session.item, position, pictures.lines, comments)
+    page = partial(render_item, session.item, position, pictures, comments)
     terminal.show(draw(page, terminal.screen()))
 
 

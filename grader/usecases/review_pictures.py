@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
@@ -15,13 +14,6 @@ from grader.text import printable, printable_path
 from grader.usecases.class_reports import refuse_report_folder
 from grader.usecases.report_names import file_names, report_names, update_index
 from grader.usecases.writing import make_folder, save_bytes
-
-
-class WrittenPictures(NamedTuple):
-    """The pictures of an item: a line for each, also for those that are not shown, and the files."""
-
-    lines: tuple[str, ...] = ()
-    files: tuple[Path, ...] = ()
 
 
 class PictureFolder:
@@ -42,43 +34,40 @@ class PictureFolder:
         elif any(folder.iterdir()):
             raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
 
-    def write(self, item: QueuedResult) -> WrittenPictures:
-        """Write the pictures of an item."""
+    def write(self, item: QueuedResult) -> list[str]:
+        """Write the pictures of an item; return a line for each, also for those that are not shown."""
         key, criterion = item.grade.student.key, item.result.criterion.id
         name = self._names[key] if item.number is None else f"submission-{item.number}"
         start = self._folder / self._folders[criterion] / name
         found = item_pictures(item, self._session.rubric_of(item))
-        written = [_written(one, start, number, item) for number, one in enumerate(found, 1)]
-        return WrittenPictures(
-            tuple(line for line, _ in written), tuple(path for _, path in written if path is not None)
-        )
+        return [_written(one, start, number, item) for number, one in enumerate(found, 1)]
 
 
 def write_all_pictures(
     session: ReviewSession, folder: PictureFolder, show: Callable[[str], None]
-) -> dict[QueuedCriterion, WrittenPictures]:
+) -> dict[QueuedCriterion, list[str]]:
     """Write the pictures of all items, and print the student of each; return those of each item."""
-    found: dict[QueuedCriterion, WrittenPictures] = {}
+    found: dict[QueuedCriterion, list[str]] = {}
     for position, queued in enumerate(session.queue):
         item = session.item_at(position)
         if item is None:
             continue
         found[queued] = folder.write(item)
-        for line in found[queued].lines:
+        for line in found[queued]:
             show(f"{who(item)}, {printable(queued.criterion)}: {line}\n")
     session.start()
     return found
 
 
-def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> tuple[str, Path | None]:
-    """Write a picture, and return the line about it and its path; a picture that is not shown has only the line."""
+def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
+    """Write a picture, unless it is not shown, and return the line about it."""
     if isinstance(found, NotShown):
-        return printable(str(found)), None
+        return printable(str(found))
     path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")
     make_folder(path.parent)
     _refuse_symlink(path)
     save_bytes(path, found.data, [item.grade.files.root])
-    return f"{printable_path(path)}  {printable(found.words)}", path
+    return f"{printable_path(path)}  {printable(found.words)}"
 
 
 def _refuse_symlink(path: Path) -> None:

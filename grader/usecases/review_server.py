@@ -14,13 +14,10 @@ from grader.usecases import Terminal
 from grader.usecases.local_server import LocalServer, Request, Response
 from grader.usecases.review import NOTHING, summary
 from grader.usecases.review_page import ReviewPage
-from grader.usecases.viewer import Viewer
 
 
-def review_in_browser(
-    gradebook: Path, scope: ReviewScope, port: int, terminal: Terminal, *, opens: bool = False
-) -> str:
-    """Serve the review page until Ctrl-C, and return a summary. Prints the address, and opens it. Raises InputError."""
+def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: Terminal) -> str:
+    """Serve the review page until Ctrl-C, and return a summary. Prints the address. Raises InputError."""
     with serving(gradebook, scope, port) as (server, page):
         if server is None:
             return NOTHING
@@ -29,8 +26,6 @@ def review_in_browser(
             terminal.warn(
                 "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
             )
-            if opens:
-                Viewer(terminal.warn).open([server.url])
             server.serve_forever()
         return server.worker.submit(lambda: summary(page.session)).result()
 

@@ -190,7 +190,7 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
         "rubric",
         "check",
         str(tmp_path / "bad.toml"),
-        words="bad.toml:2:1: the list that begins on line 1 has no closing ]",
+        words="bad.toml:2:1: invalid value: an empty line",
     )
 
 

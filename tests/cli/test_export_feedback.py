@@ -20,7 +20,7 @@ from grader.classroom.lms.feedback import FeedbackItem, feedback_html, is_own_fe
 from grader.grading.rubric import read_rubric
 from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, make_class, record_run, refusal, urdf
 
-FIRST_VERSION = (
+OWN = (
     "<p>Graded automatically: 58.5 of 100 points.</p><ul><li>The base: 2 of 4. it is 0.1 m too low</li></ul>"
     "<!-- grader 81396dd30bb0 -->"
 )
@@ -96,15 +96,15 @@ def test_reports_have_final_marks_excuses_and_comments(top: Path) -> None:
 
 
 def test_feedback_says_who_graded() -> None:
-    """A comment of an earlier version is still recognised, and so is each of these; other words are a person's."""
-    assert feedback_html(Decimal("58.5"), Decimal(100), [FeedbackItem("The base", Decimal(2), Decimal(4), "it is 0.1 m too low")]) == FIRST_VERSION  # fmt: skip
+    """The grader's own comments are recognised; other words are a person's."""
+    assert feedback_html(Decimal("58.5"), Decimal(100), [FeedbackItem("The base", Decimal(2), Decimal(4), "it is 0.1 m too low")]) == OWN  # fmt: skip
     for words in ("automatically", "manually", "automatically, and manually by =Kim & <Lee>;=1"):
         text = feedback_html(Decimal(1), Decimal(2), [FeedbackItem("Comment", None, Decimal(0), "fine")], words)
         assert is_own_feedback(text)
         assert "<li>Comment: fine</li>" in text
         assert not is_own_feedback(text.replace("fine", "not fine"))
-    assert is_own_feedback(FIRST_VERSION)
-    assert not is_own_feedback(FIRST_VERSION.replace("automatically", "badly"))
+    assert is_own_feedback(OWN)
+    assert not is_own_feedback(OWN.replace("automatically", "badly"))
 
 
 def test_moodle_has_comments_without_points_and_final_marks(top: Path) -> None:

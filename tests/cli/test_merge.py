@@ -19,7 +19,6 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Entry, Mark, insert_mark, newest_second
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.students import Student
-from tests.classroom.gradebook.test_versions import DATA
 from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal
 
 LAB = lab()
@@ -246,20 +245,6 @@ def test_both_gradebooks_may_be_in_use(top: Path) -> None:
         assert Grades(one).find("ash").score == 9
 
 
-def test_an_earlier_version_is_read_and_not_upgraded(top: Path) -> None:
-    """B may be of an earlier version of the grader."""
-    with closing(sqlite3.connect(top / "old.db")) as connection:
-        connection.executescript((DATA / "version3.sql").read_text(encoding="utf-8"))
-        keys = [key for (key,) in connection.execute("SELECT key FROM student")]
-    with Gradebook(top / "a.db") as book:
-        for key in keys:
-            save_student(book, Student(key), None)
-    before = digest(top / "old.db")
-    assert merge(top, names=("a.db", "old.db")).stdout.startswith("5 entries of ")
-    assert digest(top / "old.db") == before
-    assert "nothing to merge" in merge(top, names=("a.db", "old.db")).stdout
-
-
 def test_what_is_refused(top: Path) -> None:
     """One line: the same file, a missing file, a file of another kind."""
     (top / "link.db").symlink_to(top / "a.db")
@@ -273,7 +258,7 @@ def test_what_is_refused(top: Path) -> None:
     for second, why in (
         ("empty.db", f"{top}/empty.db is not a gradebook: name another file"),
         ("other.db", f"{top}/other.db is not a gradebook: name another file"),
-        ("newer.db", f"{top}/newer.db was made by a newer grader"),
+        ("newer.db", f"{top}/newer.db is a gradebook of version 99"),
         ("folder.db", f"there is no gradebook {top}/folder.db"),
         ("a.db", "cannot be merged into itself: name two gradebooks"),
         ("link.db", "cannot be merged into itself: name two gradebooks"),

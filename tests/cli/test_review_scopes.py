@@ -1,10 +1,8 @@
-"""grader review: one section, one marker, anonymous, second opinions, earlier comments, pictures in a viewer, partial points."""
+"""grader review: one section, one marker, anonymous, second opinions, earlier comments, partial points."""
 
-import os
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
 from decimal import Decimal
 from pathlib import Path
 
@@ -13,7 +11,7 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from tests.checks.submissions import gif
-from tests.classroom.gradebooks import PNG, batch, grader, lab_text, refusal, write_submission
+from tests.classroom.gradebooks import batch, grader, lab_text, refusal, write_submission
 from tests.review_server import running
 
 # Keys with names and file names that occur nowhere else in an output.
@@ -227,58 +225,8 @@ def test_a_comment_without_points_is_shown(top: Path) -> None:
         assert '"comment": "read again"' in served.get("1").text.replace('":"', '": "')
 
 
-@pytest.fixture
-def viewer(tmp_path: Path) -> Iterator[dict[str, str]]:
-    """Yield the variables of a system whose viewer writes down what it opens; it fails for the second file."""
-    program = tmp_path / "bin" / "xdg-open"
-    program.parent.mkdir()
-    log = tmp_path / "opened"
-    program.write_text(f'#!/bin/sh\ntest -f "$1" && echo "$1" >> {log}\ntest $(wc -l < {log}) -lt 2\n')
-    program.chmod(0o755)
-    yield {"PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}"}
-
-
-def test_pictures_are_opened_in_a_viewer(top: Path, viewer: dict[str, str]) -> None:
-    """Those of each item, from a folder that is removed at the end; a failure is one line, and the review goes on."""
-    done = review(top, "s\n" * 3 + "1\n1\n1\n", "--open", **viewer)
-    opened = (top / "opened").read_text().splitlines()
-    assert [path.rpartition("/")[2] for path in opened] == ["u7701.2.png", "u7702.1.gif"]
-    assert not any(Path(path).exists() for path in opened)
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("grader: cannot open the viewer: xdg-open failed with exit code 1; open it yourself: /")
-    assert done.stdout.endswith("3 marked, 3 left\n")
-
-
-def test_pictures_of_a_folder_are_opened(top: Path, viewer: dict[str, str]) -> None:
-    """With --pictures, the files of that folder, which stay; without a viewer there is one line."""
-    review(top, "s\n" * 4, "--open", "--pictures", top / "out", **viewer)
-    assert (top / "opened").read_text().splitlines()[0] == str(top / "out" / "picture" / "u7701.2.png")
-    assert (top / "out" / "picture" / "u7701.2.png").read_bytes() == PNG
-    done = review(top, "s\n" * 6, "--open", PATH=str(top))
-    assert (done.returncode, len(done.stderr.splitlines())) == (0, 1)
-    assert done.stderr.startswith(
-        "grader: cannot open the viewer: xdg-open: No such file or directory; open it yourself: /"
-    )
-
-
-def test_the_page_is_opened(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With --html, --open opens the address in the browser; Ctrl-C ends the review."""
-    from grader.usecases import local_server, viewer
-
-    def interrupted(_server: object) -> None:
-        raise KeyboardInterrupt
-
-    def fails(_viewer: object, target: str) -> str:
-        opened.append(target)
-        return "no display"
-
-    opened: list[str] = []
-    monkeypatch.setattr(local_server.LocalServer, "serve_forever", interrupted)
-    monkeypatch.setattr(viewer.Viewer, "_problem", fails)
-    done = review(top, "", "--html", "--open")
-    address = done.stdout.splitlines()[0]
-    assert (done.returncode, opened) == (0, [address])
-    assert done.stderr.splitlines()[1] == f"grader: cannot open the viewer: no display; open it yourself: {address}"
+def test_a_port_needs_a_page(top: Path) -> None:
+    """Without --html nothing is served."""
     assert refusal(review(top, "", "--port", "8000")) == "--port needs --html"
 
 

@@ -5,8 +5,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 from threading import Condition, Thread
 from types import TracebackType
@@ -14,13 +12,11 @@ from typing import IO, Self
 
 import pytest
 
-from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
-from grader.usecases.file_events import Watched, _filter, _target, changes
+from grader.usecases.watch import Watched, _stamps, changes
 from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
-watchfiles = pytest.importorskip("watchfiles")
 REFERENCE = ROOT / "submissions/reference"
 URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"  # 70 of 70
 SHORT = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
@@ -231,7 +227,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put(text.replace("points = 6", "points = -6"), rubric)
         assert "lab.toml:" in watch.err.until("\n")
         put("id = [", rubric)
-        watch.err.until("the list that begins on line 1 has no closing ]")
+        watch.err.until("invalid value: id = [")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
         watch.out.until("now failed: lidar-place\nremoved: lidar-frame\n")
 
@@ -277,29 +273,26 @@ def test_a_report_that_cannot_be_saved_ends_it(robot: Path, tmp_path: Path) -> N
     assert done.stderr.splitlines()[-1].startswith(b"grader: cannot write")
 
 
-def test_without_the_extra(robot: Path) -> None:
-    """The message says which command to type."""
-    code = "import sys; sys.modules['watchfiles'] = None; from grader.__main__ import main; main()"
-    command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT)
-    assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"grader: --watch needs watchfiles: pip install 'urdf-grader[watch]'\n"
-
-
-def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
+def counts(path: Path, changed: Path, *own: Path) -> bool:
     """Return whether a change of this path concerns the graded path."""
-    watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
-    return _filter(_target(watched), watched)(watchfiles.Change.modified, str(changed))
+    watched = Watched(path, None, frozenset(map(os.path.realpath, own)))
+    before = _stamps(watched)
+    changed.parent.mkdir(parents=True, exist_ok=True)
+    parents = _stamps(watched)
+    changed.write_text("new")
+    after = _stamps(watched)
+    changed.unlink()
+    assert before.items() <= parents.items()
+    return parents != after
 
 
 def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
-    """All but ignored files, the grader's own output, and the rubric, which is watched anyway."""
+    """All but ignored files and the grader's own output."""
     (tmp_path / "env").mkdir()
     (tmp_path / "env" / "pyvenv.cfg").touch()
-    for name in ("my_robot.urdf", "a/b/c.txt", "new folder", "a/b~", "building/x", "env", "a/env/x", "report.txt"):
+    for name in ("my_robot.urdf", "a/b/c.txt", "a/b~", "building/x", "a/env/x", "report.txt"):
         assert counts(tmp_path, tmp_path / name), name
     for name in (
-        "build",
         "ws/build/x.urdf",
         "install/a",
         "log",
@@ -315,7 +308,6 @@ def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "a")
     assert not counts(tmp_path, tmp_path / "a" / "r.json", tmp_path / "link" / "r.json")
     assert not counts(tmp_path, tmp_path / "link" / "r.json", tmp_path / "a" / "r.json")
-    assert not counts(tmp_path, tmp_path / "lab.toml", rubric=tmp_path / "lab.toml")
 
 
 def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
@@ -325,9 +317,9 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
     (tmp_path / "b" / "real.urdf").touch()
     (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
     path = tmp_path / "a" / "link.urdf"
-    assert _target(Watched(path)).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
-    assert counts(path, path)
-    assert counts(path, tmp_path / "b" / "real.urdf")
+    before = _stamps(Watched(path))
+    path.write_text("<robot/>")
+    assert _stamps(Watched(path)) != before
     assert not counts(path, tmp_path / "a" / "other.urdf")
     assert not counts(path, tmp_path / "b" / "link.urdf")
 
@@ -342,35 +334,21 @@ def test_an_undecodable_name_is_a_change(tmp_path: Path) -> None:
     next(heard)
 
 
-def test_changes_without_events_are_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder is graded again a little later, a file whenever it changed; neither prints anything without a reason."""
-
-    def deaf(*_paths: str, **_options: object) -> Iterator[set[object]]:
-        while True:
-            time.sleep(0.01)
-            yield set()
-
-    monkeypatch.setattr("grader.usecases.file_events.watch", deaf)
-    monkeypatch.setattr("grader.usecases.file_events._RECHECK", 0.02)
-    folder = changes(Watched(tmp_path))
-    assert [next(folder), next(folder)] == [True, False]
-    robot = tmp_path / "my_robot.urdf"
-    file = changes(Watched(robot))
+def test_only_changes_are_yielded(tmp_path: Path) -> None:
+    """At once, and whenever the file was written; a file that was read for the first time is no certain change."""
+    robot, part = tmp_path / "my_robot.urdf", tmp_path / "part.xacro"
+    put("<robot/>", robot)
+    put("<robot/>", part)
+    besides: list[Path] = []
+    file = changes(Watched(robot, besides=besides))
     assert next(file)
     for text in ("a", "b", "longer"):
         put(text, robot)
         assert next(file)
-
-
-def test_no_events_available(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """If the system has no more watches, the message names the limit and the alternative."""
-
-    def refused(*_paths: str, **_options: object) -> Iterator[set[object]]:
-        raise RuntimeError("OS file watch limit reached.")
-
-    monkeypatch.setattr("grader.usecases.file_events.watch", refused)
-    with pytest.raises(InputError, match=r"limit reached\.; set WATCHFILES_FORCE_POLLING=1 in the"):
-        next(changes(Watched(tmp_path)))
+    besides.append(part)
+    assert not next(file)
+    put("longer", part)
+    assert next(file)
 
 
 @pytest.mark.parametrize("name", sorted({path.name for path in (ROOT / "submissions").iterdir()})[:20])

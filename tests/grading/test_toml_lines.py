@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.grading.toml_lines import Path, key_lines, line_of
+from grader.grading.toml_file import TomlPath as Path
+from grader.grading.toml_file import key_lines, line_of
 
 
 def test_tables_and_keys_have_lines() -> None:

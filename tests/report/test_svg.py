@@ -193,6 +193,39 @@ def test_xacro_is_drawn_as_it_expands() -> None:
     }
 
 
+def two(pose: str, front: str, rgba: str = "1 1 1 1") -> str:
+    """Return a robot of a white box and of another shape, in the box's frame."""
+    box = link("a", '<box size="0.2 0.2 0.2"/>')
+    joint = f'<joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin {pose}/></joint>'
+    return f'<robot name="r">{box}{link("b", front, rgba)}{joint}</robot>'
+
+
+@pytest.mark.parametrize(
+    ("text", "looks"),
+    [
+        (two('xyz="0.5 0.5 0.5"', '<box size="0.1 0.1 0.1"/>'), []),  # beside it in each view
+        (two('xyz="0 0 0"', '<box size="0.4 0.4 0.4"/>'), ["edge-on-light"] * 3),
+        (two('xyz="0 0 0"', '<box size="0.4 0.4 0.4"/>', "0 0 0 1"), ["edge-on-dark"] * 3),
+        (two('xyz="0 0 0"', '<box size="0.4 0.4 0.4"/>', "0 0 0 0.01"), []),  # it hides nothing
+        (two('xyz="0 0 0.15"', '<sphere radius="0.1"/>'), ["edge-on-light"] * 3),  # half sunk
+        (two('xyz="0.9 0.9 0.9" rpy="0.4 0.5 0.6"', '<box size="0.1 0.1 0.1"/>'), ["edge-on-light"] * 3),  # its back
+    ],
+)
+def test_hidden_edges_are_drawn_lighter(text: str, looks: list[str]) -> None:
+    """What another shape or the shape itself hides is drawn over them, for the colour of the shape that is around it."""
+    root = inspected(text)
+    hidden = [
+        path for path in root.iter("{*}path") if path.get("stroke-opacity") == "0.5" and path.get("class") != "hidden"
+    ]
+    assert [path.get("class") for path in hidden] == looks
+    for path in hidden:
+        following = {it.get("class") for it in path.itersiblings()}
+        assert not following & {"edge", "edge-on-light", "edge-on-dark"}
+    for found in bodies(root).values():
+        for path in found:
+            assert re.fullmatch(r"M[^MZ]+Z", path.get("d"))  # the outline alone is filled
+
+
 def test_long_names_are_cut() -> None:
     """A name of 200,000 letters makes the drawing neither large nor slow."""
     text = f'<robot name="{"x" * 200_000}">' + link("y" * 200_000, '<sphere radius="1"/>') + "</robot>"

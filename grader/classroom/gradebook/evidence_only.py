@@ -4,7 +4,7 @@ import json
 from collections import Counter
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.grading.record import lacks
+from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
 
 _QUERY = "SELECT result, statuses, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
@@ -22,7 +22,7 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
         for result, statuses, urdf, files in list(book.rows(_QUERY, rubric.sha256))
         if not urdf or not (any(statuses[at] == "p" for at in package) or _is_single(files))
     ]
-    lacking = (lacks(book.record(result)[0])[:1] for result in found)
+    lacking = (submission_of(book.record(result)[0]).lacks[:1] for result in found)
     return Counter(kind for kinds in lacking for kind in kinds if kind in graded)
 
 

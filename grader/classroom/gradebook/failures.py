@@ -27,9 +27,9 @@ class Failure(NamedTuple):
 
     @classmethod
     def from_json(cls, values: list[Any]) -> "Failure":
-        """Return a failure as it was stored; gradebooks of earlier versions have only the position and the mistake."""
-        position, mistake, *more = values
-        return cls(position, mistake, tuple(more[0]), *more[1:]) if more else cls(position, mistake)
+        """Return a failure as it was stored."""
+        position, mistake, measured, *more = values
+        return cls(position, mistake, tuple(measured), *more)
 
 
 def failure_of(criterion: Criterion, outcome: Outcome) -> Failure:

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
+from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.classroom.gradebook.stored import (
     STORED_SUBMISSIONS,
     STUDENT_COLUMNS,
@@ -179,24 +179,25 @@ class Gradebook(AbstractContextManager["Gradebook"]):
 
 
 def _prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
-    """Configure a connection and create or upgrade the tables; raises InputError for a file of another kind or version."""
+    """Configure a connection and create the tables of a new file; raises InputError for a file of another kind or version."""
     connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
     queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
     kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)
     connection.execute("COMMIT")
     if tables and kind != APPLICATION_ID:
         raise InputError(f"{shown} is a database, but not a gradebook: name another file")
-    if version > len(STEPS):
-        raise InputError(f"{shown} was made by a newer grader: install that version, or name another file")
+    if version != VERSION and (tables or read_only):
+        raise InputError(
+            f"{shown} is a gradebook of version {version}, and this grader reads version {VERSION}: "
+            "use the grader that made it, or name another file"
+        )
     if read_only:
-        if version < len(STEPS):
-            raise InputError(f"{shown} was made by an earlier grader and must be converted: {read_only}")
         return
     _enable_wal(connection)
     connection.execute("PRAGMA synchronous = NORMAL")
     connection.execute("PRAGMA foreign_keys = ON")
-    if version < len(STEPS):
-        _migrate(connection)
+    if not tables:
+        _create_tables(connection)
 
 
 def _enable_wal(connection: sqlite3.Connection) -> None:
@@ -216,14 +217,14 @@ def _enable_wal(connection: sqlite3.Connection) -> None:
             return
 
 
-def _migrate(connection: sqlite3.Connection) -> None:
-    """Apply all missing steps, or, if one fails, none."""
+def _create_tables(connection: sqlite3.Connection) -> None:
+    """Create all tables, or, if that fails, none."""
     with _transaction(connection):
-        (version,) = connection.execute("PRAGMA user_version").fetchone()  # another process may have migrated meanwhile
-        for step in STEPS[version:]:
-            for statement in _statements(step):
-                connection.execute(statement)
-        connection.execute(f"PRAGMA user_version = {len(STEPS)}")
+        if connection.execute("PRAGMA user_version").fetchone() == (VERSION,):
+            return  # another process has created them meanwhile
+        for statement in _statements(SCHEMA):
+            connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
         connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
 
 

@@ -33,7 +33,7 @@ class Merged(NamedTuple):
 
 @contextmanager
 def copy_of(path: Path) -> Iterator[Gradebook]:
-    """Yield a temporary copy of a gradebook: the file itself is only read, also if it is in use or of an earlier version."""
+    """Yield a temporary copy of a gradebook: the file itself is only read, also if it is in use."""
     shown = printable_path(path)
     if not path.is_file():
         raise InputError(f"there is no gradebook {shown}")

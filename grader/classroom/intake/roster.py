@@ -173,6 +173,6 @@ def roster_from_json(entries: Iterable[str]) -> Roster | None:
 
 def entry_from_json(text: str) -> RosterEntry:
     """Return a row of a roster that a gradebook has stored."""
-    row = json.loads(text)  # of an earlier version without a group and a marker
-    student = {name: value for name, value in row["student"].items() if name not in ("readings", "maybe_canvas")}
-    return RosterEntry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})
+    row = json.loads(text)
+    student = Student(**{**row["student"], "readings": ()})  # only the file of a submission has any
+    return RosterEntry(**{**row, "student": student, "aliases": tuple(row["aliases"])})

@@ -20,7 +20,7 @@ from grader.text import format_points
 
 LIMIT = 4_000  # characters
 _MAX_MESSAGE = 600
-_OPENING = "Graded "  # automatically, manually, or both; earlier versions said "Graded automatically" of every grade
+_OPENING = "Graded "  # automatically, manually, or both
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
 

@@ -67,11 +67,6 @@ def test_words_group_what_is_not_measured() -> None:
     assert counts(failure("named", ("a", "b")), failure("named", ("c",))) == [("named", 2)]
 
 
-def test_failures_of_earlier_versions_are_read() -> None:
-    """They have only a position and words."""
-    assert Failure.from_json([3, "'base' shows a box"]) == Failure(3, "'base' shows a box")
-
-
 def test_long_words_are_cut() -> None:
     """Statistics keep at most 200 characters."""
     assert len(failure("x" * 300).mistake) == 200

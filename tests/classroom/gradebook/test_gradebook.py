@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from grader.classroom.gradebook import gradebook as module
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
+from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units
@@ -57,7 +57,7 @@ def test_a_new_file(book: Gradebook) -> None:
     assert settings_of == {
         "journal_mode": "wal",
         "foreign_keys": 1,
-        "user_version": len(STEPS),
+        "user_version": VERSION,
         "application_id": APPLICATION_ID,
     }
     with pytest.raises(InputError, match="FOREIGN KEY"), book.input_errors():
@@ -206,40 +206,26 @@ def test_a_student_without_a_submission_has_no_points(book: Gradebook) -> None:
 
 # --- Versions ---------------------------------------------------------------------------------------------------------
 
-NEXT = """
-ALTER TABLE student ADD COLUMN nickname TEXT NOT NULL DEFAULT 'none';
-CREATE TABLE pet (name TEXT NOT NULL);
-INSERT INTO pet VALUES ('cat; dog');
-"""
 
-
-def test_an_older_file_is_migrated(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The steps of a later version are applied at once, in order, and all data is kept."""
-    before = all_of(book, "mark"), all_of(book, "result")
+@pytest.mark.parametrize("version", [0, VERSION + 1, 7])
+def test_another_version_is_refused(book: Gradebook, version: int) -> None:
+    """A grader opens gradebooks of one version only, and leaves another file as it is."""
+    book.connection.execute(f"PRAGMA user_version = {version}")
     book.close()
-    monkeypatch.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE VIEW pets AS SELECT count(*) AS many FROM pet;\n"))
-    for _ in range(2):  # opening it again changes nothing
-        with Gradebook(book.path) as newer:
-            assert next(newer.rows("PRAGMA user_version")) == (len(STEPS) + 2,)
-            assert list(newer.rows("SELECT key, nickname, many FROM student, pets")) == [("anna", "none", 1)]
-            assert (all_of(newer, "mark"), all_of(newer, "result")) == before
-    monkeypatch.undo()
-    with pytest.raises(InputError, match=r"was made by a newer grader: install that version"):
-        Gradebook(book.path)
+    before = book.path.read_bytes()
+    why = f"is a gradebook of version {version}, and this grader reads version {VERSION}: use the grader that made it"
+    assert why in refusal(grader("stats", "--gradebook", book.path))
+    assert book.path.read_bytes() == before
 
 
-def test_a_failed_migration_leaves_no_trace(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    """If a step fails, the file is unchanged and opens with the version that made it."""
-    book.close()
+def test_a_failed_creation_leaves_no_trace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If a statement fails, the file has no tables, and the next command creates them."""
     with monkeypatch.context() as patched:
-        patched.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE TABLE one (x);\nINSERT INTO nowhere VALUES (1);\n"))
+        patched.setattr(module, "SCHEMA", f"{SCHEMA}\nINSERT INTO nowhere VALUES (1);\n")
         with pytest.raises(InputError, match="no such table: nowhere"):
-            Gradebook(book.path)
-    with Gradebook(book.path) as again:
-        tables = {row[0] for row in again.rows("SELECT name FROM sqlite_master")}
-        assert not tables & {"pet", "one", "pets"}
-        assert next(again.rows("PRAGMA user_version")) == (len(STEPS),)
-        assert Grades(again).find("anna").score == Decimal("8.5")
+            Gradebook(tmp_path / "new.db", create=True)
+    with Gradebook(tmp_path / "new.db", create=True) as again:
+        assert next(again.rows("PRAGMA user_version")) == (VERSION,)
 
 
 def test_concurrent_creation_of_a_gradebook(tmp_path: Path) -> None:
@@ -284,7 +270,7 @@ def spoil(kind: str, path: Path) -> None:
         case "hollow":
             with closing(sqlite3.connect(path)) as made, made:
                 made.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-                made.execute(f"PRAGMA user_version = {len(STEPS)}")
+                made.execute(f"PRAGMA user_version = {VERSION}")
                 made.execute("CREATE TABLE mark (x)")
         case "damaged":
             with Gradebook(path, create=True) as book:
@@ -299,7 +285,7 @@ WHY = {
     "text": "file is not a database",
     "folder": "unable to open database file",
     "of-others": "is a database, but not a gradebook",
-    "newer": "was made by a newer grader",
+    "newer": "is a gradebook of version 1000",
     "hollow": "no such table",
     "damaged": "malformed",
 }

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.schema import STEPS
+from grader.classroom.gradebook.schema import VERSION
 from tests.classroom.class_runs import contents, counted, grader, rows, urdf_class, verdicts
 from tests.samples import ROOT
 
@@ -104,7 +104,7 @@ def _other_program(path: Path) -> None:
 def _newer(path: Path) -> None:
     assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", path).returncode == 0
     with sqlite3.connect(path) as book:
-        book.execute(f"PRAGMA user_version = {len(STEPS) + 1}")
+        book.execute(f"PRAGMA user_version = {VERSION + 1}")
     book.close()
 
 
@@ -115,7 +115,10 @@ def _newer(path: Path) -> None:
         (_text, "file is not a database"),
         (_short_text, "file is not a database"),
         (_other_program, "is a database, but not a gradebook"),
-        (_newer, "was made by a newer grader: install that version, or name another file"),
+        (
+            _newer,
+            "is a gradebook of version 2, and this grader reads version 1: use the grader that made it, or name another file",
+        ),
     ],
 )
 def test_no_gradebook(make: Callable[[Path], None], output: str, folder: Path, tmp_path: Path) -> None:
