@@ -106,5 +106,6 @@ def test_a_bracket_is_missing_in_text_only() -> None:
     """What looks like a tag without its < is an error between the tags of a URDF, not in a comment or a value."""
     text = '<robot name="link>"><!-- link name> -->link name="a"></link> visual></robot>'
     stop = scan(text, Rules(is_urdf=True))
-    assert (stop.why, text[stop.at : stop.at + 8]) == ("bracket", "link nam")
-    assert scan(text, Rules()).why == "close"
+    assert (stop.wrong is not None and stop.wrong.form, text[stop.at : stop.at + 8]) == ("text", "link nam")
+    other = scan(text, Rules()).wrong
+    assert other is not None and other.form == "close"
