@@ -5,7 +5,8 @@ the attribute itself, and those that define the names in it. Their changes are t
 and other numbers, which are solved for.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice, product
 from math import isclose
 from typing import NamedTuple
@@ -40,7 +41,6 @@ _MAX_CHOICES = 3  # for each number, where several change
 _MAX_USES = 12
 _MAX_DIGITS = 6
 _NICE_DIGITS = 3  # more are no number that a student would write into an expression
-_ROUNDS = 4  # of the secant method
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 _LITERAL = 20  # the rank of a text in place of an expression
 
@@ -80,18 +80,12 @@ class Rewriter:
         text = written(place, attribute, uses[0].scope)
         changed = [use for use in uses if not _same(use.old, use.new)]
         found: list[tuple[Edit, ...]] = []
-        if not changed:
-            return found
-        for several in (uses, changed) if len(changed) < len(uses) else (uses,):
-            ways = (
-                sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
-                if text is not None
-                else []
-            )
-            found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
-            found += self._at_calls(text, several) if text is not None and not found else []
-        values = {use.new for use in changed}
-        if attribute and len(values) == 1:
+        for several in dict.fromkeys((tuple(uses), tuple(changed))) if changed else ():
+            if text is not None:
+                ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
+                found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
+                found += self._at_calls(text, several) if not found else []
+        if attribute and len({use.new for use in changed}) == 1:
             source, start = place.source.element(place.tag)
             current = markup.attribute(source.text, start, attribute)
             raw = source.text[current.value_start : current.value_end] if current is not None else ""
@@ -105,61 +99,54 @@ class Rewriter:
             return  # a name has another value by now
         yield from self._changes(text, uses)
         if None not in values:
-            yield from self._of_tokens(text, uses)
-            yield from self._of_pieces(text, uses)
-        for definition in (
-            self._definitions(text, uses[0].scope) if SINGLE.fullmatch(text.text) and depth < _MAX_DEPTH else ()
-        ):
+            yield from self._of_parts(text, uses)
+        is_single = SINGLE.fullmatch(text.text) and depth < _MAX_DEPTH
+        for definition in self._definitions(text, uses[0].scope) if is_single else ():
             inner = defined(definition)
             if inner is not None and "$" in inner.text:
                 own = [use._replace(scope=definition.scope) for use in uses]
                 yield from ((rank + 2, way) for rank, way in self._ways(inner, own, depth + 1))
 
-    def _of_tokens(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of a list of numbers: those of each that is wrong."""
-        tokens = [text.part(*match.span()) for match in TOKEN.finditer(text.text)]
-        words = [[(self._value(token.text, use.scope) or "").split() for token in tokens] for use in uses]
-        choices: list[list[tuple[int, Way]]] = []
-        for index, token in enumerate(tokens if len(tokens) > 1 else ()):
-            own: list[Use] = []
-            for use, found in zip(uses, words, strict=True):
-                start, end = (sum(map(len, found[:stop])) for stop in (index, index + 1))
-                if (
-                    sum(map(len, found)) != len(use.new.split())
-                    or [word for those in found for word in those] != use.old.split()
-                ):
-                    return
-                own.append(use._replace(old=" ".join(found[index]), new=" ".join(use.new.split()[start:end])))
-            if not all(_same(use.old, use.new) for use in own):
-                ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
-                choices.append([*ways[: _MAX_WAYS if not choices else _MAX_CHOICES]])
-        for parts in islice(product(*choices), 4 * _MAX_WAYS) if choices else ():
-            yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
-
-    def _of_pieces(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of one part of a text: one that is written out, or what a name stands for."""
+    def _of_parts(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+        """Yield changes of the parts of a text that are wrong: of the numbers of a list, or of what is around one part."""
+        tokens = [text.part(*found.span()) for found in TOKEN.finditer(text.text)]
+        words = [(use.old.split(), use.new.split()) for use in uses]
+        if len(tokens) > 1 and all(len(tokens) == len(old) == len(new) for old, new in words):
+            wrong: list[list[tuple[int, Way]]] = []
+            for index, token in enumerate(tokens):
+                own = [
+                    use._replace(old=old[index], new=new[index]) for use, (old, new) in zip(uses, words, strict=True)
+                ]
+                if not all(_same(use.old, use.new) for use in own):
+                    ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
+                    wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
+            for parts in islice(product(*wrong), 4 * _MAX_WAYS):
+                yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
         pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
         values = [[self._value(piece.text, use.scope) or "" for piece in pieces] for use in uses]
         for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
-            own = [*filter(None, (_middle(use, found, index) for use, found in zip(uses, values, strict=True)))]
-            if len(own) == len(uses):
-                yield from ((rank + 1, way) for rank, way in self._changes(piece, own))
+            middles = [_middle(use, found, index) for use, found in zip(uses, values, strict=True)]
+            if None not in middles:
+                yield from ((rank + 1, way) for rank, way in self._changes(piece, [*filter(None, middles)]))
 
     def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
         changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
         sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
-        for site in sites.values():
-            for rank, other in self._candidates(site, root, uses):
-                yield rank + 2 * site.rank, (Change(site.written, other),)
         new = {use.new for use in uses}
+        for site in sites.values():
+            plain = new.copy().pop() if site.key is not None and len(new) == 1 else None
+            for rank, other in self._candidates(site, root, uses, plain):
+                yield rank + 2 * site.rank, (Change(site.written, other),)
         if len(new) == 1:
             text = new.pop()
             is_number = as_number(root.text) is not None and root.text == root.text.strip()
-            other = merged(root.text, text) if is_number else text
-            yield _LITERAL if "$" in root.text else 0, (Change(root, other),)
+            yield _LITERAL if "$" in root.text else 0, (Change(root, merged(root.text, text) if is_number else text),)
 
-    def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+    def _candidates(
+        self, site: Site, root: Written, uses: Sequence[Use], plain: str | None
+    ) -> Iterator[tuple[int, str]]:
+        """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
         text = site.written.text
 
         def fits(other: str) -> bool:
@@ -170,42 +157,37 @@ class Rewriter:
             if kind not in kinds and fits(other):
                 kinds.add(kind)
                 yield kind, other
-        new = {use.new for use in uses}
-        if site.key is not None and len(new) == 1:
-            plain = new.pop()
-            quoted = f"'{plain}'" if text != literal(text) and as_number(text) is None else plain
+        if plain is not None:
+            is_number = as_number(text) is not None
+            quoted = f"'{plain}'" if text != literal(text) and not is_number else plain
             if fits(quoted):
-                yield (
-                    (NUMBER if "$" not in text else _LITERAL),
-                    merged(text, quoted) if as_number(text) is not None else quoted,
-                )
+                yield NUMBER if "$" not in text else _LITERAL, merged(text, quoted) if is_number else quoted
         for slot in numbers(text):
-            solution = self._solution(site, root, slot, uses)
             is_plain = slot.end - slot.start == len(text.strip())
-            if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
-                yield NUMBER if is_plain or solution[1] == 1 else OTHER_NUMBER, solution[0]
+            solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
+            for digits, other in islice(solutions, 1):
+                if is_plain or digits <= _NICE_DIGITS:
+                    yield NUMBER if is_plain or digits == 1 else OTHER_NUMBER, other
 
-    def _solution(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> tuple[str, int] | None:
-        """Return the text with the number in a slot that gives what the uses need, and how many digits it has."""
+    def _solutions(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+        """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
-        pairs = [*zip(first.old.split(), first.new.split(), strict=False)]
+        pairs = list(zip(first.old.split(), first.new.split(), strict=False))
         index = next((index for index, pair in enumerate(pairs) if not _same(*pair)), 0)
         wanted = as_number(pairs[index][1]) if pairs else None
-        if wanted is None:
-            return None
 
-        def of(value: float) -> float | None:
+        def of(value: float) -> float:
             words = (self._with(site, root, with_number(site.written.text, slot, repr(value)), first) or "").split()
-            return as_number(words[index]) if index < len(words) else None
+            return as_number(words[index] if index < len(words) else None) or 0.0
 
-        found = secant(of, slot.value, wanted)
-        if found is None and wanted:  # a divisor: 1/f is linear
-            found = secant(lambda value: 1.0 / (of(value) or 0.0), slot.value, 1.0 / wanted)
-        for digits in range(1, _MAX_DIGITS + 1) if found is not None else ():
-            text = with_number(site.written.text, slot, decimal(found or 0.0, digits))
-            if all(_near(self._with(site, root, text, use), use.new) for use in uses):
-                return text, digits
-        return None
+        for power in (1, -1) if wanted is not None else ():  # what is linear in a number, or in a divisor
+            with suppress(ZeroDivisionError, OverflowError):
+                near, far = slot.value, slot.value * 1.015625 + 1e-3
+                low, high = of(near) ** power, of(far) ** power
+                found = near + ((wanted or 0.0) ** power - low) * (far - near) / (high - low)
+                for digits in range(1, _MAX_DIGITS + 1):
+                    short = float(f"{found:.{digits}g}") + 0.0
+                    yield digits, with_number(site.written.text, slot, f"{short:.9g}")
 
     def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
         """Return the edits that give calls of a macro a value of their own, where they have the default."""
@@ -300,28 +282,3 @@ def _near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
 
 def _same(one: str, other: str) -> bool:
     return _near(one, other, 1e-9)
-
-
-def secant(of: Callable[[float], float | None], start: float, wanted: float) -> float | None:
-    """Return where a function has the wanted value; None if a few steps of the secant method do not find it."""
-    before, x = start, start + 1e-3 + abs(start) / 64
-    try:
-        value, now = of(before), of(x)
-        for _ in range(_ROUNDS):
-            if value is None or now is None or now == value:
-                return None
-            before, x = x, x + (wanted - now) * (x - before) / (now - value)
-            value, now = now, of(x)
-            if now is not None and abs(wanted - now) <= 1e-9 * (1 + abs(wanted)):
-                return x
-    except (ZeroDivisionError, OverflowError):
-        pass
-    return None
-
-
-def decimal(value: float, digits: int) -> str:
-    """Return a number with so many significant digits, without an exponent where it can be."""
-    text = f"{value:.{digits}g}"
-    if "e" in text and 1e-9 < abs(value) < 1e9:
-        text = f"{float(text):.9f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
