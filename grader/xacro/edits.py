@@ -8,7 +8,7 @@ and other numbers, which are solved for.
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice, product
-from math import isclose
+from math import isclose, isfinite, nan
 from typing import NamedTuple
 
 from grader import markup
@@ -23,7 +23,6 @@ from grader.xacro.variants import (
     NAME,
     NUMBER,
     OTHER_NUMBER,
-    SINGLE,
     TOKEN,
     Slot,
     numbers,
@@ -34,7 +33,6 @@ from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
 _MAX_WAYS = 8
-_MAX_DEPTH = 6  # names that stand for each other
 _MAX_SITES = 10  # texts that one value is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_CHOICES = 3  # for each number, where several change
@@ -92,7 +90,7 @@ class Rewriter:
             found.insert(_MAX_WAYS - 1, (with_attribute(source, start, attribute, merged(raw, changed[0].new)),))
         return list(dict.fromkeys(found))[:_MAX_WAYS]
 
-    def _ways(self, text: Written, uses: Sequence[Use], depth: int = 0) -> Iterator[tuple[int, Way]]:
+    def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes with which a text is what its uses need, each with its rank."""
         values = [self._value(text.text, use.scope) for use in uses]
         if any(value is not None and not _same(value, use.old) for value, use in zip(values, uses, strict=True)):
@@ -100,12 +98,6 @@ class Rewriter:
         yield from self._changes(text, uses)
         if None not in values:
             yield from self._of_parts(text, uses)
-        is_single = SINGLE.fullmatch(text.text) and depth < _MAX_DEPTH
-        for definition in self._definitions(text, uses[0].scope) if is_single else ():
-            inner = defined(definition)
-            if inner is not None and "$" in inner.text:
-                own = [use._replace(scope=definition.scope) for use in uses]
-                yield from ((rank + 2, way) for rank, way in self._ways(inner, own, depth + 1))
 
     def _of_parts(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield changes of the parts of a text that are wrong: of the numbers of a list, or of what is around one part."""
@@ -140,7 +132,7 @@ class Rewriter:
                 yield rank + 2 * site.rank, (Change(site.written, other),)
         if len(new) == 1:
             text = new.pop()
-            is_number = as_number(root.text) is not None and root.text == root.text.strip()
+            is_number = isfinite(_number(root.text)) and root.text == root.text.strip()
             yield _LITERAL if "$" in root.text else 0, (Change(root, merged(root.text, text) if is_number else text),)
 
     def _candidates(
@@ -158,12 +150,12 @@ class Rewriter:
                 kinds.add(kind)
                 yield kind, other
         if plain is not None:
-            is_number = as_number(text) is not None
+            is_number = isfinite(_number(text))
             quoted = f"'{plain}'" if text != literal(text) and not is_number else plain
             if fits(quoted):
                 yield NUMBER if "$" not in text else _LITERAL, merged(text, quoted) if is_number else quoted
         for slot in numbers(text):
-            is_plain = slot.end - slot.start == len(text.strip())
+            is_plain = not any(it.start() < slot.start < it.end() for it in EXPRESSION.finditer(text))
             solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
             for digits, other in islice(solutions, 1):
                 if is_plain or digits <= _NICE_DIGITS:
@@ -172,20 +164,22 @@ class Rewriter:
     def _solutions(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
         """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
-        pairs = list(zip(first.old.split(), first.new.split(), strict=False))
-        index = next((index for index, pair in enumerate(pairs) if not _same(*pair)), 0)
-        wanted = as_number(pairs[index][1]) if pairs else None
+        pairs = enumerate(zip(first.old.split(), first.new.split(), strict=False))
+        index = next((index for index, pair in pairs if not _same(*pair)), 0)
+
+        def at(text: str | None) -> float:
+            words = (text or "").split()
+            return _number(words[index]) if index < len(words) else nan
 
         def of(value: float) -> float:
-            words = (self._with(site, root, with_number(site.written.text, slot, repr(value)), first) or "").split()
-            return as_number(words[index] if index < len(words) else None) or 0.0
+            return at(self._with(site, root, with_number(site.written.text, slot, repr(value)), first))
 
-        for power in (1, -1) if wanted is not None else ():  # what is linear in a number, or in a divisor
+        for power in (1, -1):  # what is linear in a number, or in a divisor
             with suppress(ZeroDivisionError, OverflowError):
                 near, far = slot.value, slot.value * 1.015625 + 1e-3
                 low, high = of(near) ** power, of(far) ** power
-                found = near + ((wanted or 0.0) ** power - low) * (far - near) / (high - low)
-                for digits in range(1, _MAX_DIGITS + 1):
+                found = near + (at(first.new) ** power - low) * (far - near) / (high - low)
+                for digits in range(1, _MAX_DIGITS + 1) if isfinite(found) else ():
                     short = float(f"{found:.{digits}g}") + 0.0
                     yield digits, with_number(site.written.text, slot, f"{short:.9g}")
 
@@ -239,11 +233,8 @@ class Rewriter:
     def _names(self, scope: Scope) -> tuple[list[str], list[str]]:
         """Return the names that have values in a scope, and those of the innermost macro."""
         if id(scope) not in self._known:
-            found = [
-                name
-                for name in dict.fromkeys(scope.names()[:_MAX_NAMES])
-                if self._value(f"${{{name}}}", scope) is not None
-            ]
+            names = dict.fromkeys(scope.names()[:_MAX_NAMES])
+            found = [name for name in names if self._value(f"${{{name}}}", scope) is not None]
             own = scope.properties if scope.parent is not None else {}
             self._known[id(scope)] = scope, (found, [name for name in found if name in own])
         return self._known[id(scope)][1]
@@ -252,32 +243,24 @@ class Rewriter:
 def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:
     """Return what one part of a text is and should be, if the others stay."""
     before, after = "".join(values[:index]), "".join(values[index + 1 :])
-    if (
-        "".join(values) != use.old
-        or len(use.new) < len(before) + len(after)
-        or not (use.new.startswith(before) and use.new.endswith(after))
-    ):
-        return None
-    return use._replace(old=values[index], new=use.new[len(before) : len(use.new) - len(after)])
+    middle = use.new[len(before) : len(use.new) - len(after)]
+    is_alone = "".join(values) == use.old and f"{before}{middle}{after}" == use.new
+    return use._replace(old=values[index], new=middle) if is_alone else None
 
 
-def as_number(text: str | None) -> float | None:
-    """Return a text as a number; None if it is none."""
+def _number(text: str) -> float:
     try:
-        return float(text) if text is not None and "_" not in text else None
+        return float(text) if "_" not in text else nan
     except ValueError:
-        return None
+        return nan
 
 
 def _near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
     """Return whether a text, or each number in it, is as good as the wanted one."""
-    if text is None or text == wanted:
-        return text == wanted
-    pairs = [(as_number(a), as_number(b)) for a, b in zip(text.split(), wanted.split(), strict=False)]
-    is_alike = len(text.split()) == len(wanted.split()) and bool(pairs)
-    return is_alike and all(
-        a is not None and b is not None and isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs
-    )
+    one, other = [[_number(word) for word in (it or "").split()] for it in (text, wanted)]
+    is_alike = text is not None and 0 < len(one) == len(other)
+    pairs = zip(one, other, strict=False)
+    return text == wanted or (is_alike and all(isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs))
 
 
 def _same(one: str, other: str) -> bool:

@@ -10,9 +10,8 @@ from grader.names import closest
 EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?![\w.(])")
 _PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
-_NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_NUMBER = re.compile(r"""(?:(?<![^\s'"])[-+]?|(?<![\w.]))(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])""")
 TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
-SINGLE = re.compile(r"\s*\$(?:\{\s*(?:[^\W\d]\w*)\s*\}|\(arg\s+[^\s()]+\s*\))\s*")
 ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
 _WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
@@ -49,13 +48,8 @@ class Slot(NamedTuple):
 
 
 def numbers(text: str) -> list[Slot]:
-    """Return the numbers in the expressions of a text; the text itself, if it is one."""
-    plain = _PLAIN.fullmatch(text)
-    if plain is not None:
-        return [Slot(plain.start(1), plain.end(1), float(plain[1]))]
-    inside = ((found.start(1), found.end(1)) for found in EXPRESSION.finditer(text))
-    slots = (number for start, end in inside for number in _NUMBER.finditer(text, start, end))
-    return [Slot(number.start(), number.end(), float(number[0])) for number in slots]
+    """Return the numbers in a text, those outside of expressions with their signs."""
+    return [Slot(*found.span(), float(found[0])) for found in _NUMBER.finditer(text)]
 
 
 def with_number(text: str, slot: Slot, number: str) -> str:
