@@ -2,7 +2,6 @@
 
 import posixpath
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
@@ -41,25 +40,21 @@ class Corrector:
         self, refusals: Sequence[Refusal], names: Sequence[str], numbers: Sequence[str]
     ) -> Iterator[Correction]:
         """Yield the edits that may correct refusals; `names` and `numbers` are those that a reference has."""
-        counts = Counter(it.error.unknown.name for it in refusals if it.error.unknown is not None)
         for refusal in refusals[:_MAX_NAMES]:
             unknown, lacking = refusal.error.unknown, refusal.error.lacking
             if unknown is not None:
-                for edits in self._respelled(refusal.place, refusal.attribute, unknown, counts):
+                for edits in self._respelled(refusal.place, refusal.attribute, unknown):
                     yield Correction(edits, _UNKNOWN, "correct the name")
-                included = [*self._included(refusal.place, unknown.name)]
-                yield from included or self._defined(refusal.place, unknown, numbers)
+                source, start = refusal.place.source.element(0)
+                for xml, cause, action in self._added(source.path, unknown, numbers):
+                    yield Correction((with_child(source, start, xml),), cause, action)
+            what = " and ".join(lacking)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
-                yield Correction(
-                    self._given(refusal.place, lacking, value),
-                    f"this call gives no value for {' and '.join(lacking)}",
-                    f"give {' and '.join(lacking)} a value",
-                )
+                edits = self._given(refusal.place, lacking, value)
+                yield Correction(edits, f"this call gives no value for {what}", f"give {what} a value")
         yield from self._calls_of_macros(names)
 
-    def _respelled(
-        self, place: Place, attribute: str | None, unknown: UnknownName, counts: Mapping[str, int]
-    ) -> Iterator[Edits]:
+    def _respelled(self, place: Place, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
         """Yield the edits that correct an unknown name where it is used, or where a similar one is defined; declare a parameter."""
         near = closest(unknown.name, unknown.known)
         is_few = attribute is None and len(unknown.known) <= _MAX_NAMES
@@ -74,20 +69,20 @@ class Corrector:
                 params = markup.attribute(source.text, start, "params")
                 given = source.text[params.value_start : params.value_end] if params is not None else ""
                 ways.append((with_attribute(source, start, "params", f"{given} {unknown.name}".strip()),))
-        # It is rare to misspell a name twice in the same way.
-        yield from filter(None, reversed(ways) if counts[unknown.name] > 1 and near else ways)
+        yield from filter(None, ways)
 
-    def _included(self, place: Place, name: str) -> Iterator[Correction]:
-        """Include the file that defines a name."""
+    def _added(self, path: str, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+        """Yield what may define a name: the include of a file that does, or a property with one of the numbers."""
+        name, is_included = unknown.name, False
         definition = re.compile(rf"<xacro:(?:macro|property|arg)\b[^>]*\bname\s*=\s*[\"']{re.escape(name)}[\"']")
-        for path, text in self._others().items():
+        for other, text in self._others().items():
             if definition.search(text):
-                for document in dict.fromkeys((next(iter(self._documents.values())).place, place)):
-                    source, start = document.source.element(0)
-                    edit = with_child(
-                        source, start, f'<xacro:include filename="{self._path(document.source.path, path)}"/>'
-                    )
-                    yield Correction((edit,), "a file that is not included", f"include {posixpath.basename(path)}")
+                is_included, include = True, f'<xacro:include filename="{self._path(path, other)}"/>'
+                yield include, "a file that is not included", f"include {posixpath.basename(other)}"
+        is_like = closest(name, unknown.known) is not None
+        for value in () if is_included or is_like else numbers[:_MAX_VALUES]:
+            found = f'<xacro:property name="{name}" value="{value}"/>'
+            yield found, f"the property {name} is not defined", f"define the property {name}"
 
     def _path(self, path: str, other: str) -> str:
         """Return how a file is named in an include: as the files beside it are."""
@@ -97,23 +92,11 @@ class Corrector:
                 return f"{folder}{slash}{posixpath.basename(other)}"
         return posixpath.relpath(other, posixpath.dirname(path) or ".")
 
-    def _defined(self, place: Place, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[Correction]:
-        """Define a property with one of the numbers."""
-        if closest(unknown.name, unknown.known) is not None:
-            return
-        source, start = place.source.element(0)
-        for value in numbers[:_MAX_VALUES]:
-            edit = with_child(source, start, f'<xacro:property name="{unknown.name}" value="{value}"/>')
-            yield Correction(
-                (edit,), f"the property {unknown.name} is not defined", f"define the property {unknown.name}"
-            )
-
     def _values(self, place: Place, lacking: Sequence[str], known: Sequence[str]) -> Iterator[Mapping[str, str]]:
-        """Yield values for what a call lacks: those of other calls, their opposites, and known ones."""
+        """Yield values for what a call lacks: those of other calls, and known ones."""
         for other in self._other_calls(place):
             if set(lacking) <= other.keys():
                 yield {name: other[name] for name in lacking}
-                yield {name: other[name][1:] if other[name].startswith("-") else f"-{other[name]}" for name in lacking}
         if any(name.startswith("*") for name in lacking):
             yield dict.fromkeys(lacking, '<origin xyz="0 0 0"/>')
         elif len(lacking) == 1:
