@@ -125,19 +125,11 @@ class Rewriter:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
         changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
         sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
-        new = {use.new for use in uses}
         for site in sites.values():
-            plain = new.copy().pop() if site.key is not None and len(new) == 1 else None
-            for rank, other in self._candidates(site, root, uses, plain):
+            for rank, other in self._candidates(site, root, uses):
                 yield rank + 2 * site.rank, (Change(site.written, other),)
-        if len(new) == 1:
-            text = new.pop()
-            is_number = isfinite(_number(root.text)) and root.text == root.text.strip()
-            yield _LITERAL if "$" in root.text else 0, (Change(root, merged(root.text, text) if is_number else text),)
 
-    def _candidates(
-        self, site: Site, root: Written, uses: Sequence[Use], plain: str | None
-    ) -> Iterator[tuple[int, str]]:
+    def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
         """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
         text = site.written.text
 
@@ -149,11 +141,12 @@ class Rewriter:
             if kind not in kinds and fits(other):
                 kinds.add(kind)
                 yield kind, other
-        if plain is not None:
-            is_number = isfinite(_number(text))
-            quoted = f"'{plain}'" if text != literal(text) and not is_number else plain
-            if fits(quoted):
-                yield NUMBER if "$" not in text else _LITERAL, merged(text, quoted) if is_number else quoted
+        for new in {use.new for use in uses} if len({use.new for use in uses}) == 1 else ():
+            is_number = isfinite(_number(text)) and text == text.strip()
+            is_quoted = site.key is not None and text != literal(text) and not is_number
+            plain = f"'{new}'" if is_quoted else merged(text, new) if is_number else new
+            if fits(plain):
+                yield _LITERAL if "$" in text else NUMBER, plain
         for slot in numbers(text):
             is_plain = not any(it.start() < slot.start < it.end() for it in EXPRESSION.finditer(text))
             solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
