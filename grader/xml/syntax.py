@@ -186,7 +186,7 @@ class _Operations:
         for at, old in enumerate(body):
             for new in " " if old.isalnum() and body[at - 1].isalnum() else list(_WAYS)[:6]:
                 yield new, at, at, new
-            if not old.isalnum() and not re.match(r"<\w", body[at:]):
+            if not old.isalnum() and not (old == "<" and body[at + 1 : at + 2].isalpha()):
                 yield "less", at, at + 1, ""
             for name in free if old in "=\"'" else ():
                 yield from (("name", at, at, new) for new in (name, f" {name}", f"{name}="))
@@ -217,7 +217,8 @@ class _Operations:
                 yield self._tag(wrong, "close", top.name)
                 yield self._tag(top, "open", wrong.name)
         elif tags and not self.open:
-            yield self._tag(tags[0], "open") if tags[0].form == "empty" else self._tag(tags[-1], "")
+            last = [piece for piece in tags if piece.form != "open"][-1]
+            yield self._tag(last, "open" if last.form == "empty" else "")
         elif wrong.form != "end":
             yield self._tag(wrong, "open", "robot")
             yield "open", (wrong.start, wrong.start, f"<robot>{self.line}")
