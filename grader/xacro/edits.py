@@ -5,6 +5,7 @@ the attribute itself, and those that define the names in it. Their changes are t
 and other numbers, which are solved for.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import islice, product
@@ -24,7 +25,6 @@ from grader.xacro.variants import (
     NUMBER,
     OTHER_NUMBER,
     TOKEN,
-    Slot,
     numbers,
     variants,
     with_number,
@@ -148,13 +148,15 @@ class Rewriter:
             if fits(plain):
                 yield _LITERAL if "$" in text else NUMBER, plain
         for slot in numbers(text):
-            is_plain = not any(it.start() < slot.start < it.end() for it in EXPRESSION.finditer(text))
+            is_plain = not any(it.start() < slot.start() < it.end() for it in EXPRESSION.finditer(text))
             solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
             for digits, other in islice(solutions, 1):
                 if is_plain or digits <= _NICE_DIGITS:
                     yield NUMBER if is_plain or digits == 1 else OTHER_NUMBER, other
 
-    def _solutions(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+    def _solutions(
+        self, site: Site, root: Written, slot: re.Match[str], uses: Sequence[Use]
+    ) -> Iterator[tuple[int, str]]:
         """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
         pairs = enumerate(zip(first.old.split(), first.new.split(), strict=False))
@@ -169,7 +171,8 @@ class Rewriter:
 
         for power in (1, -1):  # what is linear in a number, or in a divisor
             with suppress(ZeroDivisionError, OverflowError):
-                near, far = slot.value, slot.value * 1.015625 + 1e-3
+                near = float(slot[0])
+                far = near * 1.015625 + 1e-3
                 low, high = of(near) ** power, of(far) ** power
                 found = near + (at(first.new) ** power - low) * (far - near) / (high - low)
                 for digits in range(1, _MAX_DIGITS + 1) if isfinite(found) else ():

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import NamedTuple
 
 from grader.names import closest
 
@@ -39,24 +38,16 @@ _CHANGES = (
 )
 
 
-class Slot(NamedTuple):
-    """A number in a text: its offsets, and its value."""
-
-    start: int
-    end: int
-    value: float
-
-
-def numbers(text: str) -> list[Slot]:
+def numbers(text: str) -> list[re.Match[str]]:
     """Return the numbers in a text, those outside of expressions with their signs."""
-    return [Slot(*found.span(), float(found[0])) for found in _NUMBER.finditer(text)]
+    return list(_NUMBER.finditer(text))
 
 
-def with_number(text: str, slot: Slot, number: str) -> str:
+def with_number(text: str, slot: re.Match[str], number: str) -> str:
     """Return a text with another number, in parentheses where its sign would follow another one."""
-    before = text[: slot.start].rstrip()[-1:]
+    before = text[: slot.start()].rstrip()[-1:]
     shown = f"({number})" if number.startswith("-") and before in ("-", "+", "*") else number
-    return f"{text[: slot.start]}{shown}{text[slot.end :]}"
+    return f"{text[: slot.start()]}{shown}{text[slot.end() :]}"
 
 
 def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tuple[int, str]]:
