@@ -54,14 +54,6 @@ class Use(NamedTuple):
     calls: tuple[tuple[str, Place], ...] = ()
 
 
-class Site(NamedTuple):
-    """A text that a value is computed from; `key` is None for the text of the attribute itself."""
-
-    written: Written
-    key: Key | None
-    rank: int
-
-
 class Rewriter:
     """Makes the edits of one expanded document."""
 
@@ -124,20 +116,20 @@ class Rewriter:
     def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
         changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
-        sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
-        for site in sites.values():
+        sites = {site.key: (rank, site) for scope in changed for rank, site in self._sites(root, scope)}
+        for first, site in sites.values():
             for rank, other in self._candidates(site, root, uses):
-                yield rank + 2 * site.rank, (Change(site.written, other),)
+                yield rank + first, (Change(site, other),)
 
-    def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+    def _candidates(self, site: Written, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
         """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
-        text = site.written.text
+        text = site.text
 
         def fits(other: str) -> bool:
             return all(_near(self._with(site, root, other, use), use.new) for use in uses)
 
         kinds: set[int] = set()
-        for kind, other in variants(text, *self._names(site.written.scope)):
+        for kind, other in variants(text, *self._names(site.scope)):
             if kind not in kinds and fits(other):
                 kinds.add(kind)
                 yield kind, other
@@ -155,7 +147,7 @@ class Rewriter:
                     yield NUMBER if is_plain or digits == 1 else OTHER_NUMBER, other
 
     def _solutions(
-        self, site: Site, root: Written, slot: re.Match[str], uses: Sequence[Use]
+        self, site: Written, root: Written, slot: re.Match[str], uses: Sequence[Use]
     ) -> Iterator[tuple[int, str]]:
         """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
@@ -167,7 +159,7 @@ class Rewriter:
             return _number(words[index]) if index < len(words) else nan
 
         def of(value: float) -> float:
-            return at(self._with(site, root, with_number(site.written.text, slot, repr(value)), first))
+            return at(self._with(site, root, with_number(site.text, slot, repr(value)), first))
 
         for power in (1, -1):  # what is linear in a number, or in a divisor
             with suppress(ZeroDivisionError, OverflowError):
@@ -177,7 +169,7 @@ class Rewriter:
                 found = near + (at(first.new) ** power - low) * (far - near) / (high - low)
                 for digits in range(1, _MAX_DIGITS + 1) if isfinite(found) else ():
                     short = float(f"{found:.{digits}g}") + 0.0
-                    yield digits, with_number(site.written.text, slot, f"{short:.9g}")
+                    yield digits, with_number(site.text, slot, f"{short:.9g}")
 
     def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
         """Return the edits that give calls of a macro a value of their own, where they have the default."""
@@ -193,15 +185,16 @@ class Rewriter:
                             break
         return [tuple(dict.fromkeys(edits))] if edits else []
 
-    def _sites(self, root: Written, scope: Scope) -> list[Site]:
-        sites: dict[Key | None, Site] = {None: Site(root._replace(scope=scope), None, 0)}
+    def _sites(self, root: Written, scope: Scope) -> list[tuple[int, Written]]:
+        """Return the texts that a text is computed from, itself the first, each with its rank."""
+        sites = {root.key: (0, root._replace(scope=scope))}
         pending = [root._replace(scope=scope)]
         while pending and len(sites) < _MAX_SITES:
             for definition in self._definitions(pending[0], pending.pop(0).scope):
                 text = defined(definition)
                 if text is not None and definition.key not in sites:
                     is_given = definition.attribute not in ("params", "value", "default")
-                    sites[definition.key] = Site(text, definition.key, 0 if is_given else 1)
+                    sites[definition.key] = (0 if is_given else 2, text)
                     pending.append(text)
         return list(sites.values())
 
@@ -216,7 +209,7 @@ class Rewriter:
         defaults = self._texts.defaults
         yield from (defaults[name] for name in ARGUMENT.findall(text.text) if name in defaults)
 
-    def _with(self, site: Site, root: Written, text: str, use: Use) -> str | None:
+    def _with(self, site: Written, root: Written, text: str, use: Use) -> str | None:
         return self._value(text, use.scope) if site.key is None else self._value(root.text, use.scope, {site.key: text})
 
     def _value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:

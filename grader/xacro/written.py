@@ -6,20 +6,21 @@ from typing import NamedTuple
 
 from grader import markup
 from grader.source import Edit, Source
-from grader.xacro.scopes import Definition, Place, Scope
+from grader.xacro.scopes import Definition, Key, Place, Scope
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _VALUE = re.compile(r'("[^"$]*")')
 
 
 class Written(NamedTuple):
-    """A text that stands at an offset of a file, the scope in which it is evaluated, and the attribute that it is in."""
+    """A text that stands at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
 
     source: Source
     start: int
     text: str
     scope: Scope
     attribute: tuple[int, int]  # its offsets, with name and quotes
+    key: Key | None = None  # of what is defined with it
 
     @property
     def end(self) -> int:
@@ -90,9 +91,9 @@ def with_parameters(xml: str, scope: Scope) -> str:
 def defined(definition: Definition) -> Written | None:
     """Return the text that a name is defined with: of a parameter's default the part of `params`."""
     whole = written(definition.place, definition.attribute, definition.scope)
-    if whole is None or definition.attribute != "params" or whole.text == definition.text:
-        return whole
-    found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
-    if found is None or not whole.text.startswith(definition.text, found.end()):
-        return None
-    return whole.part(found.end(), found.end() + len(definition.text))
+    if whole is not None and definition.attribute == "params" and whole.text != definition.text:
+        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if found is None or not whole.text.startswith(definition.text, found.end()):
+            return None
+        whole = whole.part(found.end(), found.end() + len(definition.text))
+    return whole._replace(key=definition.key) if whole is not None else None
