@@ -160,7 +160,6 @@ class _Operations:
         elif self.wrong.name == "<?":
             yield "version", (start, self.text.find(">", start) + 1 or end, _XML)
             yield "misplaced", (start, end, "")
-            yield "text", (0, start, "")
         elif self.wrong.form == "other":
             yield from self._comment(start + len(self.wrong.name))
         elif self.wrong.at is None:
