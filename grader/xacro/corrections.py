@@ -2,16 +2,15 @@
 
 import posixpath
 import re
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
 from grader import markup
-from grader.edits import with_attribute, with_child, with_sibling
+from grader.edits import text_of, with_attribute, with_child, with_sibling
 from grader.names import closest
 from grader.source import Correction, Edit, Source
-from grader.xacro.nodes import MISPLACED, Node
+from grader.xacro.nodes import Node
 from grader.xacro.scopes import Place, UnknownName, XacroFails
 
 _MAX_NAMES = 8
@@ -41,88 +40,63 @@ class Corrector:
         self, refusals: Sequence[Refusal], names: Sequence[str], numbers: Sequence[str]
     ) -> Iterator[Correction]:
         """Yield the edits that may correct refusals; `names` and `numbers` are those that a reference has."""
-        counts = Counter(it.error.unknown.name for it in refusals if it.error.unknown is not None)
         for refusal in refusals[:_MAX_NAMES]:
             unknown, lacking = refusal.error.unknown, refusal.error.lacking
             if unknown is not None:
-                for edits in self._respelled(refusal.place, refusal.attribute, unknown, counts):
+                for edits in self._respelled(refusal.place, refusal.attribute, unknown):
                     yield Correction(edits, _UNKNOWN, "correct the name")
-                included = [*self._included(refusal.place, unknown.name)]
-                yield from included or self._defined(refusal.place, unknown, numbers)
+                source, start = refusal.place.source.element(0)
+                for xml, cause, action in self._added(source.path, unknown, numbers):
+                    yield Correction((with_child(source, start, xml),), cause, action)
+            what = " and ".join(lacking)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
-                yield Correction(
-                    self._given(refusal.place, lacking, value),
-                    f"this call gives no value for {' and '.join(lacking)}",
-                    f"give {' and '.join(lacking)} a value",
-                )
+                edits = self._given(refusal.place, lacking, value)
+                yield Correction(edits, f"this call gives no value for {what}", f"give {what} a value")
         yield from self._calls_of_macros(names)
 
-    def _respelled(
-        self, place: Place, attribute: str | None, unknown: UnknownName, counts: Mapping[str, int]
-    ) -> Iterator[Edits]:
+    def _respelled(self, place: Place, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
         """Yield the edits that correct an unknown name where it is used, or where a similar one is defined; declare a parameter."""
         near = closest(unknown.name, unknown.known)
-        others = (
-            [near]
-            if near is not None
-            else [*unknown.known]
-            if len(unknown.known) <= _MAX_NAMES and attribute is None
-            else []
-        )
+        is_few = attribute is None and len(unknown.known) <= _MAX_NAMES
         ways: list[Edits] = []
-        for name in others:
+        for name in [near] if near is not None else unknown.known if is_few else ():
             ways.append(_renamed(place, attribute, unknown.name, name))
-            defined = unknown.known[name]
-            if defined is not None and name == near:
-                ways.append(_renamed(*defined, name, unknown.name))
-            if defined is not None and defined[1] == "params" and near is None:
-                source, start = defined[0].source.element(defined[0].tag)
+            at, where = unknown.known[name] or (place, None)
+            if where is not None and name == near:
+                ways.append(_renamed(at, where, name, unknown.name))
+            elif where == "params":
+                source, start = at.source.element(at.tag)
                 params = markup.attribute(source.text, start, "params")
                 given = source.text[params.value_start : params.value_end] if params is not None else ""
                 ways.append((with_attribute(source, start, "params", f"{given} {unknown.name}".strip()),))
-        # It is rare to misspell a name twice in the same way.
-        yield from (edits for edits in (reversed(ways) if counts[unknown.name] > 1 and near else ways) if edits)
+        yield from filter(None, ways)
 
-    def _included(self, place: Place, name: str) -> Iterator[Correction]:
-        """Include the file that defines a name."""
+    def _added(self, path: str, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+        """Yield what may define a name: the include of a file that does, or a property with one of the numbers."""
+        name, is_included = unknown.name, False
         definition = re.compile(rf"<xacro:(?:macro|property|arg)\b[^>]*\bname\s*=\s*[\"']{re.escape(name)}[\"']")
-        for path, text in self._others().items():
+        for other, text in self._others().items():
             if definition.search(text):
-                for document in dict.fromkeys((next(iter(self._documents.values())).place, place)):
-                    source, start = document.source.element(0)
-                    edit = with_child(
-                        source, start, f'<xacro:include filename="{self._path(document.source.path, path)}"/>'
-                    )
-                    yield Correction((edit,), "a file that is not included", f"include {posixpath.basename(path)}")
+                is_included, include = True, f'<xacro:include filename="{self._path(path, other)}"/>'
+                yield include, "a file that is not included", f"include {posixpath.basename(other)}"
+        is_like = closest(name, unknown.known) is not None
+        for value in () if is_included or is_like else numbers[:_MAX_VALUES]:
+            found = f'<xacro:property name="{name}" value="{value}"/>'
+            yield found, f"the property {name} is not defined", f"define the property {name}"
 
     def _path(self, path: str, other: str) -> str:
         """Return how a file is named in an include: as the files beside it are."""
-        for node in (
-            it for document in self._documents.values() for it in _walk(document) if it.tag == "xacro:include"
-        ):
+        for node in self._nodes("xacro:include"):
             folder, slash, _ = node.attributes.get("filename", "").rpartition("/")
             if "$(find" in folder and posixpath.dirname(other).endswith(folder.partition(")")[2].strip("/")):
                 return f"{folder}{slash}{posixpath.basename(other)}"
         return posixpath.relpath(other, posixpath.dirname(path) or ".")
 
-    def _defined(self, place: Place, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[Correction]:
-        """Define a property with one of the numbers."""
-        if closest(unknown.name, unknown.known) is not None:
-            return
-        source, start = place.source.element(0)
-        for value in numbers[:_MAX_VALUES]:
-            edit = with_child(source, start, f'<xacro:property name="{unknown.name}" value="{value}"/>')
-            yield Correction(
-                (edit,), f"the property {unknown.name} is not defined", f"define the property {unknown.name}"
-            )
-
     def _values(self, place: Place, lacking: Sequence[str], known: Sequence[str]) -> Iterator[Mapping[str, str]]:
-        """Yield values for what a call lacks: those of other calls, their opposites, and known ones."""
-        others = [dict(call.items()) for call in self._other_calls(place)]
-        for other in others:
+        """Yield values for what a call lacks: those of other calls, and known ones."""
+        for other in self._other_calls(place):
             if set(lacking) <= other.keys():
                 yield {name: other[name] for name in lacking}
-                yield {name: other[name][1:] if other[name].startswith("-") else f"-{other[name]}" for name in lacking}
         if any(name.startswith("*") for name in lacking):
             yield dict.fromkeys(lacking, '<origin xyz="0 0 0"/>')
         elif len(lacking) == 1:
@@ -131,57 +105,43 @@ class Corrector:
     def _other_calls(self, place: Place) -> Iterator[dict[str, str]]:
         """Yield what the other calls of a macro give, blocks by the names of the parameters."""
         tag = next((node.tag for node in self._nodes() if node.place[:2] == place[:2]), "")
-        for node in self._nodes():
-            if node.tag == tag and node.place[:2] != place[:2]:
-                blocks = [markup_of(child.place) for child in node.elements]
-                names = [name for name in self._parameters(tag) if name.startswith("*")]
+        macros = (it for it in self._nodes("xacro:macro") if f"xacro:{_name_of(it)}" == tag)
+        parameters = next((it.attributes.get("params", "").split() for it in macros), [])
+        for node in self._nodes(tag):
+            if node.place[:2] != place[:2]:
+                blocks = [text_of(*child.place.source.element(child.place.tag)) for child in node.elements]
+                names = [name for name in parameters if name.startswith("*")]
                 yield {**node.attributes, **dict(zip(names, blocks, strict=False))}
-
-    def _parameters(self, tag: str) -> list[str]:
-        macros = (
-            node
-            for node in self._nodes()
-            if node.tag == "xacro:macro" and f"xacro:{node.attributes.get('name', '').removeprefix('xacro:')}" == tag
-        )
-        return next((node.attributes.get("params", "").split() for node in macros), [])
 
     def _given(self, place: Place, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
         source, start = place.source.element(place.tag)
         blocks = [values[name] for name in lacking if name.startswith("*")]
         if blocks:
             return (with_child(source, start, "\n".join(blocks)),)
-        end = markup.name_end(source.text, start)
         added = "".join(f' {name}="{values[name]}"' for name in lacking)
-        tail = markup.attributes(source.text, start)
-        end = max((found.end for found in tail), default=end)
-        return (source.edit(end, end, added),)
+        ends = [markup.name_end(source.text, start), *(it.end for it in markup.attributes(source.text, start))]
+        return (source.edit(ends[-1], ends[-1], added),)
 
     def _calls_of_macros(self, names: Sequence[str]) -> Iterator[Correction]:
         """Call a macro that is never called; write the prefix of a call that lacks it."""
         called = {name for name, _, _ in self._calls.values()}
-        root = next(iter(self._documents.values()))
-        for node in [it for it in self._nodes() if it.tag == "xacro:macro"][:_MAX_NAMES]:
-            name = node.attributes.get("name", "").removeprefix("xacro:")
-            for plain in (it for it in self._nodes() if it.tag == name):
-                edits = tuple(_tags(plain.place, name, f"xacro:{name}", prefix=""))
-                yield Correction(
-                    edits, f"a call of the macro {name} without xacro:", "write xacro: before the name of the macro"
-                )
+        *_, last = [None, *next(iter(self._documents.values())).elements]
+        for node in islice(self._nodes("xacro:macro"), _MAX_NAMES):
+            name = _name_of(node)
+            cause = f"a call of the macro {name} without xacro:"
+            for plain in self._nodes(name):
+                edits = tuple(_tags(plain.place, name, f"xacro:{name}"))
+                yield Correction(edits, cause, "write xacro: before the name of the macro")
             needed = [it for it in node.attributes.get("params", "").split() if "=" not in it]
-            last = (
-                [*root.elements][-1:]
-                if name not in called and len(needed) <= 1 and not any(it.startswith("*") for it in needed)
-                else []
-            )
-            for value in names if needed else [""]:
-                for after in last:
-                    given = f' {needed[0]}="{value}"' if needed else ""
-                    edit = with_sibling(*after.place.source.element(after.place.tag), f"<xacro:{name}{given}/>")
-                    yield Correction((edit,), f"the macro {name} is never called", f"call the macro {name}")
+            is_simple = len(needed) <= 1 and not any(it.startswith("*") for it in needed)
+            for value in (names if needed else [""]) if last and is_simple and name not in called else ():
+                given = "".join(f' {it}="{value}"' for it in needed)
+                edit = with_sibling(*last.place.source.element(last.place.tag), f"<xacro:{name}{given}/>")
+                yield Correction((edit,), f"the macro {name} is never called", f"call the macro {name}")
 
-    def _nodes(self) -> Iterator[Node]:
+    def _nodes(self, tag: str = "") -> Iterator[Node]:
         for document in self._documents.values():
-            yield from islice(_walk(document), 2000)
+            yield from (node for node in islice(_walk(document), 2000) if tag in ("", node.tag))
 
 
 def _walk(node: Node) -> Iterator[Node]:
@@ -190,56 +150,38 @@ def _walk(node: Node) -> Iterator[Node]:
         yield from _walk(child)
 
 
-def markup_of(place: Place) -> str:
-    """Return the text of an element."""
-    source, start = place.source.element(place.tag)
-    return source.text[start : markup.element_end(source.text, start)]
+def _name_of(macro: Node) -> str:
+    return macro.attributes.get("name", "").removeprefix("xacro:")
 
 
 def _renamed(place: Place, attribute: str | None, old: str, new: str) -> Edits:
     """Return the edit of an attribute's value; without an attribute, of the name of one, of the tag, or of any value."""
     source, start = place.source.element(place.tag)
-    text = source.text
-    for found in markup.attributes(text, start):
-        if attribute is None and found.name == old:
-            return (source.edit(found.start, found.end, new + text[found.start + len(old) : found.end]),)
-    tags = tuple(_tags(place, old, new)) if attribute is None else ()
-    for found in () if tags else markup.attributes(text, start):
-        value = text[found.value_start : found.value_end]
-        changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, value, count=0 if "$" in value else 1)
-        if attribute in (None, found.name) and changed != value:
-            head, tail = text[found.start : found.value_start], text[found.value_end : found.end]
-            return (source.edit(found.start, found.end, f"{head}{changed}{tail}"),)
+    tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()
+    for found in () if tags else markup.attributes(source.text, start):
+        whole = source.text[found.start : found.end]
+        changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1)
+        if attribute in (None, found.name) and changed != whole:
+            return (source.edit(found.start, found.end, changed),)
     return tags
 
 
-def _tags(place: Place, old: str, new: str, prefix: str = "xacro:") -> Iterator[Edit]:
+def _tags(place: Place, old: str, new: str) -> Iterator[Edit]:
     """Yield the edits of a call's start tag, and of its end tag if it has one."""
     source, start = place.source.element(place.tag)
-    tag = source.text[start : markup.name_end(source.text, start)]
-    if tag != f"<{prefix}{old}":
-        return
-    yield source.edit(start, start + len(tag), f"<{prefix}{new}")
-    end = markup.element_end(source.text, start)
-    closing = re.search(rf"</{prefix}{re.escape(old)}\s*>\Z", source.text[start:end])
-    if closing is not None:
-        yield source.edit(start + closing.start(), end, f"</{prefix}{new}>")
+    if source.text[start : markup.name_end(source.text, start)] == f"<{old}":
+        yield source.edit(start, start + len(old) + 1, f"<{new}")
+        end = markup.element_end(source.text, start)
+        closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
+        if closing is not None:
+            yield source.edit(start + closing.start(), end, f"</{new}>")
 
 
-def well_formed(source: Source) -> Iterable[Correction]:
-    """Yield the edits that declare the prefix xacro, and that put the declaration of XML at the start of the file."""
+def well_formed(source: Source) -> Iterator[Correction]:
+    """Yield the edit that declares the prefix xacro."""
     text = source.text
     if "xmlns:xacro" not in text and "xacro:" in text:
         _, start = source.element(0)
         end = markup.name_end(text, start)
         edit = source.edit(start, end, text[start:end] + _NAMESPACE)
         yield Correction((edit,), "the prefix xacro, which is not declared", "declare the prefix xacro")
-    found = MISPLACED.search(text)
-    before = text[: found.start()].removeprefix("\ufeff") if found is not None else ""
-    if found is not None and before:
-        newline = "\r\n" if "\r\n" in text else "\n"
-        moved = found[0] if before.isspace() else f"{found[0]}{newline}{before.rstrip()}"
-        edit = source.edit(found.start() - len(before), found.end(), moved)
-        yield Correction(
-            (edit,), "the XML declaration, which is not at the start", "move the XML declaration to the start"
-        )

@@ -5,9 +5,11 @@ the attribute itself, and those that define the names in it. Their changes are t
 and other numbers, which are solved for.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice, product
-from math import isclose
+from math import isclose, isfinite, nan
 from typing import NamedTuple
 
 from grader import markup
@@ -22,9 +24,7 @@ from grader.xacro.variants import (
     NAME,
     NUMBER,
     OTHER_NUMBER,
-    SINGLE,
     TOKEN,
-    Slot,
     numbers,
     variants,
     with_number,
@@ -33,14 +33,12 @@ from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
 _MAX_WAYS = 8
-_MAX_DEPTH = 6  # names that stand for each other
 _MAX_SITES = 10  # texts that one value is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_CHOICES = 3  # for each number, where several change
 _MAX_USES = 12
 _MAX_DIGITS = 6
 _NICE_DIGITS = 3  # more are no number that a student would write into an expression
-_ROUNDS = 4  # of the secant method
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 _LITERAL = 20  # the rank of a text in place of an expression
 
@@ -54,14 +52,6 @@ class Use(NamedTuple):
     old: str
     new: str
     calls: tuple[tuple[str, Place], ...] = ()
-
-
-class Site(NamedTuple):
-    """A text that a value is computed from; `key` is None for the text of the attribute itself."""
-
-    written: Written
-    key: Key | None
-    rank: int
 
 
 class Rewriter:
@@ -80,132 +70,106 @@ class Rewriter:
         text = written(place, attribute, uses[0].scope)
         changed = [use for use in uses if not _same(use.old, use.new)]
         found: list[tuple[Edit, ...]] = []
-        if not changed:
-            return found
-        for several in (uses, changed) if len(changed) < len(uses) else (uses,):
-            ways = (
-                sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
-                if text is not None
-                else []
-            )
-            found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
-            found += self._at_calls(text, several) if text is not None and not found else []
-        values = {use.new for use in changed}
-        if attribute and len(values) == 1:
+        for several in dict.fromkeys((tuple(uses), tuple(changed))) if changed else ():
+            if text is not None:
+                ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
+                found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
+                found += self._at_calls(text, several) if not found else []
+        if attribute and len({use.new for use in changed}) == 1:
             source, start = place.source.element(place.tag)
             current = markup.attribute(source.text, start, attribute)
             raw = source.text[current.value_start : current.value_end] if current is not None else ""
             found.insert(_MAX_WAYS - 1, (with_attribute(source, start, attribute, merged(raw, changed[0].new)),))
         return list(dict.fromkeys(found))[:_MAX_WAYS]
 
-    def _ways(self, text: Written, uses: Sequence[Use], depth: int = 0) -> Iterator[tuple[int, Way]]:
+    def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes with which a text is what its uses need, each with its rank."""
         values = [self._value(text.text, use.scope) for use in uses]
         if any(value is not None and not _same(value, use.old) for value, use in zip(values, uses, strict=True)):
             return  # a name has another value by now
         yield from self._changes(text, uses)
         if None not in values:
-            yield from self._of_tokens(text, uses)
-            yield from self._of_pieces(text, uses)
-        for definition in (
-            self._definitions(text, uses[0].scope) if SINGLE.fullmatch(text.text) and depth < _MAX_DEPTH else ()
-        ):
-            inner = defined(definition)
-            if inner is not None and "$" in inner.text:
-                own = [use._replace(scope=definition.scope) for use in uses]
-                yield from ((rank + 2, way) for rank, way in self._ways(inner, own, depth + 1))
+            yield from self._of_parts(text, uses)
 
-    def _of_tokens(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of a list of numbers: those of each that is wrong."""
-        tokens = [text.part(*match.span()) for match in TOKEN.finditer(text.text)]
-        words = [[(self._value(token.text, use.scope) or "").split() for token in tokens] for use in uses]
-        choices: list[list[tuple[int, Way]]] = []
-        for index, token in enumerate(tokens if len(tokens) > 1 else ()):
-            own: list[Use] = []
-            for use, found in zip(uses, words, strict=True):
-                start, end = (sum(map(len, found[:stop])) for stop in (index, index + 1))
-                if (
-                    sum(map(len, found)) != len(use.new.split())
-                    or [word for those in found for word in those] != use.old.split()
-                ):
-                    return
-                own.append(use._replace(old=" ".join(found[index]), new=" ".join(use.new.split()[start:end])))
-            if not all(_same(use.old, use.new) for use in own):
-                ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
-                choices.append([*ways[: _MAX_WAYS if not choices else _MAX_CHOICES]])
-        for parts in islice(product(*choices), 4 * _MAX_WAYS) if choices else ():
-            yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
-
-    def _of_pieces(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of one part of a text: one that is written out, or what a name stands for."""
+    def _of_parts(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
+        """Yield changes of the parts of a text that are wrong: of the numbers of a list, or of what is around one part."""
+        tokens = [text.part(*found.span()) for found in TOKEN.finditer(text.text)]
+        words = [(use.old.split(), use.new.split()) for use in uses]
+        if len(tokens) > 1 and all(len(tokens) == len(old) == len(new) for old, new in words):
+            wrong: list[list[tuple[int, Way]]] = []
+            for index, token in enumerate(tokens):
+                own = [
+                    use._replace(old=old[index], new=new[index]) for use, (old, new) in zip(uses, words, strict=True)
+                ]
+                if not all(_same(use.old, use.new) for use in own):
+                    ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
+                    wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
+            for parts in islice(product(*wrong), 4 * _MAX_WAYS):
+                yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
         pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
         values = [[self._value(piece.text, use.scope) or "" for piece in pieces] for use in uses]
         for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
-            own = [*filter(None, (_middle(use, found, index) for use, found in zip(uses, values, strict=True)))]
-            if len(own) == len(uses):
-                yield from ((rank + 1, way) for rank, way in self._changes(piece, own))
+            middles = [_middle(use, found, index) for use, found in zip(uses, values, strict=True)]
+            if None not in middles:
+                yield from ((rank + 1, way) for rank, way in self._changes(piece, [*filter(None, middles)]))
 
     def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
         changed = [use.scope for use in uses if not _same(use.old, use.new)] or [uses[0].scope]
-        sites = {site.key: site for scope in changed for site in self._sites(root, scope)}
-        for site in sites.values():
+        sites = {site.key: (rank, site) for scope in changed for rank, site in self._sites(root, scope)}
+        for first, site in sites.values():
             for rank, other in self._candidates(site, root, uses):
-                yield rank + 2 * site.rank, (Change(site.written, other),)
-        new = {use.new for use in uses}
-        if len(new) == 1:
-            text = new.pop()
-            is_number = as_number(root.text) is not None and root.text == root.text.strip()
-            other = merged(root.text, text) if is_number else text
-            yield _LITERAL if "$" in root.text else 0, (Change(root, other),)
+                yield rank + first, (Change(site, other),)
 
-    def _candidates(self, site: Site, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
-        text = site.written.text
+    def _candidates(self, site: Written, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
+        """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
+        text = site.text
 
         def fits(other: str) -> bool:
             return all(_near(self._with(site, root, other, use), use.new) for use in uses)
 
         kinds: set[int] = set()
-        for kind, other in variants(text, *self._names(site.written.scope)):
+        for kind, other in variants(text, *self._names(site.scope)):
             if kind not in kinds and fits(other):
                 kinds.add(kind)
                 yield kind, other
-        new = {use.new for use in uses}
-        if site.key is not None and len(new) == 1:
-            plain = new.pop()
-            quoted = f"'{plain}'" if text != literal(text) and as_number(text) is None else plain
-            if fits(quoted):
-                yield (
-                    (NUMBER if "$" not in text else _LITERAL),
-                    merged(text, quoted) if as_number(text) is not None else quoted,
-                )
+        for new in {use.new for use in uses} if len({use.new for use in uses}) == 1 else ():
+            is_number = isfinite(_number(text)) and text == text.strip()
+            is_quoted = site.key is not None and text != literal(text) and not is_number
+            plain = f"'{new}'" if is_quoted else merged(text, new) if is_number else new
+            if fits(plain):
+                yield _LITERAL if "$" in text else NUMBER, plain
         for slot in numbers(text):
-            solution = self._solution(site, root, slot, uses)
-            is_plain = slot.end - slot.start == len(text.strip())
-            if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
-                yield NUMBER if is_plain or solution[1] == 1 else OTHER_NUMBER, solution[0]
+            is_plain = not any(it.start() < slot.start() < it.end() for it in EXPRESSION.finditer(text))
+            solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
+            for digits, other in islice(solutions, 1):
+                if is_plain or digits <= _NICE_DIGITS:
+                    yield NUMBER if is_plain or digits == 1 else OTHER_NUMBER, other
 
-    def _solution(self, site: Site, root: Written, slot: Slot, uses: Sequence[Use]) -> tuple[str, int] | None:
-        """Return the text with the number in a slot that gives what the uses need, and how many digits it has."""
+    def _solutions(
+        self, site: Written, root: Written, slot: re.Match[str], uses: Sequence[Use]
+    ) -> Iterator[tuple[int, str]]:
+        """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
-        pairs = [*zip(first.old.split(), first.new.split(), strict=False)]
-        index = next((index for index, pair in enumerate(pairs) if not _same(*pair)), 0)
-        wanted = as_number(pairs[index][1]) if pairs else None
-        if wanted is None:
-            return None
+        pairs = enumerate(zip(first.old.split(), first.new.split(), strict=False))
+        index = next((index for index, pair in pairs if not _same(*pair)), 0)
 
-        def of(value: float) -> float | None:
-            words = (self._with(site, root, with_number(site.written.text, slot, repr(value)), first) or "").split()
-            return as_number(words[index]) if index < len(words) else None
+        def at(text: str | None) -> float:
+            words = (text or "").split()
+            return _number(words[index]) if index < len(words) else nan
 
-        found = secant(of, slot.value, wanted)
-        if found is None and wanted:  # a divisor: 1/f is linear
-            found = secant(lambda value: 1.0 / (of(value) or 0.0), slot.value, 1.0 / wanted)
-        for digits in range(1, _MAX_DIGITS + 1) if found is not None else ():
-            text = with_number(site.written.text, slot, decimal(found or 0.0, digits))
-            if all(_near(self._with(site, root, text, use), use.new) for use in uses):
-                return text, digits
-        return None
+        def of(value: float) -> float:
+            return at(self._with(site, root, with_number(site.text, slot, repr(value)), first))
+
+        for power in (1, -1):  # what is linear in a number, or in a divisor
+            with suppress(ZeroDivisionError, OverflowError):
+                near = float(slot[0])
+                far = near * 1.015625 + 1e-3
+                low, high = of(near) ** power, of(far) ** power
+                found = near + (at(first.new) ** power - low) * (far - near) / (high - low)
+                for digits in range(1, _MAX_DIGITS + 1) if isfinite(found) else ():
+                    short = float(f"{found:.{digits}g}") + 0.0
+                    yield digits, with_number(site.text, slot, f"{short:.9g}")
 
     def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
         """Return the edits that give calls of a macro a value of their own, where they have the default."""
@@ -221,15 +185,16 @@ class Rewriter:
                             break
         return [tuple(dict.fromkeys(edits))] if edits else []
 
-    def _sites(self, root: Written, scope: Scope) -> list[Site]:
-        sites: dict[Key | None, Site] = {None: Site(root._replace(scope=scope), None, 0)}
+    def _sites(self, root: Written, scope: Scope) -> list[tuple[int, Written]]:
+        """Return the texts that a text is computed from, itself the first, each with its rank."""
+        sites = {root.key: (0, root._replace(scope=scope))}
         pending = [root._replace(scope=scope)]
         while pending and len(sites) < _MAX_SITES:
             for definition in self._definitions(pending[0], pending.pop(0).scope):
                 text = defined(definition)
                 if text is not None and definition.key not in sites:
                     is_given = definition.attribute not in ("params", "value", "default")
-                    sites[definition.key] = Site(text, definition.key, 0 if is_given else 1)
+                    sites[definition.key] = (0 if is_given else 2, text)
                     pending.append(text)
         return list(sites.values())
 
@@ -244,7 +209,7 @@ class Rewriter:
         defaults = self._texts.defaults
         yield from (defaults[name] for name in ARGUMENT.findall(text.text) if name in defaults)
 
-    def _with(self, site: Site, root: Written, text: str, use: Use) -> str | None:
+    def _with(self, site: Written, root: Written, text: str, use: Use) -> str | None:
         return self._value(text, use.scope) if site.key is None else self._value(root.text, use.scope, {site.key: text})
 
     def _value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
@@ -257,11 +222,8 @@ class Rewriter:
     def _names(self, scope: Scope) -> tuple[list[str], list[str]]:
         """Return the names that have values in a scope, and those of the innermost macro."""
         if id(scope) not in self._known:
-            found = [
-                name
-                for name in dict.fromkeys(scope.names()[:_MAX_NAMES])
-                if self._value(f"${{{name}}}", scope) is not None
-            ]
+            names = dict.fromkeys(scope.names()[:_MAX_NAMES])
+            found = [name for name in names if self._value(f"${{{name}}}", scope) is not None]
             own = scope.properties if scope.parent is not None else {}
             self._known[id(scope)] = scope, (found, [name for name in found if name in own])
         return self._known[id(scope)][1]
@@ -270,58 +232,25 @@ class Rewriter:
 def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:
     """Return what one part of a text is and should be, if the others stay."""
     before, after = "".join(values[:index]), "".join(values[index + 1 :])
-    if (
-        "".join(values) != use.old
-        or len(use.new) < len(before) + len(after)
-        or not (use.new.startswith(before) and use.new.endswith(after))
-    ):
-        return None
-    return use._replace(old=values[index], new=use.new[len(before) : len(use.new) - len(after)])
+    middle = use.new[len(before) : len(use.new) - len(after)]
+    is_alone = "".join(values) == use.old and f"{before}{middle}{after}" == use.new
+    return use._replace(old=values[index], new=middle) if is_alone else None
 
 
-def as_number(text: str | None) -> float | None:
-    """Return a text as a number; None if it is none."""
+def _number(text: str) -> float:
     try:
-        return float(text) if text is not None and "_" not in text else None
+        return float(text) if "_" not in text else nan
     except ValueError:
-        return None
+        return nan
 
 
 def _near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
     """Return whether a text, or each number in it, is as good as the wanted one."""
-    if text is None or text == wanted:
-        return text == wanted
-    pairs = [(as_number(a), as_number(b)) for a, b in zip(text.split(), wanted.split(), strict=False)]
-    is_alike = len(text.split()) == len(wanted.split()) and bool(pairs)
-    return is_alike and all(
-        a is not None and b is not None and isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs
-    )
+    one, other = [[_number(word) for word in (it or "").split()] for it in (text, wanted)]
+    is_alike = text is not None and 0 < len(one) == len(other)
+    pairs = zip(one, other, strict=False)
+    return text == wanted or (is_alike and all(isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs))
 
 
 def _same(one: str, other: str) -> bool:
     return _near(one, other, 1e-9)
-
-
-def secant(of: Callable[[float], float | None], start: float, wanted: float) -> float | None:
-    """Return where a function has the wanted value; None if a few steps of the secant method do not find it."""
-    before, x = start, start + 1e-3 + abs(start) / 64
-    try:
-        value, now = of(before), of(x)
-        for _ in range(_ROUNDS):
-            if value is None or now is None or now == value:
-                return None
-            before, x = x, x + (wanted - now) * (x - before) / (now - value)
-            value, now = now, of(x)
-            if now is not None and abs(wanted - now) <= 1e-9 * (1 + abs(wanted)):
-                return x
-    except (ZeroDivisionError, OverflowError):
-        pass
-    return None
-
-
-def decimal(value: float, digits: int) -> str:
-    """Return a number with so many significant digits, without an exponent where it can be."""
-    text = f"{value:.{digits}g}"
-    if "e" in text and 1e-9 < abs(value) < 1e9:
-        text = f"{float(text):.9f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text

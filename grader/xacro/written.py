@@ -6,20 +6,21 @@ from typing import NamedTuple
 
 from grader import markup
 from grader.source import Edit, Source
-from grader.xacro.scopes import Definition, Place, Scope
+from grader.xacro.scopes import Definition, Key, Place, Scope
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _VALUE = re.compile(r'("[^"$]*")')
 
 
 class Written(NamedTuple):
-    """A text that stands at an offset of a file, the scope in which it is evaluated, and the attribute that it is in."""
+    """A text that stands at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
 
     source: Source
     start: int
     text: str
     scope: Scope
     attribute: tuple[int, int]  # its offsets, with name and quotes
+    key: Key | None = None  # of what is defined with it
 
     @property
     def end(self) -> int:
@@ -57,26 +58,23 @@ def edits_of(changes: Iterable[Change]) -> tuple[Edit, ...] | None:
 
 
 def written(place: Place, attribute: str, scope: Scope) -> Written | None:
-    """Return the value of an attribute; None where it is missing, too long, or has entities, so that it is not what is read."""
-    source, start = place.source.element(place.tag)
-    if not attribute:
-        return _content(source, start, scope)
-    found = markup.attribute(source.text, start, attribute)
-    text = source.text[found.value_start : found.value_end] if found is not None else "&"
-    if found is None or "&" in text or len(text) > _MAX_LENGTH:
-        return None
-    return Written(source, found.value_start, text, scope, (found.start, found.end))
+    """Return the value of an attribute, or without a name the text of an element without children.
 
-
-def _content(source: Source, start: int, scope: Scope) -> Written | None:
-    """Return the text of an element without children."""
-    head, is_empty = markup.head_end(source.text, start)
-    end = source.text.rfind("</", head, markup.element_end(source.text, start))
-    text = source.text[head:end]
-    if is_empty or end < 0 or "<" in text or "&" in text or len(text) > _MAX_LENGTH:
-        return None
-    inner = head + len(text) - len(text.lstrip())
-    return Written(source, inner, text.strip(), scope, (inner, inner + len(text.strip())))
+    None where it is missing, too long, or has entities, so that it is not what is read.
+    """
+    source, at = place.source.element(place.tag)
+    if attribute:
+        found = markup.attribute(source.text, at, attribute)
+        start, end, span = (found.value_start, found.value_end, (found.start, found.end)) if found else (0, 0, None)
+    else:
+        start = markup.head_end(source.text, at)[0]
+        end = source.text.rfind("</", start, markup.element_end(source.text, at))
+        text = source.text[start:end]
+        start, end = start + len(text) - len(text.lstrip()), start + len(text.rstrip())
+        span = (start, end) if text.strip() else None
+    text = source.text[start:end]
+    is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
+    return Written(source, start, text, scope, span) if span is not None and is_read else None
 
 
 def with_parameters(xml: str, scope: Scope) -> str:
@@ -93,9 +91,9 @@ def with_parameters(xml: str, scope: Scope) -> str:
 def defined(definition: Definition) -> Written | None:
     """Return the text that a name is defined with: of a parameter's default the part of `params`."""
     whole = written(definition.place, definition.attribute, definition.scope)
-    if whole is None or definition.attribute != "params" or whole.text == definition.text:
-        return whole
-    found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
-    if found is None or not whole.text.startswith(definition.text, found.end()):
-        return None
-    return whole.part(found.end(), found.end() + len(definition.text))
+    if whole is not None and definition.attribute == "params" and whole.text != definition.text:
+        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if found is None or not whole.text.startswith(definition.text, found.end()):
+            return None
+        whole = whole.part(found.end(), found.end() + len(definition.text))
+    return whole._replace(key=definition.key) if whole is not None else None

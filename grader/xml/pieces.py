@@ -1,16 +1,19 @@
 """The tags and comments of a text that may not be XML, and how far a parser reads it: TinyXML2, or a strict one."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, read_tag
-from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 _ENDS = {"<!--": "-->", "<![CDATA[": "]]>", "<?": "?>", "<!": ">"}
+_MAX_DEPTH = 500  # of TinyXML2
 _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
+_VALUE = r"""\s+[\w:.\-]+\s*=\s*(?:"[^"<>]*"|'[^'<>]*')\s*"""
+_LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")  # a tag without its <
 
 
 class Piece(NamedTuple):
@@ -32,88 +35,76 @@ class Rules(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A place between two pieces: the innermost tag that is open there, with the mark before it; whether a tag was before."""
+    """A place after a piece: the tags that are open there, and whether a tag was before."""
 
     position: int = 0
-    opened: "tuple[Piece, Mark] | None" = None
+    opened: tuple[Piece, ...] = ()
     is_late: bool = False
+    piece: Piece | None = None
 
 
 class Scan(NamedTuple):
-    """How far a text is read: `why` it stops, and at what; `marks` are the places before the `pieces` and after the last one.
+    """How far a text is read: the places after its pieces, what is wrong there, if anything, and where the parser stops.
 
-    The `faults` are what urdfdom does not know, misses, or cannot read as numbers.
+    The `faults` are what urdfdom does not know.
     """
 
-    pieces: list[Piece]
     marks: list[Mark]
-    why: str
-    wrong: Piece
+    wrong: Piece | None
     at: int
     faults: int
-
-
-def without_bracket(names: Iterable[str]) -> re.Pattern[str]:
-    """Return the pattern of a tag of one of these names without its <."""
-    words = "|".join(map(re.escape, sorted(names, key=len, reverse=True)))
-    return re.compile(rf"(?<![<\w/:.\-\"'=])/?(?:{words})\b(?=[^<>]{{0,300}}>)")
-
-
-_LOST = without_bracket(ATTRIBUTES)
 
 
 def scan(text: str, rules: Rules, mark: Mark | None = None, limit: int | None = None) -> Scan:
     """Read a text from a mark to its first error, or until a limit."""
     limit = len(text) + 1 if limit is None else limit
-    pieces: list[Piece] = []
     marks = [mark or Mark()]
     faults = 0
     while (mark := marks[-1]).position < limit:
         piece = _piece(text, mark.position, rules)
-        why, wrong = _why(text, mark, piece, rules)
-        pieces += [piece] if wrong is piece else []
-        if rules.is_urdf and mark.opened and wrong is piece:
-            faults += _faults(piece, mark.opened[0].name) + bool(text[mark.position : piece.start].strip())
-        if why:
-            return Scan(pieces, marks, why, wrong, min(wrong.start if wrong.at is None else wrong.at, limit), faults)
-        outer = mark.opened[1] if mark.opened and piece.form == "close" else mark
-        opened = (piece, mark) if piece.form == "open" else outer.opened
-        marks.append(Mark(piece.end, opened, mark.is_late or piece.form != "other"))
-    return Scan(pieces, marks, "", Piece(limit, limit, "", "end"), limit, faults)
+        wrong = _wrong_text(text, mark, piece, rules) or (piece if _is_wrong(text, mark, piece, rules) else None)
+        if rules.is_urdf and mark.opened and wrong in (None, piece):
+            faults += _faults(piece, mark.opened[-1].name) + bool(text[mark.position : piece.start].strip())
+        if wrong:
+            return Scan(marks, wrong, min(wrong.start if wrong.at is None else wrong.at, limit), faults)
+        opened = mark.opened[:-1] if piece.form == "close" else mark.opened
+        inside = (*opened, piece) if piece.form == "open" else opened
+        marks.append(Mark(piece.end, inside, mark.is_late or piece.form != "other", piece))
+    return Scan(marks, None, limit, faults)
 
 
-def _why(text: str, mark: Mark, piece: Piece, rules: Rules) -> tuple[str, Piece]:
-    """Return why the parser stops at a piece, or at the text before it, and at which of the two."""
-    parent = mark.opened[0].name if mark.opened else ""
+def _wrong_text(text: str, mark: Mark, piece: Piece, rules: Rules) -> Piece | None:
+    """Return the text before a piece from where the parser stops in it; None if it does not."""
     start = piece.start - len(text[mark.position : piece.start].lstrip(" \t\r\n\ufeff"))
-    if start < piece.start:
-        before = Piece(start, piece.start, "", "text")
-        if not parent and (rules.is_strict or (piece.form == "end" and mark.is_late)):
-            return "text", before
-        if rules.is_urdf and parent in CHILDREN and (lost := _LOST.search(text, start, piece.start)):
-            return "bracket", before._replace(start=lost.start())
-        if rules.is_strict and (reference := REFERENCE.search(text, start, piece.start)):
-            return "reference", before._replace(start=reference.start())
-    why = ""
+    parent = mark.opened[-1].name if mark.opened else ""
+    patterns = [_LOST] * (parent in CHILDREN if rules.is_urdf else rules.is_strict) + [REFERENCE] * rules.is_strict
+    found = (pattern.search(text, start, piece.start) for pattern in patterns if parent)
+    at = next((one.start() for one in found if one), piece.start)
+    is_end = piece.form == "end"
+    if not parent and ((rules.is_strict and not is_end) or (mark.is_late and (rules.is_strict or is_end))):
+        at = start
+    return Piece(at, piece.start, "", "text") if at < piece.start else None
+
+
+def _is_wrong(text: str, mark: Mark, piece: Piece, rules: Rules) -> bool:
+    """Return whether the parser stops at a piece."""
+    parent = mark.opened[-1].name if mark.opened else ""
+    is_known = rules.is_urdf and piece.name in ATTRIBUTES
+    if piece.at is not None or len(mark.opened) > _MAX_DEPTH:
+        return True
     if piece.form == "end":
-        why = "end" if mark.opened or not mark.is_late else ""
-    elif piece.at is not None:
-        why = "comment" if piece.form == "other" else "tag"
-    elif piece.name == "<!--":
+        return bool(mark.opened) or not mark.is_late
+    if piece.form == "close":
+        return piece.name != parent
+    if piece.name == "<!--":
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
-        why = "comment" if inner in text[piece.start + 4 : piece.end - 3] else ""
-    elif piece.name == "<?" and not text.startswith("<?xml-", piece.start):
-        is_blank = start == piece.start and (not mark.position or text.endswith("?>", 0, mark.position))
-        is_first = piece.start == text.startswith("\ufeff") if rules.is_strict else is_blank
-        is_right = not rules.is_strict or "<" not in text[piece.start + 1 : piece.end]
-        why = "misplaced" if not is_first else "" if is_right else "version"
-    elif piece.form == "close":
-        why = "close" if piece.name != parent else ""
-    elif piece.form != "other" and not parent and mark.is_late:
-        why = "second" if rules.is_strict or (rules.is_urdf and piece.name in ATTRIBUTES) else ""
-    elif piece.form != "other" and not parent and rules.is_urdf and piece.name != "robot":
-        why = "root"
-    return why, piece
+        return inner in text[piece.start + 4 : piece.end - 3]
+    if piece.name == "<?":
+        before = text[: piece.start].strip("\ufeff" if rules.is_strict else " \t\r\n\ufeff")
+        return text.startswith("<?xml ", piece.start) and bool(before)
+    if piece.form == "other" or parent:
+        return False
+    return (rules.is_strict or is_known) if mark.is_late else rules.is_urdf and piece.name != "robot"
 
 
 def _piece(text: str, position: int, rules: Rules) -> Piece:
@@ -123,7 +114,8 @@ def _piece(text: str, position: int, rules: Rules) -> Piece:
         return Piece(len(text), len(text) + 1, "", "end")
     if opening := next((opening for opening in _ENDS if text.startswith(opening, start)), ""):
         end = text.find(_ENDS[opening], start + len(opening))
-        at, end = (start, len(text)) if end < 0 else (None, end + len(_ENDS[opening]))
+        is_whole = end >= 0 and (opening != "<?" or "<" not in text[start + 1 : end])
+        at, end = (None, end + len(_ENDS[opening])) if is_whole else (start, len(text))
         return Piece(start, end, opening, "other", at)
     notes: list[int] = []
     try:
@@ -135,15 +127,12 @@ def _piece(text: str, position: int, rules: Rules) -> Piece:
 
 
 def _faults(piece: Piece, parent: str) -> int:
-    """Return what urdfdom does not know, misses, or cannot read as numbers in a tag in an element."""
+    """Return what urdfdom does not know of a tag in an element."""
     if parent not in ATTRIBUTES or piece.form not in ("open", "empty"):
         return 0
     known = ATTRIBUTES.get(piece.name, piece.attributes)
-    faults = sum(key not in piece.attributes for key in REQUIRED.get(piece.name, ()))
-    for key, value in piece.attributes.items():
-        is_number = bool(PARTS.get(key)) and "$" not in value
-        faults += (key not in known and ":" not in key) or (is_number and len(value.split()) != len(PARTS[key]))
-    return faults + (piece.name not in CHILDREN.get(parent, ()) and (parent != "robot" or piece.name in ATTRIBUTES))
+    is_child = piece.name in CHILDREN.get(parent, ()) or (parent == "robot" and piece.name not in ATTRIBUTES)
+    return sum(key not in known and ":" not in key for key in piece.attributes) + (not is_child)
 
 
 def remaining(text: str, *, is_urdf: bool = False) -> int:

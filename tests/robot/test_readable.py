@@ -7,10 +7,8 @@ from grader.robot.edits.readable import is_readable, readable
 NUMBERS = (
     ("xyz", "0,15 0 0,225", "0.15 0 0.225", "a decimal comma"),
     ("xyz", "0.15,0,0.225", "0.15 0 0.225", "commas between numbers"),
-    ("xyz", "0,15; 0; 0,225", "0.15 0 0.225", "decimal commas and commas between numbers"),
-    ("xyz", "0.15 0 0. 225", "0.15 0 0.225", "a space in a number"),
+    ("xyz", "0,15; 0; 0,225", "0.15 0 0.225", "commas between numbers"),
     ("xyz", "- 0.15 0.2 0", "-0.15 0.2 0", "a space after a sign"),
-    ("xyz", "--0.15 0 0", "-0.15 0 0", "a double sign"),
     ("size", "600mm 400mm 200mm", "0.6 0.4 0.2", "a unit after a number"),
     ("rpy", "-90\u00b0 0 0", "-1.5708 0 0", "a unit after a number"),
     ("rpy", "pi/2 0 ${-pi / 2}", "1.5708 0 -1.5708", "an expression, which ROS 2 does not evaluate"),

@@ -190,13 +190,11 @@ NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 @pytest.mark.parametrize(
     ("wrong", "expected"),
     [
-        (('<?xml version="1.0"?>', '\n<?xml version="1.0"?>'), '<?xml version="1.0"?>\n<robot'),
-        (('<?xml version="1.0"?>', '<!-- mine -->\n<?xml version="1.0"?>'), '<?xml version="1.0"?>\n<!-- mine -->\n<robot'),
         ((NAMESPACE, ""), f'<robot{NAMESPACE} name="r">'),
     ],
 )  # fmt: skip
 def test_a_file_that_xacro_cannot_parse_is_corrected(wrong: tuple[str, str], expected: str) -> None:
-    """The prefix xacro is declared, and the declaration of XML is put at the start of the file."""
+    """The prefix xacro is declared."""
     document = Document(robot(SIZES).replace(*wrong))
     assert expand(document).problems
     [correction] = expand(document).source.corrections()

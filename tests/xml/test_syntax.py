@@ -30,7 +30,7 @@ ANY = (
     ("<a>b>1</b></a>", "<a><b>1</b></a>", "the < of a tag is missing"),
     ("<a><b>1 & 2</b></a>", "<a><b>1 &amp; 2</b></a>", "an & that is not escaped"),
     ("<a><!-- 1 -- 2 --></a>", "<a><!-- 1 - 2 --></a>", "a malformed comment"),
-    (' <?xml version="1.0"?><a/>', '<?xml version="1.0"?><a/>', "text that is no XML"),
+    (' <?xml version="1.0"?><a/>', ' <a/>', "an XML declaration that is not at the top"),
     ("<a/>text", "<a/>", "text that is no XML"),
     ("<a><b x=1/><c>2</a>", '<a><b x="1"/><c>2</c></a>', "a quote is missing and a closing tag is missing"),
 )
@@ -106,5 +106,6 @@ def test_a_bracket_is_missing_in_text_only() -> None:
     """What looks like a tag without its < is an error between the tags of a URDF, not in a comment or a value."""
     text = '<robot name="link>"><!-- link name> -->link name="a"></link> visual></robot>'
     stop = scan(text, Rules(is_urdf=True))
-    assert (stop.why, text[stop.at : stop.at + 8]) == ("bracket", "link nam")
-    assert scan(text, Rules()).why == "close"
+    assert (stop.wrong is not None and stop.wrong.form, text[stop.at : stop.at + 8]) == ("text", "link nam")
+    other = scan(text, Rules()).wrong
+    assert other is not None and other.form == "close"
