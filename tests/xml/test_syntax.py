@@ -30,7 +30,7 @@ ANY = (
     ("<a>b>1</b></a>", "<a><b>1</b></a>", "the < of a tag is missing"),
     ("<a><b>1 & 2</b></a>", "<a><b>1 &amp; 2</b></a>", "an & that is not escaped"),
     ("<a><!-- 1 -- 2 --></a>", "<a><!-- 1 - 2 --></a>", "a malformed comment"),
-    (' <?xml version="1.0"?><a/>', ' <a/>', "an XML declaration that is not at the top"),
+    (' <?xml version="1.0"?><a/>', " <a/>", "an XML declaration that is not at the top"),
     ("<a/>text", "<a/>", "text that is no XML"),
     ("<a><b x=1/><c>2</a>", '<a><b x="1"/><c>2</c></a>', "a quote is missing and a closing tag is missing"),
 )
