@@ -8,9 +8,10 @@ from typing import Any
 
 from grader.edits import Proposal, composed, edited
 from grader.package.edits.files import WHAT, file_proposals, package_names
+from grader.package.edits.markup_trees import markup_tree
 from grader.package.edits.paths import in_xml, launch_paths, setup_paths
-from grader.package.edits.python_difference import PythonDifference
 from grader.package.edits.python_file import PythonFile
+from grader.package.edits.python_tree import python_tree
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task
 from grader.package.edits.trees import tree_proposals
@@ -116,14 +117,18 @@ def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None)
     if wanted and (ending == other or ending in (".py", "")):
         yield from reworded(source, wanted, what)
     if ending in (".py", ""):
-        yield from PythonDifference(own, PythonFile(right), what).proposals() if wanted else ()
+        trees = python_tree(own, own), python_tree(PythonFile(right), own)
+        yield from tree_proposals(source, trees, task.given, what, own.needs)
         yield from repaired(own, what)
         yield from defined(own, what)
     elif ending == other:
-        yield from tree_proposals(source, right, task.given, what)
+        yield from tree_proposals(source, (markup_tree(source), markup_tree(right)), task.given, what)
     elif ending == ".xml" and task.reference is not None and like is not None:
         right = Source(source.path, in_xml(task, task.reference.launch(like)))
-        yield from (it._replace(rank=1) for it in tree_proposals(source, right, task.given, what))
+        yield from (
+            it._replace(rank=1)
+            for it in tree_proposals(source, (markup_tree(source), markup_tree(right)), task.given, what)
+        )
     if ending == ".xml":
         for it in proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")

@@ -126,28 +126,27 @@ class PythonFile:
             node = self.values[node.id]
         return node
 
-    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> tuple[str, set[str]]:
-        """Return an expression in which the names that are not `bound` have their values, and the names that it still has."""
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> str:
+        """Return an expression in which the names that are not `bound` have their values."""
         start, _ = self.span(node)
         text = self.segment(node)
-        needed: set[str] = set()
         names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
-        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
-            if name.id in bound or name.id not in self.values or not depth or len(text) > _MAX_CODE:
-                needed.add(name.id)
-                continue
-            at, end = (offset - start for offset in self.span(name))
-            code, others = self.written(self.values[name.id], bound, depth - 1)
-            text, needed = text[:at] + code + text[end:], needed | others
-        return text, needed
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True) if depth else ():
+            if name.id not in bound and name.id in self.values and len(text) <= _MAX_CODE:
+                at, end = (offset - start for offset in self.span(name))
+                text = text[:at] + self.written(self.values[name.id], bound, depth - 1) + text[end:]
+        return text
 
     def plain(self, node: ast.expr) -> str:
         """Return the code of an expression without names for its parts and in one style, to compare it."""
-        code, _ = self.written(node)
-        try:
-            return ast.unparse(ast.parse(code.strip(), mode="eval"))
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            return code
+        code = self.written(node)
+        tree = _expression(code)
+        return ast.unparse(tree) if tree is not None else code
+
+    def needs(self, code: str) -> list[Edit]:
+        """Return the edit without which an expression would have unknown names."""
+        tree = _expression(code)
+        return self.with_imports(sorted({it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}) if tree else ())
 
     @cached_property
     def bound(self) -> frozenset[str]:
@@ -183,6 +182,13 @@ class PythonFile:
 def _is_first(node: ast.stmt) -> bool:
     """Return whether a statement has to stay before imports: the docstring, or an import from the future."""
     return isinstance(node, ast.Expr) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
+
+
+def _expression(code: str) -> ast.Expression | None:
+    try:
+        return ast.parse(code.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
 
 
 def called(call: ast.Call) -> str:
