@@ -109,19 +109,10 @@ class PythonFile:
                     found[name] = value
         return found
 
-    @cached_property
-    def opened(self) -> frozenset[str]:
-        """The names that with statements bind."""
-        return frozenset(
-            it.optional_vars.id
-            for it in self.nodes
-            if isinstance(it, ast.withitem) and isinstance(it.optional_vars, ast.Name)
-        )
-
     def meant(self, node: ast.expr) -> ast.expr:
         """Return the expression that a name is bound to; any other expression itself."""
         for _ in range(_MAX_DEPTH):
-            if not isinstance(node, ast.Name) or node.id not in self.values or node.id in self.opened:
+            if not isinstance(node, ast.Name) or node.id not in self.values:
                 break
             node = self.values[node.id]
         return node

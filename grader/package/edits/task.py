@@ -108,13 +108,8 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def proposal(edits: Iterable[Edit], cause: str, action: str) -> Proposal:
-    """Return a proposal that makes each edit once."""
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action)
-
-
 def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
     """Return the proposal of a step; `name` is what changes, and `what` the file that it is in."""
     place = " in ".join(filter(None, (name, what)))
     cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
-    return proposal(edits, cause, action)
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action)
