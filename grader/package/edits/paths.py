@@ -1,5 +1,6 @@
 """Paths that name no file: one text of a file changes, with which the path becomes the most similar one that exists."""
 
+import ast
 import posixpath
 import re
 from collections.abc import Iterable, Iterator
@@ -117,16 +118,14 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
     The difference to the reference has no answer where the file is built in another way: launch-home-path, sensors-launch-home-path.
     """
     share = f"{_SHARE_FUNCTION}({name!r})"
-    for literal in file.literals:
-        for path in (literal.text.rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.text}"):
-            rest = (
-                actual.removeprefix(path).strip("/") if literal.text and f"{actual}/".startswith(f"{path}/") else None
-            )
+    for literal in [it for it in file.nodes if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)]:
+        for path in (str(literal.value).rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.value!s}"):
+            rest = actual.removeprefix(path).strip("/") if f"{actual}/".startswith(f"{path}/") else None
             others = moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
                 new = share if rest else f"os.path.join({share}, {target!r})"
                 imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
-                yield [*imports, file.source.edit(literal.outer_start, literal.outer_end, new), *others]
+                yield [*imports, file.replaced(literal, new), *others]
 
 
 def pieces(source: Source) -> Iterator[tuple[int, int]]:

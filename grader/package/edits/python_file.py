@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -23,22 +23,12 @@ _USE = re.compile(r"\bglob\.glob\b")
 
 
 class Token(NamedTuple):
-    """A token: string, name (also a number) or op, with its offsets."""
+    """A token: string, name (also a number), op, or the literal text between the quotes of a string; with its offsets."""
 
     kind: str
     text: str
     start: int
     end: int
-
-
-class Literal(NamedTuple):
-    """The text in a string, between its quotes, with its offsets."""
-
-    text: str
-    start: int
-    end: int
-    outer_start: int
-    outer_end: int
 
 
 class PythonFile:
@@ -66,15 +56,11 @@ class PythonFile:
         return [Token(match.lastgroup or "", match[0], match.start(), match.end()) for match in found]
 
     @cached_property
-    def literals(self) -> list[Literal]:
+    def literals(self) -> list[Token]:
         """The texts in its strings."""
-        found = []
-        for token in self.tokens:
-            quotes = _QUOTES.match(token.text) if token.kind == "string" else None
-            if quotes is not None:
-                start, end = token.start + quotes.end(), token.end - len(quotes[1])
-                found.append(Literal(self.text[start:end], start, end, token.start, token.end))
-        return found
+        quoted = ((it, _QUOTES.match(it.text)) for it in self.tokens if it.kind == "string")
+        spans = [(it.start + quotes.end(), it.end - len(quotes[1])) for it, quotes in quoted if quotes is not None]
+        return [Token("literal", self.text[start:end], start, end) for start, end in spans]
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
@@ -142,13 +128,21 @@ class PythonFile:
     @cached_property
     def bound(self) -> frozenset[str]:
         """The names that the file binds anywhere."""
-        return frozenset(_bound(self.nodes))
+        found: set[str] = set()
+        for node in self.nodes:
+            match node:
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                    found.add(name)
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.alias(name=name, asname=other):
+                    found.add(other or name.split(".")[0])
+        return frozenset(found)
 
     @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:
-        """Its import statements, in order."""
-        found = (node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom))
-        return sorted(found, key=lambda node: node.lineno)
+        """Its import statements."""
+        return [node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
@@ -190,14 +184,3 @@ def called(call: ast.Call) -> str:
 def keyword(call: ast.Call, name: str) -> ast.keyword | None:
     """Return a keyword argument of a call."""
     return next((keyword for keyword in call.keywords if keyword.arg == name), None)
-
-
-def _bound(nodes: Iterable[ast.AST]) -> Iterator[str]:
-    for node in nodes:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store()):
-                yield name
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
-                yield name
-            case ast.alias(name=name, asname=other):
-                yield other or name.split(".")[0]
