@@ -118,16 +118,15 @@ def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None)
         yield from reworded(source, wanted, what)
     if ending in (".py", ""):
         trees = python_tree(own, own), python_tree(PythonFile(right), own)
-        yield from tree_proposals(source, trees, task.given, what, own.needs)
+        yield from tree_proposals(source, trees, what, own.needs)
         yield from repaired(own, what)
         yield from defined(own, what)
     elif ending == other:
-        yield from tree_proposals(source, (markup_tree(source), markup_tree(right)), task.given, what)
+        yield from tree_proposals(source, (markup_tree(source), markup_tree(right)), what)
     elif ending == ".xml" and task.reference is not None and like is not None:
         right = Source(source.path, in_xml(task, task.reference.launch(like)))
         yield from (
-            it._replace(rank=1)
-            for it in tree_proposals(source, (markup_tree(source), markup_tree(right)), task.given, what)
+            it._replace(rank=1) for it in tree_proposals(source, (markup_tree(source), markup_tree(right)), what)
         )
     if ending == ".xml":
         for it in proposals(source, is_urdf=False, is_strict=True):

@@ -56,7 +56,4 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
         edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
     moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
     edits += moved if f"resource/{new}" not in task.files else []
-    own = [(path, old) for path in task.files for old in names if path.startswith(f"{old}/")]
-    modules = [task.renamed(path, path.replace(old, new, 1)) for path, old in own]
-    for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
-        yield change(several, "set", "the name of the package")
+    yield change(edits, "set", "the name of the package")

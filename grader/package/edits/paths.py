@@ -15,7 +15,6 @@ from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
-_NAME = re.compile(r"\{[^{}]*\}")
 _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
@@ -91,25 +90,14 @@ def _targets(task: Task, purpose: str) -> list[str]:
 
 
 def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
-    """Return the edits with which a path becomes the one that the file is installed at, or the file is installed there."""
-    package, actual, line = task.package, named.path or "", named.location.line
-    share = f"share/{package.name}/"
-    looked = actual.removeprefix(f"{PREFIX}/")
-    found: list[list[Edit]] = []
-    for below in _similar(looked.removeprefix(share), _targets(task, named.purpose))[:1]:
-        target = share + below
+    """Return the edits with which a path becomes the one that the file is installed at."""
+    actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
+    for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
         if actual.startswith(PREFIX):
-            found += [[edit] for edit in moved(source, actual, f"{PREFIX}/{target}", line)]
-        elif source.path.endswith(".py"):
-            found += _of_one_machine(package.name, PythonFile(source), actual, below)
-        else:
-            short = actual.removeprefix(f"{WORKING_FOLDER}/")
-            found += [[edit] for edit in moved(source, short, f"$(find-pkg-share {package.name})/{below}", line)]
-        if actual.startswith("/"):
-            found += [[edit] for edit in moved(source, actual, below, line)[:1]]
-        if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
-            found[2:2] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
-    return found
+            return [[edit] for edit in moved(source, actual, share + below, named.location.line)]
+        if source.path.endswith(".py"):
+            return [*_of_one_machine(task.package.name, PythonFile(source), actual, below)]
+    return []
 
 
 def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
@@ -133,12 +121,7 @@ def pieces(source: Source) -> Iterator[tuple[int, int]]:
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
         return
-    for literal in PythonFile(source).literals:
-        start = literal.start
-        for name in _NAME.finditer(literal.text):
-            yield start, literal.start + name.start()
-            start = literal.start + name.end()
-        yield start, literal.end
+    yield from ((it.start, it.end) for it in PythonFile(source).literals)
 
 
 def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
@@ -163,8 +146,6 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
             new = wanted[len(head) : len(wanted) - len(tail)]
             if new != piece:
                 yield new
-        elif tail.startswith("/") and wanted == head + tail[1:]:
-            yield ""
 
 
 def _without(source: Source, start: int, end: int) -> Edit:

@@ -33,11 +33,10 @@ class Place(NamedTuple):
 def tree_proposals(
     source: Source,
     trees: tuple[Node | None, Node | None],
-    given: frozenset[str],
     what: str,
     needs: Callable[[str], Iterable[Edit]] = lambda _: (),
 ) -> Iterator[Proposal]:
-    """Yield the edits that undo one difference each to another tree, first those to a value that a check is given.
+    """Yield the edits that undo one difference each to another tree.
 
     The `of` of each node returns its place, and `needs` the edits that a text needs in the file.
     """
@@ -45,11 +44,8 @@ def tree_proposals(
     found = steps(own, like) if own is not None and like is not None else []
     found += [*_others(own, found)] if own is not None else []
 
-    def order(step: Step) -> bool:
-        return not any(given.intersection(node.values.values()) for node in (step.like.walk() if step.like else ()))
-
     alike: dict[tuple[object, ...], list[Proposal]] = {}  # missing in one place; a mistake that is made everywhere
-    for step in sorted(found, key=order):
+    for step in found:
         code, edit = _edit(source, step)
         if edit is not None:
             made = change([*needs(code), edit], _VERBS.get(step.verb, "rename"), _words(step), what)
