@@ -12,6 +12,7 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import Task, change
 from grader.package.launch.model import STATE_PUBLISHER, Launch, Reference
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
+from grader.package.package import SETUP
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
@@ -24,13 +25,13 @@ _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
-_SETUP, _LAUNCH = "setup.py", "the launch file"
+_LAUNCH = "the launch file"
 
 
 def setup_paths(task: Task) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
-    file, setup = task.setup, task.package.setup
-    if file is None or setup is None:
+    source, setup = task.source(SETUP), task.package.setup
+    if source is None or setup is None:
         return
     wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
     files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
@@ -40,8 +41,8 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
         known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
         for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
-                edits = moved(file.source, actual, wanted, line)[:2]
-                yield from (change([edit], "set", "a path", _SETUP) for edit in edits)
+                edits = moved(source, actual, wanted, line)[:2]
+                yield from (change([edit], "set", "a path", SETUP) for edit in edits)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
