@@ -46,7 +46,7 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
     if manifest is None or manifest.name is None:
         return
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    others = [*task.package.registered, *(name for name in shares if closest(name, [new]))]
+    others = [name for name in shares if closest(name, [new])]
     names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *others])
     names.pop(new, None)
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")

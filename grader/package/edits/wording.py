@@ -22,14 +22,9 @@ _MAX_MORE = 2  # letters that one word has more than the other
 _LIKENESS = 0.75
 _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
-_LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
-# Words of launch files in XML and YAML.
-_FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
-file let group find-pkg-share find-pkg-prefix var env eval command dirname true false screen robot_description remap"""
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
-_PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
 
 
 def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -40,8 +35,7 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
     places: dict[str, list[re.Match[str]]] = {}
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
-    usual = _PYTHON if source.path.endswith(".py") else _FRONTEND
-    right = {word for text in (*known, usual) for word in _WORD.findall(text)}
+    right = {word for text in (*known, *keyword.kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
     guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
