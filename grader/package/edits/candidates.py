@@ -104,22 +104,19 @@ def _started(launch: Launch) -> set[tuple[str, str]]:
 def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
     """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
-    own, right = PythonFile(source), Source(source.path, wanted)
+    own = PythonFile(source)
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
-    if wanted and (ending == other or ending in (".py", "")):
+    is_python = ending in (".py", "")
+    if wanted and (ending == other or is_python):
         yield from reworded(source, wanted, what)
-    if ending in (".py", ""):
-        trees = python_tree(own, own), python_tree(PythonFile(right), own)
+    if is_python:
+        trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
         yield from tree_proposals(source, trees, what, own.needs)
         yield from repaired(own, what)
         yield from defined(own, what)
-    elif ending == other:
-        yield from tree_proposals(source, (markup_tree(source), markup_tree(right)), what)
-    elif ending == ".xml" and task.reference is not None and like is not None:
-        right = Source(source.path, in_xml(task, task.reference.launch(like)))
-        yield from (
-            it._replace(rank=1) for it in tree_proposals(source, (markup_tree(source), markup_tree(right)), what)
-        )
+    else:
+        text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
+        yield from tree_proposals(source, (markup_tree(source), markup_tree(Source(source.path, text))), what)
     if ending == ".xml":
         for it in proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")

@@ -17,12 +17,10 @@ _MAX_LAUNCH_FILES = 3
 
 
 def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield edits that give a file the name that it has in the reference or a check is given, or create it."""
+    """Yield edits that give a file the name that it has in the reference, or create it."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
-    is_named = {*map(posixpath.basename, wanted)}
-    wanted |= {f"{kind}/{name}": "" for name in sorted(task.given - is_named) if "." in name and kind_of(name) == kind}
     for path, like in wanted.items():
         folder, name = posixpath.split(path)
         if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
@@ -33,7 +31,7 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
             new = posixpath.join(posixpath.dirname(spare[other]), name)
             yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
-        if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
+        if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]

@@ -46,14 +46,8 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
-    """Return known paths, the most similar first: those of the same name, in the same folder, then by their letters."""
-    matcher = SequenceMatcher(None, "", path, autojunk=False)
-
-    def order(other: str) -> tuple[bool, float]:
-        matcher.set_seq1(other)
-        return posixpath.basename(other) != posixpath.basename(path), -matcher.ratio()
-
-    return sorted(dict.fromkeys(known), key=order)
+    """Return known paths, the most similar first."""
+    return sorted(dict.fromkeys(known), key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio())
 
 
 def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
@@ -68,13 +62,14 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
         yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
 
 
-def in_xml(task: Task, launch: Launch) -> str:
+def in_xml(task: Task, like: str | None) -> str:
     """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
-    reference = task.reference.name if task.reference is not None else ""
-    paths = {"urdf": "", "rviz": ""}
-    for purpose in paths:
-        named = [(it.path or "").partition(f"{reference}/")[2] for it in launch.references if it.purpose == purpose]
-        found = [target for like in named for target in _similar(like, _targets(task, purpose))]
+    if task.reference is None or like is None:
+        return ""
+    launch, paths = task.reference.launch(like), {}
+    for purpose in ("urdf", "rviz"):
+        named = [(it.path or "").partition(f"{task.reference.name}/")[2] for it in launch.named(purpose)]
+        found = [target for path in named for target in _similar(path, _targets(task, purpose))]
         paths[purpose] = f"$(find-pkg-share {task.package.name})/{found[0]}" if found else ""
     read = "xacro" if paths["urdf"].endswith(".xacro") else "cat"
     inner = f"""><param name="robot_description" value="$(command '{read} {paths["urdf"]}')" type="str"/></node>"""

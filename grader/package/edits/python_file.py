@@ -153,7 +153,7 @@ class PythonFile:
         """Return the edit that imports those of these names that have a usual meaning and are not bound."""
         wanted = [name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound]
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        start = next((self.span(node)[0] for node in body if not _is_first(node)), len(self.text))
+        start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
         text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
         return [self.source.edit(start, start, text)] if wanted else []
 
@@ -162,11 +162,6 @@ class PythonFile:
         if own == "?glob":
             module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
         return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
-
-
-def _is_first(node: ast.stmt) -> bool:
-    """Return whether a statement has to stay before imports: the docstring, or an import from the future."""
-    return isinstance(node, ast.Expr) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
 
 
 def _expression(code: str) -> ast.Expression | None:

@@ -59,38 +59,28 @@ def _expression(
     values = values or ({} if items or _tag(code) in _ROOTS else {"": keys[0]})
 
     def with_value(name: str, new: str) -> Edit | None:
-        return (
-            _added(file, [*code.args, *code.keywords], code, f"{name}={new}")
-            if isinstance(code, ast.Call) and name.isidentifier()
-            else None
-        )
+        if not isinstance(code, ast.Call) or not name.isidentifier():
+            return None
+        return _added(file, [*code.args, *code.keywords], code, f"{name}={new}")
 
     def with_child(new: str) -> Edit | None:
         own, actions = code, file.calls("add_action")
         if isinstance(own, ast.Call) and called(own) == _ROOTS[1]:
             if not own.args and actions:
                 return _added(file, actions[-1:], own, f"{file.segment(actions[-1].func)}({new})", "")
-            if not own.args:
-                return _added(file, [], own, f"[{new}]")
-            own = file.meant(own.args[0])
+            own = file.meant(own.args[0]) if own.args else own
         return _added(file, own.elts, own, new) if isinstance(own, ast.List) else None
 
     def of() -> Place:
         whole = {**parts, **({"": code} if "" in values else {})}
         spans = {name: file.span(file.meant(part)) for name, part in whole.items()}
         codes = {name: file.written(file.meant(part), into.bound) for name, part in whole.items()}
-        names = {
-            it.arg: (start := file.span(it)[0], start + len(it.arg)) for it in getattr(code, "keywords", []) if it.arg
-        }
-        own = next(
-            (
-                name
-                for name, value in into.values.items()
-                if _tag(value) == _tag(code) != "" and _keys(into, value)[1] == keys[1]
-            ),
-            None,
-        )
-        return Place(label, own or file.written(code, into.bound), codes, spans, names, with_value, with_child)
+        keywords = [it for it in getattr(code, "keywords", []) if it.arg]
+        names = {it.arg: (start := file.span(it)[0], start + len(it.arg)) for it in keywords}
+        calls = [name for name, value in into.values.items() if _tag(value) == _tag(code) != ""]
+        own = [name for name in calls if _keys(into, into.values[name])[1] == keys[1]]  # that is not used
+        text = own[0] if own else file.written(code, into.bound)
+        return Place(label, text, codes, spans, names, with_value, with_child)
 
     children = [
         _expression(file, into, it, name if name and not name.isdigit() else _tag(it) or label, name, depth - 1)
@@ -118,8 +108,6 @@ def _parts(file: PythonFile, node: ast.expr) -> Mapping[str, ast.expr]:
             owner = node.func.value if isinstance(node.func, ast.Attribute) else None
             owner = file.values.get(owner.id) if isinstance(owner, ast.Name) else owner
             named |= {_OWNER: owner} if isinstance(owner, ast.Call) else {}
-        case ast.BinOp(left=left, right=right):
-            items = [left, right]
         case ast.Tuple(elts=elts):
             items = elts
         case ast.Dict(keys=keys, values=values):

@@ -59,5 +59,5 @@ def _indents(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
         text, start = file.source.line(number), file.source.offset(number, 1)
         around = [file.source.line(other) for other in (number - 1, number - 2, number + 1)]
         indents = [line[: len(line) - len(line.lstrip())] for line in around if line.strip()]
-        for indent in dict.fromkeys((*indents, *(f"{it}    " for it in indents[:1]))):
+        for indent in dict.fromkeys(indents):
             yield file.source.edit(start, start + len(text) - len(text.lstrip()), indent)
