@@ -116,7 +116,8 @@ def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None)
         yield from defined(own, what)
     else:
         text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
-        yield from tree_proposals(source, (markup_tree(source), markup_tree(Source(source.path, text))), what)
+        trees = markup_tree(source), markup_tree(Source(source.path, text))
+        yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
     if ending == ".xml":
         for it in proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")

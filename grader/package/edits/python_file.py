@@ -38,6 +38,7 @@ class PythonFile:
         self.source = source
         self.text = source.text
         self.newline = "\r\n" if "\r\n" in source.text else "\n"
+        self._plain: dict[ast.expr, str] = {}
 
     @cached_property
     def parsed(self) -> Code | SyntaxFault:
@@ -116,9 +117,11 @@ class PythonFile:
 
     def plain(self, node: ast.expr) -> str:
         """Return the code of an expression without names for its parts and in one style, to compare it."""
-        code = self.written(node)
-        tree = _expression(code)
-        return ast.unparse(tree) if tree is not None else code
+        if node not in self._plain:
+            code = self.written(node)
+            tree = _expression(code)
+            self._plain[node] = ast.unparse(tree) if tree is not None else code
+        return self._plain[node]
 
     def needs(self, code: str) -> list[Edit]:
         """Return the edit without which an expression would have unknown names."""

@@ -71,7 +71,7 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 
 def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that import or correct the names which are not defined, or not as they are used."""
+    """Yield edits that import or correct the names which are not defined, or not as they are used; and missing commas."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
     yield change(file.with_imports(sorted(used)), "add", "the imports", what)
@@ -85,3 +85,7 @@ def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
             new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
             found = change([file.replaced(statement, new)], "set", "an import", what)
             yield found._replace(rank=-1)  # says better what changes than the difference of the lines
+    for node in file.nodes:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
+            end = file.span(node.func)[1]
+            yield change([file.source.edit(end, end, ",")], "syntax", "", what)
