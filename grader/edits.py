@@ -1,7 +1,7 @@
 """Edits of the text of a file: made for its elements, put together, and applied."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from os.path import commonprefix
 from typing import NamedTuple
 
@@ -131,53 +131,46 @@ def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]
 
     An edit that touches an earlier one becomes one edit with it.
     """
-    before = Source(path, text)
-    spans = [_Span(start, start + len(edit.old), edit.new) for start, edit in _placed(before, first)]
-    after = Source(path, "".join(_pieces(text, spans)))
-    for start, edit in reversed(_placed(after, second)):
-        spans = _with_span(text, spans, start, start + len(edit.old), edit.new)
-    return tuple(before.edit(*span) for span in spans)
+    before, middle = Source(path, text), Source(path, edited(text, path, first) or "")
+    spans: list[_Span] = []
+    shift = 0
+    for start, edit in _placed(before, first):
+        spans.append(_Span(start + shift, start + shift + len(edit.new), None, len(edit.new) - len(edit.old)))
+        shift += spans[-1].growth
+    spans += [_Span(start, start + len(edit.old), edit.new) for start, edit in _placed(middle, second)]
+    shift = 0
+    found: list[Edit] = []
+    for group in _touching(spans):
+        low, high, growth = group[0].start, max(span.end for span in group), sum(span.growth for span in group)
+        new = middle.text[low:high]
+        for start, end, other, _ in reversed(group):
+            new = new if other is None else new[: start - low] + other + new[end - low :]
+        found.append(before.edit(low - shift, high - shift - growth, new))
+        shift += growth
+    return tuple(found)
 
 
 class _Span(NamedTuple):
+    """A part of the text after the first edits: `new` replaces it, or it is new itself and so much longer."""
+
     start: int
     end: int
-    new: str
+    new: str | None
+    growth: int = 0
+
+
+def _touching(spans: Iterable[_Span]) -> list[list[_Span]]:
+    """Return spans in groups: those that a later edit touches are together with it."""
+    groups: list[list[_Span]] = []
+    for span in sorted(spans, key=lambda span: span[:2]):
+        last = groups[-1] if groups else []
+        is_later = any(it.new is not None for it in (span, *last))
+        if is_later and any(it.end >= span.start for it in last):
+            last.append(span)
+        else:
+            groups.append([span])
+    return groups
 
 
 def _placed(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
     return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])
-
-
-def _pieces(text: str, spans: list[_Span]) -> Iterator[str]:
-    position = 0
-    for span in spans:
-        yield text[position : span.start]
-        yield span.new
-        position = span.end
-    yield text[position:]
-
-
-def _with_span(text: str, spans: list[_Span], start: int, end: int, new: str) -> list[_Span]:
-    """Return the spans with another one, whose offsets are in the text after them."""
-    kept: list[_Span] = []
-    touched: list[tuple[int, _Span]] = []  # each with the offset of its new text
-    shift = before = 0  # how much longer the text is up to here, and up to the new span
-    for span in spans:
-        at = span.start + shift
-        if at <= end and at + len(span.new) >= start:
-            touched.append((at, span))
-        else:
-            kept.append(span)
-        shift += len(span.new) - (span.end - span.start)
-        if at + len(span.new) < start:
-            before = shift
-    if not touched:
-        return sorted([*kept, _Span(start - before, end - before, new)])
-    (first_at, first), (last_at, last) = touched[0], touched[-1]
-    low, high = min(start, first_at), max(end, last_at + len(last.new))
-    span_start = first.start - (first_at - low)
-    span_end = last.end + high - (last_at + len(last.new))
-    inner = [_Span(span.start - span_start, span.end - span_start, span.new) for _, span in touched]
-    whole = "".join(_pieces(text[span_start:span_end], inner))
-    return sorted([*kept, _Span(span_start, span_end, whole[: start - low] + new + whole[end - low :])])

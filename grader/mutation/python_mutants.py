@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterable, Iterator
 
 from grader.mutation.mutants import Change, misspelt
-from grader.package.edits.python_file import Literal, PythonFile, keyword
+from grader.package.edits.python_file import PythonFile, keyword
 from grader.source import Source
 
 # Arguments that only people read.
@@ -84,11 +84,9 @@ def _strings(file: PythonFile, label: str, tags: tuple[str, ...]) -> Iterator[Ch
     for literal in file.literals:
         if literal.text.strip() and not any(start <= literal.start < end for start, end in ignored):
             text = literal.text if len(literal.text) <= _MAX_LABEL else literal.text[:_MAX_LABEL]
-            yield Change("string misspelt", f"{label} {text}", *_span(literal), misspelt(literal.text), tags=tags)
-
-
-def _span(literal: Literal) -> tuple[int, int]:
-    return literal.start, literal.end
+            yield Change(
+                "string misspelt", f"{label} {text}", literal.start, literal.end, misspelt(literal.text), tags=tags
+            )
 
 
 def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:

@@ -3,14 +3,15 @@
 import posixpath
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
-from itertools import chain, islice
+from itertools import islice
 from typing import Any
 
 from grader.edits import Proposal, composed, edited
 from grader.package.edits.files import WHAT, file_proposals, package_names
+from grader.package.edits.markup_trees import markup_tree
 from grader.package.edits.paths import in_xml, launch_paths, setup_paths
-from grader.package.edits.python_difference import PythonDifference
 from grader.package.edits.python_file import PythonFile
+from grader.package.edits.python_tree import python_tree
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task
 from grader.package.edits.trees import tree_proposals
@@ -39,21 +40,21 @@ def package_proposals(
         return []
     wanted = list(wanted)
     kinds = dict.fromkeys(kind for looks_at, _ in wanted for kind in looks_at)
-    task = Task(package, reference, frozenset(chain.from_iterable(_texts(arguments) for _, arguments in wanted)))
+    values = [
+        value
+        for _, arguments in wanted
+        for it in arguments.values()
+        for value in (it if isinstance(it, list) else [it])
+    ]
+    task = Task(package, reference, frozenset(value for value in values if isinstance(value, str)))
     found: dict[tuple[Edit, ...], Proposal] = {}
     for kind in ("", *kinds):
         with isolated():
             # Of equal ones, a later one says better what changes.
             own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
-            found |= {
-                edits: own[edits] for edits in sorted(own, key=lambda it: (own[it].rank, own[it].size))[:_MAX_PROPOSALS]
-            }
+            best = sorted(own.values(), key=lambda it: (it.rank, it.size))[:_MAX_PROPOSALS]
+            found |= {it.edits: it for it in best}
     return list(found.values())
-
-
-def _texts(arguments: Mapping[str, Any]) -> Iterator[str]:
-    for value in arguments.values():
-        yield from (it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str))
 
 
 def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
@@ -62,30 +63,21 @@ def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
         yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
         return
     yield from file_proposals(task, kind)
-    if kind == MANIFEST and SETUP not in task.files:  # with the build type alone, the package could not be built
-        needed = tuple(edit for it in file_proposals(task, SETUP) for edit in it.edits)
-        yield from (it._replace(edits=(*it.edits, *needed)) for it in _of_file(task, kind))
-    else:
-        yield from _of_file(task, kind)
-
-
-def _of_file(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield the edits of the file of a kind."""
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
     source = task.source(path)
+    # With the build type alone, the package could not be built.
+    is_alone = kind == MANIFEST and SETUP not in task.files
+    needed = [edit for it in file_proposals(task, SETUP) for edit in it.edits] if is_alone else []
     if source is not None and path is not None:
-        yield from (
-            _further(task, kind, source, path, like) if kind == "launch" else _of_text(task, kind, source, path, like)
-        )
+        made = _further if kind == "launch" else _of_text
+        yield from (it._replace(edits=(*it.edits, *needed)) for it in made(task, kind, source, path, like) if it.edits)
 
 
 def _further(
     task: Task, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
 ) -> Iterator[Proposal]:
     """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
-    found = [*islice(_of_text(task, kind, source, path, like), _MAX_MADE)]
-    yield from found
     reference = task.reference.launch(like) if task.reference is not None and like is not None else None
     wanted = _started(reference) if reference is not None else set()
 
@@ -93,12 +85,13 @@ def _further(
         launch = task.launch(path, text)
         return launch.syntax is not None, len(launch.faults) + len(wanted - _started(launch))
 
-    afters = [(it, Source(source.path, edited(source.text, source.path, it.edits) or "")) for it in found if it.edits]
-    ranked = sorted((left(after), it.size, index) for index, (it, after) in enumerate(afters) if depth > 1)
-    now = left(source)
-    for _, _, index in [it for it in ranked if (False, 0) < it[0] < now][:_MAX_FIRST]:
-        first, after = afters[index]
-        for second in _further(task, kind, after, path, like, depth - 1):
+    found = [it for it in islice(_of_text(task, kind, source, path, like), _MAX_MADE) if it.edits]
+    yield from found
+    afters = {it: Source(source.path, edited(source.text, source.path, it.edits) or "") for it in found if depth > 1}
+    ranks = {it: left(after) for it, after in afters.items()}
+    better = [it for it in ranks if (False, 0) < ranks[it] < left(source)]
+    for first in sorted(better, key=lambda it: (ranks[it], it.size))[:_MAX_FIRST]:
+        for second in _further(task, kind, afters[first], path, like, depth - 1):
             edits = composed(source.text, source.path, first.edits, second.edits)
             cause, action = f"{first.cause} and {second.cause}", f"{first.action} and {second.action}"
             yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
@@ -111,19 +104,20 @@ def _started(launch: Launch) -> set[tuple[str, str]]:
 def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
     """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
-    own, right = PythonFile(source), Source(source.path, wanted)
+    own = PythonFile(source)
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
-    if wanted and (ending == other or ending in (".py", "")):
+    is_python = ending in (".py", "")
+    if wanted and (ending == other or is_python):
         yield from reworded(source, wanted, what)
-    if ending in (".py", ""):
-        yield from PythonDifference(own, PythonFile(right), what).proposals() if wanted else ()
+    if is_python:
+        trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
+        yield from tree_proposals(source, trees, what, own.needs)
         yield from repaired(own, what)
         yield from defined(own, what)
-    elif ending == other:
-        yield from tree_proposals(source, right, task.given, what)
-    elif ending == ".xml" and task.reference is not None and like is not None:
-        right = Source(source.path, in_xml(task, task.reference.launch(like)))
-        yield from (it._replace(rank=1) for it in tree_proposals(source, right, task.given, what))
+    else:
+        text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
+        trees = markup_tree(source), markup_tree(Source(source.path, text))
+        yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
     if ending == ".xml":
         for it in proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")

@@ -17,12 +17,10 @@ _MAX_LAUNCH_FILES = 3
 
 
 def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
-    """Yield edits that give a file the name that it has in the reference or a check is given, or create it."""
+    """Yield edits that give a file the name that it has in the reference, or create it."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
-    is_named = {*map(posixpath.basename, wanted)}
-    wanted |= {f"{kind}/{name}": "" for name in sorted(task.given - is_named) if "." in name and kind_of(name) == kind}
     for path, like in wanted.items():
         folder, name = posixpath.split(path)
         if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
@@ -33,7 +31,7 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
             new = posixpath.join(posixpath.dirname(spare[other]), name)
             yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
-        if path not in task.files and like and kind != "urdf" and (path == kind or SETUP in task.files):
+        if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
@@ -46,7 +44,7 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
     if manifest is None or manifest.name is None:
         return
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    others = [*task.package.registered, *(name for name in shares if closest(name, [new]))]
+    others = [name for name in shares if closest(name, [new])]
     names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *others])
     names.pop(new, None)
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
@@ -56,7 +54,4 @@ def package_names(task: Task, new: str) -> Iterator[Proposal]:
         edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
     moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
     edits += moved if f"resource/{new}" not in task.files else []
-    own = [(path, old) for path in task.files for old in names if path.startswith(f"{old}/")]
-    modules = [task.renamed(path, path.replace(old, new, 1)) for path, old in own]
-    for several in (edits, [*edits, *modules])[: 1 + bool(modules)] if edits else ():
-        yield change(several, "set", "the name of the package")
+    yield change(edits, "set", "the name of the package")

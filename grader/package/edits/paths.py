@@ -1,5 +1,6 @@
 """Paths that name no file: one text of a file changes, with which the path becomes the most similar one that exists."""
 
+import ast
 import posixpath
 import re
 from collections.abc import Iterable, Iterator
@@ -11,10 +12,10 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import Task, change
 from grader.package.launch.model import STATE_PUBLISHER, Launch, Reference
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
+from grader.package.package import SETUP
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
-_NAME = re.compile(r"\{[^{}]*\}")
 _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
@@ -24,13 +25,13 @@ _SHARE_FUNCTION = "get_package_share_directory"
 _MAX_PATHS = 8  # that are wrong in one file
 _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
-_SETUP, _LAUNCH = "setup.py", "the launch file"
+_LAUNCH = "the launch file"
 
 
 def setup_paths(task: Task) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
-    file, setup = task.setup, task.package.setup
-    if file is None or setup is None:
+    source, setup = task.source(SETUP), task.package.setup
+    if source is None or setup is None:
         return
     wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
     files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
@@ -40,19 +41,13 @@ def setup_paths(task: Task) -> Iterator[Proposal]:
         known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
         for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
-                edits = moved(file.source, actual, wanted, line)[:2]
-                yield from (change([edit], "set", "a path", _SETUP) for edit in edits)
+                edits = moved(source, actual, wanted, line)[:2]
+                yield from (change([edit], "set", "a path", SETUP) for edit in edits)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
-    """Return known paths, the most similar first: those of the same name, in the same folder, then by their letters."""
-    matcher = SequenceMatcher(None, "", path, autojunk=False)
-
-    def order(other: str) -> tuple[bool, float]:
-        matcher.set_seq1(other)
-        return posixpath.basename(other) != posixpath.basename(path), -matcher.ratio()
-
-    return sorted(dict.fromkeys(known), key=order)
+    """Return known paths, the most similar first."""
+    return sorted(dict.fromkeys(known), key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio())
 
 
 def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
@@ -67,13 +62,14 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
         yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
 
 
-def in_xml(task: Task, launch: Launch) -> str:
+def in_xml(task: Task, like: str | None) -> str:
     """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
-    reference = task.reference.name if task.reference is not None else ""
-    paths = {"urdf": "", "rviz": ""}
-    for purpose in paths:
-        named = [(it.path or "").partition(f"{reference}/")[2] for it in launch.references if it.purpose == purpose]
-        found = [target for like in named for target in _similar(like, _targets(task, purpose))]
+    if task.reference is None or like is None:
+        return ""
+    launch, paths = task.reference.launch(like), {}
+    for purpose in ("urdf", "rviz"):
+        named = [(it.path or "").partition(f"{task.reference.name}/")[2] for it in launch.named(purpose)]
+        found = [target for path in named for target in _similar(path, _targets(task, purpose))]
         paths[purpose] = f"$(find-pkg-share {task.package.name})/{found[0]}" if found else ""
     read = "xacro" if paths["urdf"].endswith(".xacro") else "cat"
     inner = f"""><param name="robot_description" value="$(command '{read} {paths["urdf"]}')" type="str"/></node>"""
@@ -90,25 +86,14 @@ def _targets(task: Task, purpose: str) -> list[str]:
 
 
 def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
-    """Return the edits with which a path becomes the one that the file is installed at, or the file is installed there."""
-    package, actual, line = task.package, named.path or "", named.location.line
-    share = f"share/{package.name}/"
-    looked = actual.removeprefix(f"{PREFIX}/")
-    found: list[list[Edit]] = []
-    for below in _similar(looked.removeprefix(share), _targets(task, named.purpose))[:1]:
-        target = share + below
+    """Return the edits with which a path becomes the one that the file is installed at."""
+    actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
+    for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
         if actual.startswith(PREFIX):
-            found += [[edit] for edit in moved(source, actual, f"{PREFIX}/{target}", line)]
-        elif source.path.endswith(".py"):
-            found += _of_one_machine(package.name, PythonFile(source), actual, below)
-        else:
-            short = actual.removeprefix(f"{WORKING_FOLDER}/")
-            found += [[edit] for edit in moved(source, short, f"$(find-pkg-share {package.name})/{below}", line)]
-        if actual.startswith("/"):
-            found += [[edit] for edit in moved(source, actual, below, line)[:1]]
-        if task.setup is not None and posixpath.basename(looked) == posixpath.basename(target):
-            found[2:2] = [[edit] for edit in moved(task.setup.source, target, looked)[:1]]
-    return found
+            return [[edit] for edit in moved(source, actual, share + below, named.location.line)]
+        if source.path.endswith(".py"):
+            return [*_of_one_machine(task.package.name, PythonFile(source), actual, below)]
+    return []
 
 
 def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
@@ -117,16 +102,14 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
     The difference to the reference has no answer where the file is built in another way: launch-home-path, sensors-launch-home-path.
     """
     share = f"{_SHARE_FUNCTION}({name!r})"
-    for literal in file.literals:
-        for path in (literal.text.rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.text}"):
-            rest = (
-                actual.removeprefix(path).strip("/") if literal.text and f"{actual}/".startswith(f"{path}/") else None
-            )
+    for literal in [it for it in file.nodes if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)]:
+        for path in (str(literal.value).rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.value!s}"):
+            rest = actual.removeprefix(path).strip("/") if f"{actual}/".startswith(f"{path}/") else None
             others = moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
                 new = share if rest else f"os.path.join({share}, {target!r})"
                 imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
-                yield [*imports, file.source.edit(literal.outer_start, literal.outer_end, new), *others]
+                yield [*imports, file.replaced(literal, new), *others]
 
 
 def pieces(source: Source) -> Iterator[tuple[int, int]]:
@@ -134,12 +117,7 @@ def pieces(source: Source) -> Iterator[tuple[int, int]]:
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
         return
-    for literal in PythonFile(source).literals:
-        start = literal.start
-        for name in _NAME.finditer(literal.text):
-            yield start, literal.start + name.start()
-            start = literal.start + name.end()
-        yield start, literal.end
+    yield from ((it.start, it.end) for it in PythonFile(source).literals)
 
 
 def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
@@ -164,8 +142,6 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
             new = wanted[len(head) : len(wanted) - len(tail)]
             if new != piece:
                 yield new
-        elif tail.startswith("/") and wanted == head + tail[1:]:
-            yield ""
 
 
 def _without(source: Source, start: int, end: int) -> Edit:

@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterable
 from functools import cached_property
 from typing import NamedTuple
 
@@ -23,22 +23,12 @@ _USE = re.compile(r"\bglob\.glob\b")
 
 
 class Token(NamedTuple):
-    """A token: string, name (also a number) or op, with its offsets."""
+    """A token: string, name (also a number), op, or the literal text between the quotes of a string; with its offsets."""
 
     kind: str
     text: str
     start: int
     end: int
-
-
-class Literal(NamedTuple):
-    """The text in a string, between its quotes, with its offsets."""
-
-    text: str
-    start: int
-    end: int
-    outer_start: int
-    outer_end: int
 
 
 class PythonFile:
@@ -48,6 +38,7 @@ class PythonFile:
         self.source = source
         self.text = source.text
         self.newline = "\r\n" if "\r\n" in source.text else "\n"
+        self._plain: dict[ast.expr, str] = {}
 
     @cached_property
     def parsed(self) -> Code | SyntaxFault:
@@ -66,15 +57,11 @@ class PythonFile:
         return [Token(match.lastgroup or "", match[0], match.start(), match.end()) for match in found]
 
     @cached_property
-    def literals(self) -> list[Literal]:
+    def literals(self) -> list[Token]:
         """The texts in its strings."""
-        found = []
-        for token in self.tokens:
-            quotes = _QUOTES.match(token.text) if token.kind == "string" else None
-            if quotes is not None:
-                start, end = token.start + quotes.end(), token.end - len(quotes[1])
-                found.append(Literal(self.text[start:end], start, end, token.start, token.end))
-        return found
+        quoted = ((it, _QUOTES.match(it.text)) for it in self.tokens if it.kind == "string")
+        spans = [(it.start + quotes.end(), it.end - len(quotes[1])) for it, quotes in quoted if quotes is not None]
+        return [Token("literal", self.text[start:end], start, end) for start, end in spans]
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
@@ -109,56 +96,56 @@ class PythonFile:
                     found[name] = value
         return found
 
-    @cached_property
-    def opened(self) -> frozenset[str]:
-        """The names that with statements bind."""
-        return frozenset(
-            it.optional_vars.id
-            for it in self.nodes
-            if isinstance(it, ast.withitem) and isinstance(it.optional_vars, ast.Name)
-        )
-
     def meant(self, node: ast.expr) -> ast.expr:
         """Return the expression that a name is bound to; any other expression itself."""
         for _ in range(_MAX_DEPTH):
-            if not isinstance(node, ast.Name) or node.id not in self.values or node.id in self.opened:
+            if not isinstance(node, ast.Name) or node.id not in self.values:
                 break
             node = self.values[node.id]
         return node
 
-    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> tuple[str, set[str]]:
-        """Return an expression in which the names that are not `bound` have their values, and the names that it still has."""
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> str:
+        """Return an expression in which the names that are not `bound` have their values."""
         start, _ = self.span(node)
         text = self.segment(node)
-        needed: set[str] = set()
         names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
-        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
-            if name.id in bound or name.id not in self.values or not depth or len(text) > _MAX_CODE:
-                needed.add(name.id)
-                continue
-            at, end = (offset - start for offset in self.span(name))
-            code, others = self.written(self.values[name.id], bound, depth - 1)
-            text, needed = text[:at] + code + text[end:], needed | others
-        return text, needed
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True) if depth else ():
+            if name.id not in bound and name.id in self.values and len(text) <= _MAX_CODE:
+                at, end = (offset - start for offset in self.span(name))
+                text = text[:at] + self.written(self.values[name.id], bound, depth - 1) + text[end:]
+        return text
 
     def plain(self, node: ast.expr) -> str:
         """Return the code of an expression without names for its parts and in one style, to compare it."""
-        code, _ = self.written(node)
-        try:
-            return ast.unparse(ast.parse(code.strip(), mode="eval"))
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            return code
+        if node not in self._plain:
+            code = self.written(node)
+            tree = _expression(code)
+            self._plain[node] = ast.unparse(tree) if tree is not None else code
+        return self._plain[node]
+
+    def needs(self, code: str) -> list[Edit]:
+        """Return the edit without which an expression would have unknown names."""
+        tree = _expression(code)
+        return self.with_imports(sorted({it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}) if tree else ())
 
     @cached_property
     def bound(self) -> frozenset[str]:
         """The names that the file binds anywhere."""
-        return frozenset(_bound(self.nodes))
+        found: set[str] = set()
+        for node in self.nodes:
+            match node:
+                case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                    found.add(name)
+                case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.alias(name=name, asname=other):
+                    found.add(other or name.split(".")[0])
+        return frozenset(found)
 
     @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:
-        """Its import statements, in order."""
-        found = (node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom))
-        return sorted(found, key=lambda node: node.lineno)
+        """Its import statements."""
+        return [node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
@@ -169,7 +156,7 @@ class PythonFile:
         """Return the edit that imports those of these names that have a usual meaning and are not bound."""
         wanted = [name for name in dict.fromkeys(names) if name in USUAL_NAMES and name not in self.bound]
         body = self.parsed.tree.body if isinstance(self.parsed, Code) else []
-        start = next((self.span(node)[0] for node in body if not _is_first(node)), len(self.text))
+        start = next((self.span(node)[0] for node in (*self.imports, *body)), len(self.text))
         text = "".join(sorted(map(self._import, wanted), key=lambda line: line.startswith("from")))
         return [self.source.edit(start, start, text)] if wanted else []
 
@@ -180,9 +167,11 @@ class PythonFile:
         return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
 
 
-def _is_first(node: ast.stmt) -> bool:
-    """Return whether a statement has to stay before imports: the docstring, or an import from the future."""
-    return isinstance(node, ast.Expr) or (isinstance(node, ast.ImportFrom) and node.module == "__future__")
+def _expression(code: str) -> ast.Expression | None:
+    try:
+        return ast.parse(code.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
 
 
 def called(call: ast.Call) -> str:
@@ -193,14 +182,3 @@ def called(call: ast.Call) -> str:
 def keyword(call: ast.Call, name: str) -> ast.keyword | None:
     """Return a keyword argument of a call."""
     return next((keyword for keyword in call.keywords if keyword.arg == name), None)
-
-
-def _bound(nodes: Iterable[ast.AST]) -> Iterator[str]:
-    for node in nodes:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store()):
-                yield name
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.arg(arg=name):
-                yield name
-            case ast.alias(name=name, asname=other):
-                yield other or name.split(".")[0]

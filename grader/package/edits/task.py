@@ -3,12 +3,10 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Literal
 
 from grader.edits import Proposal
 from grader.errors import InputError
-from grader.package.edits.python_file import PythonFile
 from grader.package.launch.model import Launch
 from grader.package.launch.places import ENDINGS, is_in_launch_folder
 from grader.package.package import PYTHON_LIMIT, SETUP, Package
@@ -48,12 +46,6 @@ class Task:
         name = min((name for name in self.given if kind_of(name) == kind), default="")
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
         return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
-
-    @cached_property
-    def setup(self) -> PythonFile | None:
-        """The package's setup.py."""
-        source = self.source(SETUP)
-        return PythonFile(source) if source is not None else None
 
     def launch(self, path: str, source: Source) -> Launch:
         """Return a launch file of the package with another text, evaluated."""
@@ -108,13 +100,8 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def proposal(edits: Iterable[Edit], cause: str, action: str) -> Proposal:
-    """Return a proposal that makes each edit once."""
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action)
-
-
 def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
     """Return the proposal of a step; `name` is what changes, and `what` the file that it is in."""
     place = " in ".join(filter(None, (name, what)))
     cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
-    return proposal(edits, cause, action)
+    return Proposal(tuple(dict.fromkeys(edits)), cause, action)

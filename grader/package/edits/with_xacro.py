@@ -15,11 +15,9 @@ def with_xacro(source: Source) -> Iterator[tuple[Edit, ...]]:
     for found in _CAT.finditer(source.text):
         yield (source.edit(found.start(), found.end(), "xacro"),)
     file = PythonFile(source)
-    items = [item for node in file.nodes if isinstance(node, ast.With) for item in node.items]
-    opened = {it.optional_vars.id: it.context_expr for it in items if isinstance(it.optional_vars, ast.Name)}
     for call in [*file.calls("read"), *file.calls("read_text")] if source.path.endswith(".py") else ():
         owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
-        owner = opened.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
+        owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
         is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
         if is_open or called(call) == "read_text":
             path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner

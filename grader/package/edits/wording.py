@@ -19,18 +19,12 @@ _WORD = re.compile(r"[^\W\d]\w*")
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60
 _MAX_MEANT = 4  # names that an undefined one may stand for
 _MAX_MORE = 2  # letters that one word has more than the other
-_LONG = 8
-_LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_LIKENESS = 0.75
 _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
-_LAUNCH = "rviz2 xacro robot_state_publisher joint_state_publisher joint_state_publisher_gui"
-# Words of launch files in XML and YAML.
-_FRONTEND = f"""{_LAUNCH} launch node pkg exec name args output if unless arg default description value param from include
-file let group find-pkg-share find-pkg-prefix var env eval command dirname true false screen robot_description remap"""
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
-_PYTHON = " ".join((_LAUNCH, *keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "package_name", "open", "read"))
 
 
 def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -41,9 +35,7 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
     places: dict[str, list[re.Match[str]]] = {}
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
-    usual = _PYTHON if source.path.endswith(".py") else _FRONTEND
-    right = {word for text in (*known, usual) for word in _WORD.findall(text)}
-    right |= {word for word in places if len(places[word]) > 1}
+    right = {word for text in (*known, *keyword.kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
     guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
@@ -63,7 +55,7 @@ def slip(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that a slip of the hand makes this one: a letter or two more, less, other or swapped."""
     guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
     same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
-    return guess if same >= (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG) else None
+    return guess if same >= _LIKENESS else None
 
 
 def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
@@ -85,15 +77,15 @@ def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
     yield change(file.with_imports(sorted(used)), "add", "the imports", what)
     for word in sorted(used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
         own = sorted(file.values, key=lambda it: -SequenceMatcher(None, it, word).ratio())[:_MAX_MEANT]
-        for old, new in [*((word, other) for other in own), *((other, word) for other in own if other not in used)]:
-            edits = [file.replaced(node, new) for node in names if node.id == old]
-            yield change(edits, "rename", f"`{old}`", what)
+        for other in own:
+            edits = [file.replaced(node, other) for node in names if node.id == word]
+            yield change(edits, "rename", f"`{word}`", what)
     for statement in file.imports:  # the function glob instead of the module, or the reverse
         if [alias.name for alias in statement.names] == ["glob"]:
             new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
             found = change([file.replaced(statement, new)], "set", "an import", what)
             yield found._replace(rank=-1)  # says better what changes than the difference of the lines
     for node in file.nodes:
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple | ast.Constant | ast.List):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
             end = file.span(node.func)[1]
             yield change([file.source.edit(end, end, ",")], "syntax", "", what)
