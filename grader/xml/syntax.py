@@ -82,10 +82,9 @@ def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Pro
     if first:
         yield _joined(source, [ways[0] for ways in first])
     others = ((index, way) for index in reversed(range(len(first))) for way in first[index][1:])
-    for index, way in islice(others, _MAX_FOUND):
-        yield _joined(
-            source, [*(ways[0] for ways in first[:index]), way, *(ways[0] for ways in search.steps(way.after))]
-        )
+    for number, (index, way) in enumerate(islice(others, _MAX_FOUND), start=1):
+        rest = [ways[0] for ways in search.steps(way.after)]
+        yield _joined(source, [*(ways[0] for ways in first[:index]), way, *rest])._replace(way=number)
 
 
 def _joined(source: Source, ways: list[Way]) -> Proposal:
@@ -183,8 +182,11 @@ class _Operations:
         for word, name in product(words[:0:-1], free):
             yield "twice" if word[1] else "name", *word.span(), name if word[1] else f'{name}="{word[0]}"'
         for at, old in enumerate(body):
-            for new in " " if old.isalnum() and body[at - 1].isalnum() else list(_WAYS)[:6]:
-                yield new, at, at, new
+            is_name = not self.is_urdf or body[1:at] in ATTRIBUTES or " " in body[:at]  # before a space that is added
+            is_split = old.isalnum() and body[at - 1].isalnum()
+            for new in " " * is_name if is_split else list(_WAYS)[:6]:
+                if ">" not in new or "=" not in body[at:]:
+                    yield new, at, at, new
             if not old.isalnum() and not (old == "<" and body[at + 1 : at + 2].isalpha()):
                 yield "less", at, at + 1, ""
             for name in free if old in "=\"'" else ():

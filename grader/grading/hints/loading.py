@@ -116,8 +116,8 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
             or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)
         ]
         for piece in chain(misplaced(difference), chain.from_iterable(own), near):
-            for edits in draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]:
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank)
+            for way, edits in enumerate(draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]):
+                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
 
 def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> Step | None:
@@ -134,14 +134,14 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
             complete += [proposal.cause] if not any(left[1:]) else []
         if len(set(complete)) == _MAX_GRADED or len(complete) == _MAX_VALUES:
             break
-    best: tuple[tuple[bool, Decimal, Defects, int], Step] | None = None
+    best: tuple[tuple[bool, Decimal, Defects, int, int], Step] | None = None
     better.sort(key=lambda found: (found[0], found[1]))
     is_read = bool(better) and better[0][0][0] < 0
     causes = list(dict.fromkeys(proposal.cause for _, _, proposal in better))[: _MAX_GRADED if is_read else 1]
     for left, _, proposal in [it for it in better if it[2].cause in causes][: _MAX_VALUES if is_read else 1]:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
-            rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.size)
+            rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.way, -proposal.size)
             if best is None or rank > best[0]:
                 best = rank, Step(proposal, state, after)
     return best[1] if best is not None else None
