@@ -111,13 +111,15 @@ def setup_imports(package: Package) -> Outcome:
 
 
 def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else all of the kind."""
+    """Return the file of a package that has this name, else those with other endings, else all of the kind."""
     if kind == "launch":
         chosen = package.launch_file(name)
         return [chosen] if chosen is not None else []
     endings = _ENDINGS[kind]
     paths = [path for path in package.tree.files if path.lower().endswith(endings)]
-    return [path for path in paths if posixpath.basename(path) == name] or paths
+    names = {path: posixpath.basename(path) for path in paths}
+    like = [path for path in paths if names[path].partition(".")[0] == name.partition(".")[0]]  # my_robot.urdf.xacro
+    return [path for path in paths if names[path] == name] or like or paths
 
 
 def _readable_setup(package: Package) -> "Setup | Outcome":

@@ -347,6 +347,15 @@ def test_no_such_file_at_all(kind: str, folder: str, message: str) -> None:
     assert lacks(build_installs, REFERENCE.without(folder), kind=kind, name=KINDS[kind]) == expected
 
 
+def test_a_file_that_the_urdf_includes_does_not_count_for_it() -> None:
+    """The URDF has another ending than in the handout; only the file that it includes is installed."""
+    xacro = REFERENCE.renaming(URDF, f"{URDF}.xacro").with_files({f"{FOLDER}/urdf/parts/macros.xacro": "<robot/>"})
+    submitted = setup(URDF_ENTRY, "('share/my_robot/urdf/parts', glob('urdf/parts/*')),", xacro)
+    assert lacks(build_installs, submitted, kind="urdf", name=KINDS["urdf"])[2].startswith(
+        "a build does not install urdf/my_robot"
+    )
+
+
 def test_a_launch_file_of_another_name_is_installed() -> None:
     """The name is graded by another criterion."""
     for name in ("my_robot_rvix.launch.py", "display.launch.py", "my_robot_rviz_launch.py", "my_robot_rviz.launch.xml"):

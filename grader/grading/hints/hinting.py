@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
@@ -43,11 +42,12 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     trials = Trials(report.rubric, submission, results)
     search = Search(trials, _draft(solution), lambda: _package(solution)).run()
     costs = costs_of(results)
+    shown = {name: found for found in reversed(search.found) for name in found.gains}
     hints: dict[str, Hint] = {}
-    for found in reversed(search.found):
+    for name, found in shown.items():
         with trials.isolated():
-            hint = _hint(found, level, submission, costs, keep_edits=keep_edits)
-            hints.update(dict.fromkeys(found.gains, hint))
+            text = message(found, level, submission, costs, shown)
+            hints[name] = _hint(found, text, keeps_edits=keep_edits or level == "edit")
     causes = search.causes if level in ("cause", "edit") else {}
     with_hints = [_explained(result, hints.get(result.criterion.id), causes) for result in report.results]
     notes = report.notes if search.is_complete or submission.is_costly else (*report.notes, INCOMPLETE)
@@ -81,13 +81,10 @@ def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]
     return result._replace(outcome=outcome._replace(message=message, mistake=outcome.mistake or outcome.message))
 
 
-def _hint(
-    found: Found, level: Level, submission: Submission, costs: Mapping[str, Decimal], *, keep_edits: bool
-) -> Hint:
+def _hint(found: Found, text: str, *, keeps_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
-    edits = found.edits if keep_edits or level == "edit" else ()
-    return Hint(message(found, level, submission, costs), at, found.gains, edits, found.proposal.action)
+    return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action)
 
 
 def _draft(reference: Reference | None) -> Draft | None:

@@ -10,7 +10,6 @@ from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBud
 from grader.xml.urdf_format import PARTS
 
 _WORK = 1_000  # of one expression
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _MAX_LENGTH = 200
 
 
@@ -43,8 +42,9 @@ def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
 
 def _counted(attribute: str, text: str) -> Iterator[str]:
     """Yield as many numbers as an attribute needs: with zeros for those that are missing, or without the last ones."""
-    pieces, count = _NUMBER.findall(text.replace(",", " ")), len(PARTS.get(attribute, ()))
-    if count > 1 and (len(pieces) > count or (attribute in ("xyz", "rpy") and len(pieces) < count)):
+    pieces, count = text.replace(",", " ").split(), len(PARTS.get(attribute, ()))
+    is_other = len(pieces) > count or (attribute in ("xyz", "rpy") and len(pieces) < count)
+    if count > 1 and is_other and all(map(values_of, pieces)):
         yield " ".join([*pieces, "0", "0", "0"][:count])
         yield " ".join(["0", "0", "0", *pieces][-count:])
 
@@ -84,6 +84,10 @@ _STEPS: tuple[_Step, ...] = (
     ("[\u2010-\u2015\u2212\ufe63\uff0d]", "-", "a minus sign that is not ASCII", "write - for the minus"),
     (r"[\s\u00a0\u2000-\u200b\u202f\ufeff]+", " ", "white space that is not a space", _SPACES),
     (r"\A | \Z", "", "a space after the number", "remove the space"),
+    (r"\A[\[(\"']+|[\])\"']+\Z", "", "quotes or brackets around numbers", "remove the quotes or brackets"),
+    (r"\.{2,}", ".", "an extra decimal point", "remove one decimal point"),
+    (r"\+-|--+", "-", "a double sign", "remove one sign"),
+    (r"(?<=[0-9.])[oO]|[oO](?=[0-9.])|(?<!\S)[oO](?!\S)", "0", "a letter in a number", "write a zero for the letter O"),
     *((rf"(?i)(?<=[0-9.]) ?(?:{unit})(?!\w)", factor, *_UNIT) for unit, factor in _UNITS.items()),
     (
         r"\$\{([^{}]*)\}|\S+",
