@@ -9,12 +9,10 @@ from typing import Any
 
 from lxml import etree
 
-from grader.drawing.curves import Curve, Edge, inner_edges
+from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.projection import Seen, projection, with_fronts
-from grader.drawing.sheet import WIDTH, Cell, framed_links, sheet_of, single_cell
-from grader.drawing.views import SIDE, View
+from grader.drawing.sheet import WIDTH, Cell, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
 from grader.report.callouts import description
 from grader.report.drawing_key import put_key, put_legend
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels

@@ -7,10 +7,22 @@ from typing import Any
 
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.imports import attribute_error
-from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, PACKAGE_FOLDER, as_text, names_package_folder
 from grader.static_python.operators import WalkFolders, extend, forget, join_path
 from grader.static_python.parse import Position
-from grader.static_python.values import UNKNOWN_KEYS, BoundMethod, Call, QualifiedName, Unknown, Value, unknown_in
+from grader.static_python.values import (
+    MAX_ITEMS,
+    MAX_TEXT,
+    PACKAGE_FOLDER,
+    UNKNOWN_KEYS,
+    BoundMethod,
+    Call,
+    QualifiedName,
+    Unknown,
+    Value,
+    as_text,
+    names_package_folder,
+    unknown_in,
+)
 
 _MAX_PARTS = 100  # of a path
 _MAX_NAME = 255  # characters of a file name

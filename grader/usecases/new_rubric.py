@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from grader.authoring.draft import Draft, draft
-from grader.authoring.fact import Omission
+from grader.authoring.fact import Omission, Solution
 from grader.authoring.rubric_text import Head
-from grader.authoring.solution import Solution
 from grader.checks.tree import urdf_loads
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from grader.drawing.curves import SIDE
 from grader.drawing.picture import picture_of
 from grader.drawing.sheet import single_cell
-from grader.drawing.views import SIDE
 from grader.report.drawing import drawing_element, thumbnail_element
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 from lxml import etree
 
+from grader.drawing.curves import SIDE, TOP
 from grader.drawing.picture import Picture, picture_of
 from grader.drawing.scene import Scene
-from grader.drawing.views import SIDE, TOP
 from grader.grading.report import Report
 from grader.report.drawing import thumbnail_element
 from grader.robot.transforms import Vector, dot
