@@ -35,6 +35,6 @@ def diff(
 
       What a resubmission or a manual mark changed: the same command; each student has the reason.
     """
-    from grader.usecases.diff import diff as compare
+    from grader.usecases.two_gradebooks import diff as compare
 
     return compare(gradebook, other, before, after, output_format, screen())

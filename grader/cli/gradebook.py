@@ -56,7 +56,7 @@ def merge(
 
       grader gradebook merge lab6.db lab6-lee.db --keep first
     """
-    from grader.usecases.merge_gradebooks import merge_gradebooks
+    from grader.usecases.two_gradebooks import merge_gradebooks
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding

@@ -69,7 +69,7 @@ def review(
         raise InputError("--section is empty: name a section, or omit it to review all")
     scope = ReviewScope(criterion, by, section or "", mine, second, anonymous)
     if html:
-        from grader.usecases.review_server import review_in_browser
+        from grader.usecases.review_page import review_in_browser
 
         if pictures is not None:
             raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")

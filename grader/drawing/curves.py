@@ -1,4 +1,7 @@
-"""The three views of a drawing, and the edges and the outline of a shape in one of them, as exact lines and arcs; metres in the view."""
+"""The three views of a drawing, and the edges and the outline of a shape in one of them, as exact lines and arcs.
+
+In a view x points to the right, y up and z to the viewer, all in metres.
+"""
 
 from collections.abc import Iterator
 from itertools import product

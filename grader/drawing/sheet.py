@@ -1,4 +1,7 @@
-"""The sheet of a drawing: a scene in three views at one scale, side by side as in third-angle projection."""
+"""The sheet of a drawing: a scene in three views at one scale, side by side as in third-angle projection.
+
+The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points down.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import floor, log10

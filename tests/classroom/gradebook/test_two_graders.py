@@ -28,7 +28,7 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.report.screen import Screen
 from grader.usecases import Terminal
 from grader.usecases.manual_marks import MarkRequest, give_mark
-from grader.usecases.merge_gradebooks import merge_gradebooks
+from grader.usecases.two_gradebooks import merge_gradebooks
 from tests.classroom.gradebook.two_graders import TOTAL, Book, Entry, Grade, Item, Row
 from tests.classroom.gradebooks import graded_as, lab_text, record_run
 
