@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation import as_xacro, rewritings
-from grader.mutation.references import names_in
 from grader.mutation.rewritings import Step, Surroundings, words_of_foreign
 from grader.mutation.style import Style
 from grader.mutation.trees import Element, copied
+from grader.mutation.trial import names_in
 from grader.robot.model import Robot
 
 _STEPS: Mapping[str, Step] = {

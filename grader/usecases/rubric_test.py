@@ -11,8 +11,7 @@ from grader.errors import GraderError
 from grader.mutation.samples import read_samples
 from grader.mutation.testing import tested
 from grader.report.formats import OutputFormat
-from grader.report.rubric_test import render_rubric_test
-from grader.report.rubric_test_json import render_rubric_test_json
+from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
 from grader.report.screen import Screen
 from grader.usecases import Warn
 from grader.usecases.exit_codes import ExitCode, read_threshold

@@ -15,7 +15,7 @@ import pytest
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.mutation import equivalent_test
+from grader.mutation import testing as equivalent_test
 from grader.mutation.mutation_test import MutationTest
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
