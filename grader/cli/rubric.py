@@ -102,7 +102,7 @@ def new_rubric(
 
       grader rubric new my_lab.toml --from solution.urdf --force
     """
-    from grader.usecases.new_rubric import write_rubric
+    from grader.usecases.rubric_making import write_rubric
 
     return write_rubric(file, reference, warn, force=force)
 
@@ -147,7 +147,7 @@ def run_test(
       grader rubric test my_lab.toml samples --fail-under 100%
     """
     from grader.cli.progress import progress_display
-    from grader.usecases.rubric_test import TestRequest, test
+    from grader.usecases.rubric_making import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
     text, code = test(request, screen(), warn, progress_display)

@@ -63,7 +63,7 @@ def _drawings(executor: Executor, book: Path, examples: Mapping[CommonFix, Seque
 
 def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
     """Return a picture of the first student's robot that can be read; empty if there is none."""
-    from grader.report.pages.thumbnail import thumbnail
+    from grader.report.pages.class_page import thumbnail
 
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened)

@@ -13,7 +13,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of

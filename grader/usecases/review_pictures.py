@@ -7,7 +7,7 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
 from grader.classroom.gradebook.student_grade import SubmissionSources
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import InputError
 from grader.grading.pictures import may_have_pictures, pictures_of

@@ -21,7 +21,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
