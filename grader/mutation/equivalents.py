@@ -12,10 +12,10 @@ from grader.mutation import rewritings
 from grader.mutation.elements import Element as TextElement
 from grader.mutation.elements import elements
 from grader.mutation.rewritings import Step, Surroundings, words_of_foreign
-from grader.mutation.style import Style
-from grader.mutation.trees import Element, copied
+from grader.mutation.trees import Style, copied
 from grader.mutation.trial import names_in
 from grader.robot.model import Robot
+from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
 
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
