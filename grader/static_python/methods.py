@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.imports import attribute_error
+from grader.static_python.imports import CONSTANTS, attribute_error
 from grader.static_python.operators import WalkFolders, extend, forget, join_path
 from grader.static_python.parse import Position
 from grader.static_python.values import (
@@ -32,14 +32,6 @@ _TEXT_METHODS = frozenset(
      "endswith", "split", "rsplit", "splitlines", "partition", "rpartition", "count", "find", "isdigit"}
 )  # fmt: skip
 _LIST_METHODS = ("reverse", "clear", "count", "index", "remove", "pop")
-_CONSTANTS = {
-    "os.sep": "/",
-    "os.path.sep": "/",
-    "os.linesep": "\n",
-    "os.curdir": ".",
-    "os.pardir": "..",
-    "os.name": "posix",
-}
 
 
 def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> Value:
@@ -58,7 +50,7 @@ def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> 
             error = attribute_error(module, name) if full not in evaluation.functions else None
             if error is not None:
                 evaluation.error(error, at, AttributeError)
-            return _CONSTANTS.get(full, QualifiedName(full))
+            return CONSTANTS.get(full, QualifiedName(full))
         case PurePosixPath() if name in ("name", "stem", "suffix", "parent", "parents", "parts"):
             if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(owner, name)):
                 return Unknown("the name of the package's folder is not known", at)
