@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.usecases.local_server import HOST
-from grader.usecases.review_server import serving
+from grader.usecases.review_page import serving
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 

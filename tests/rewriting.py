@@ -13,13 +13,11 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.mutation import rewritings as seeded
-from grader.mutation.style import Style
 from grader.mutation.trees import (
-    Element,
+    Style,
     add_joint,
     end,
     fresh,
-    link_named,
     move_frame,
     numbers_of,
     origin,
@@ -29,6 +27,7 @@ from grader.mutation.trees import (
     written,
 )
 from grader.robot.transforms import IDENTITY
+from grader.xml.parsing import Element
 
 Step = Callable[[st.DrawFn, Element], None]
 
@@ -42,6 +41,11 @@ _DECLARATIONS = (
     "<!-- first a comment -->",
 )
 _FLIP = origin((0, 0, 0), (pi, 0, 0))
+
+
+def link_named(tree: Element, name: str) -> Element | None:
+    """Return the link of this name."""
+    return next((link for link in tree.iterchildren("link") if link.get("name") == name), None)
 
 
 def parse(data: bytes) -> Element:

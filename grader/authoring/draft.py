@@ -8,16 +8,13 @@ from typing import NamedTuple
 
 from grader.authoring.bodies import body_facts
 from grader.authoring.elements import element_facts
-from grader.authoring.fact import Fact, Omission, why_invalid
+from grader.authoring.fact import Fact, Omission, Solution, why_invalid
 from grader.authoring.ignored import ignored_mutants
-from grader.authoring.joints import joint_facts
+from grader.authoring.joints import joint_facts, loading_facts, motion_facts, tree_facts
 from grader.authoring.oddities import Doubts, oddities
 from grader.authoring.package import package_facts
-from grader.authoring.rubric_text import Head, criterion_ids, rubric_text
+from grader.authoring.rubric_text import Head, criterion_ids, literal, rubric_text
 from grader.authoring.shapes import shape_facts
-from grader.authoring.solution import Solution
-from grader.authoring.toml_text import literal
-from grader.authoring.whole import loading_facts, motion_facts, tree_facts
 from grader.checks.outcome import Outcome
 from grader.errors import InputError
 from grader.grading.grade import grade

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.authoring.solution import Solution
+from grader.authoring.fact import Solution
 from grader.package.package import Package
 from grader.submission.urdf import Read
 

@@ -5,8 +5,7 @@ from contextlib import suppress
 from itertools import chain, combinations
 
 from grader.authoring.elements import texts_in
-from grader.authoring.fact import Fact, shown
-from grader.authoring.solution import Solution
+from grader.authoring.fact import Fact, Solution, shown
 from grader.checks.outcome import Outcome
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import is_of_one_machine, one_machine_only

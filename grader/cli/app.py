@@ -3,7 +3,7 @@
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import nullcontext, redirect_stderr, suppress
 from importlib import import_module
 from io import StringIO
@@ -14,19 +14,20 @@ from typing import Annotated, Any
 import typer
 
 from grader import __version__
-from grader.cli.interrupts import quiet_interrupts
+from grader.cli.ending import outer_limits, quiet_interrupts
 from grader.cli.output import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
 from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.exit_codes import ExitCode
-from grader.usecases.limits import outer_limits
 from grader.usecases.writing import write_stdout
 
-# In the order of the help. Each is a function, or a group of commands, in the module of its name.
-COMMANDS = (
-    "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "gradebook", "rubric",
-)  # fmt: skip
+# In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
+COMMANDS = {
+    "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "review": "review", "export": "export",
+    "diff": "gradebook", "stats": "gradebook", "bundle": "rubric", "explain": "explain", "schema": "explain",
+    "gradebook": "gradebook", "rubric": "rubric",
+}  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
 _COMPLETION = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")
@@ -60,7 +61,7 @@ def _root(
     """
 
 
-def make_app(names: Sequence[str]) -> typer.Typer:
+def make_app(names: Collection[str]) -> typer.Typer:
     """Return the command line with these commands: importing all of them takes longer than to grade a URDF."""
     app = typer.Typer(
         name="grader",
@@ -72,7 +73,7 @@ def make_app(names: Sequence[str]) -> typer.Typer:
     )
     app.callback()(_root if len(names) > 1 else lambda: None)  # the options of `grader` itself precede the command
     for name in names:
-        command = getattr(import_module(f"grader.cli.{name}"), name)
+        command = getattr(import_module(f"grader.cli.{COMMANDS[name]}"), name)
         if isinstance(command, typer.Typer):
             app.add_typer(command, name=name)
         else:

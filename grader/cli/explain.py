@@ -1,6 +1,6 @@
-"""grader explain: a problem code, a check or a criterion."""
+"""grader explain and grader schema: what codes and checks mean, and what the files of the grader hold."""
 
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -28,3 +28,26 @@ def explain(
     from grader.report.rubrics import explanation
 
     return explanation(name, load_rubric(rubric))
+
+
+SchemaName = Literal["report", "rubric", "inspect", "class", "diff", "rubric-test"]
+
+
+def schema(
+    name: Annotated[SchemaName, typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print.")],
+) -> str:
+    """Print a JSON Schema of the grader's input or output.
+
+    These are reports, rubrics, inspections, classes (batch, stats, export json), diffs and rubric
+    tests.
+
+    Examples:
+
+      grader schema report
+
+      grader schema rubric > rubric.schema.json
+    """
+    from grader.report.json_data import to_json
+    from grader.report.schemas import json_schema
+
+    return to_json(json_schema(name))

@@ -1,15 +1,90 @@
-"""grader gradebook: merge the marks of two gradebooks."""
+"""grader stats, grader diff and grader gradebook: what a gradebook holds, whose grade changed between two runs, and the marks of two."""
 
 import io
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.output import TERMINAL
+from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
+from grader.cli.output import TERMINAL, screen, warn
+from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
+
+_BY = "Compare the sections, or the students of each marker."
+
+
+def stats(
+    gradebook: GradebookOption,
+    by: Annotated[Literal["section", "marker"] | None, typer.Option(metavar="section|marker", help=_BY)] = None,
+    due: DueOption = None,
+    verbose: ClassVerboseOption = False,
+    output_format: FormatOption = OutputFormat.TERMINAL,
+) -> str:
+    """Show statistics of a class: grades, criteria, mistakes, fixes.
+
+    Manual marks are included, late penalties are not; only the totals of the students in --format json include them. The share of
+    a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
+    rest of the grade. An edit is shown with the number of students who need it: it was tried on one of their robots.
+
+    With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions, and the
+    criteria that differ most. JSON has both.
+
+    Examples:
+
+      grader stats --gradebook lab6.db
+
+      grader stats --gradebook lab6.db --format json
+
+      grader stats --gradebook lab6.db --by section
+
+    Recipes:
+
+      Who still needs attention, by name: --verbose.
+
+      A criterion that most students fail: a low share, and the common mistakes.
+
+      A criterion that is wrong: "Regrade after a rubric fix" in docs/grade-a-class.md.
+
+      Prepare the next lecture: see the edits that would fix the most.
+    """
+    from grader.cli.progress import progress_display
+    from grader.usecases.class_summary import class_statistics
+
+    return class_statistics(gradebook, by, due, output_format, screen(), progress_display, warn, verbose=verbose)
+
+
+def diff(
+    gradebook: Annotated[Path, typer.Argument(metavar="GRADEBOOK", help="A gradebook.")],
+    other: Annotated[Path | None, typer.Argument(metavar="[GRADEBOOK]", help="A newer gradebook.")] = None,
+    before: Annotated[int | None, typer.Option("--from", metavar="RUN", help="The number of the older run.")] = None,
+    after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
+    output_format: FormatOption = OutputFormat.TERMINAL,
+) -> str:
+    """Show whose grade changed between two runs, and why.
+
+    Compares the last two finished runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
+    manual marks; marks that were given after the older run count as changes. If the rubric changed, the output says what
+    changed for the criteria concerned. Grades include the late penalty. Runs count from 1.
+
+    Examples:
+
+      grader diff lab6.db
+
+      grader diff before.db after.db --format json
+
+    Recipes:
+
+      What a rubric fix changed: rerun `grader batch`, then compare the last two runs.
+
+      What a resubmission or a manual mark changed: the same command; each student has the reason.
+    """
+    from grader.usecases.two_gradebooks import diff as compare
+
+    return compare(gradebook, other, before, after, output_format, screen())
+
 
 _HELP = """Merge the manual marks of two gradebooks.
 
@@ -56,7 +131,7 @@ def merge(
 
       grader gradebook merge lab6.db lab6-lee.db --keep first
     """
-    from grader.usecases.merge_gradebooks import merge_gradebooks
+    from grader.usecases.two_gradebooks import merge_gradebooks
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding

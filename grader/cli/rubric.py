@@ -1,14 +1,14 @@
-"""grader rubric: list, show, write, check and test rubrics."""
+"""grader rubric and grader bundle: list, show, write, check and test rubrics, and pack one for a grading platform."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import FormatOption, rubric_ids
+from grader.cli.options import FormatOption, RubricOption, rubric_ids
 from grader.cli.output import screen, warn
 from grader.report.formats import OutputFormat
-from grader.usecases import rubrics
+from grader.usecases import DEFAULT_RUBRIC, rubrics
 from grader.usecases.writing import write_stdout
 
 _HELP = """List, show, write, check and test rubrics, and list the checks.
@@ -102,7 +102,7 @@ def new_rubric(
 
       grader rubric new my_lab.toml --from solution.urdf --force
     """
-    from grader.usecases.new_rubric import write_rubric
+    from grader.usecases.rubric_making import write_rubric
 
     return write_rubric(file, reference, warn, force=force)
 
@@ -147,9 +147,29 @@ def run_test(
       grader rubric test my_lab.toml samples --fail-under 100%
     """
     from grader.cli.progress import progress_display
-    from grader.usecases.rubric_test import TestRequest, test
+    from grader.usecases.rubric_making import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
     text, code = test(request, screen(), warn, progress_display)
     write_stdout(text)
     return code
+
+
+def bundle(
+    platform: Annotated[Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")],
+    output: Annotated[Path, typer.Argument(metavar="OUT.zip", help="The file to write.")],
+    rubric: RubricOption = DEFAULT_RUBRIC,
+) -> str:
+    """Write an autograder zip for Gradescope.
+
+    Upload it to Gradescope: it installs the grader there and grades submissions against the rubric.
+
+    Examples:
+
+      grader bundle gradescope autograder.zip
+
+      grader bundle gradescope autograder.zip --rubric my_lab.toml
+    """
+    from grader.usecases.bundle import write_bundle
+
+    return write_bundle(platform, output, rubric)

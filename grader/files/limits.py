@@ -1,6 +1,28 @@
-"""The limits for reading untrusted files, and the messages if one is exceeded."""
+"""What is not read of a submission: the parts that no student wrote, and more than the limits for untrusted files, with the messages."""
 
 from grader.errors import FileError, InputError
+
+BUILD_FOLDERS = frozenset({"build", "install", "log"})
+# And those with a pyvenv.cfg.
+IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
+# The ends of the names of files that a build copies, and that a submission may lack.
+_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
+_LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
+
+
+def ignored_part(path: str) -> str | None:
+    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
+    *folders, name = path.split("/")
+    for index, folder in enumerate(folders):
+        if folder in IGNORED_FOLDERS or folder.startswith("."):
+            return "/".join(folders[: index + 1])
+    return path if name.startswith(".") or name in _LITTER else None
+
+
+def is_generated(path: str) -> bool:
+    """Return whether a path is that of a file of a package which a build has copied."""
+    return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
+
 
 MAX_FILES = 50_000  # and as many folders, in a submission
 MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored

@@ -1,17 +1,76 @@
-"""Equivalents of a reference: the same robot in another file. Each must keep full marks."""
+"""Equivalents of a reference: the same robot in another file, also rewritten as xacro. Each must keep full marks."""
 
+import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from random import Random
 from typing import Any, NamedTuple
 
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
-from grader.mutation import as_xacro, rewritings
-from grader.mutation.references import names_in
+from grader.mutation import rewritings
+from grader.mutation.elements import Element as TextElement
+from grader.mutation.elements import elements
 from grader.mutation.rewritings import Step, Surroundings, words_of_foreign
-from grader.mutation.style import Style
-from grader.mutation.trees import Element, copied
+from grader.mutation.trees import Style, copied
+from grader.mutation.trial import names_in
 from grader.robot.model import Robot
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import PARTS
+
+_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+_NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
+_MAX_PROPERTIES = 8
+_MAX_DIGITS = 12  # that survive the conversion to a float and back
+
+
+def with_properties(random: Random, text: str) -> str | None:
+    """Return the text with properties for numbers that occur more than once; None where there are none."""
+    spans = [
+        (found.start() + attribute.value[0], found.end() + attribute.value[0])
+        for element in elements(text)
+        if not element.is_foreign
+        for attribute in element.attributes
+        if PARTS.get(attribute.name)
+        for found in _NUMBER.finditer(text[slice(*attribute.value)])
+        if len(found[0]) <= _MAX_DIGITS
+    ]
+    counts = Counter(text[start:end] for start, end in spans)
+    repeated = [number for number, count in counts.items() if count > 1]
+    if not repeated or "$" in text:
+        return None
+    chosen = random.sample(repeated, min(len(repeated), _MAX_PROPERTIES))
+    names = {number: f"number_{index}" for index, number in enumerate(chosen)}
+    for start, end in sorted(spans, reverse=True):
+        if text[start:end] in names:
+            text = f"{text[:start]}${{{names[text[start:end]]}}}{text[end:]}"
+    properties = "".join(f'\n  <xacro:property name="{name}" value="{number}"/>' for number, name in names.items())
+    return _inserted(text, properties)
+
+
+def with_macro(random: Random, text: str) -> str | None:
+    """Return the text with a macro for one of its links; None where it has none."""
+    links = [found for found in elements(text) if found.tag == "link" and found.parent == 0 and _name(text, found)]
+    if not links or "$" in text:
+        return None
+    link = random.choice(links)
+    start, end = next(attribute.value for attribute in link.attributes if attribute.name == "name")
+    body = f"{text[link.start : start]}${{name}}{text[end : link.end]}"
+    call = f'<xacro:part name="{text[start:end]}"/>'
+    macro = f'\n  <xacro:macro name="part" params="name">\n  {body}\n  </xacro:macro>'
+    return _inserted(text[: link.start] + call + text[link.end :], macro)
+
+
+def _name(text: str, link: TextElement) -> str:
+    return next((text[slice(*found.value)] for found in link.attributes if found.name == "name"), "")
+
+
+def _inserted(text: str, content: str) -> str:
+    """Return the text with content at the start of its root, which declares the namespace of xacro."""
+    root = elements(text)[0]
+    end = root.head_end - 1
+    return f"{text[:end]}{_NAMESPACE}{text[end : root.head_end]}{content}{text[root.head_end :]}"
+
 
 _STEPS: Mapping[str, Step] = {
     "order of elements": rewritings.shuffle,
@@ -23,8 +82,8 @@ _STEPS: Mapping[str, Step] = {
     "joints renamed": rewritings.rename_joints,
 }
 _AS_XACRO: Mapping[str, Callable[[Random, str], str | None]] = {
-    "xacro properties": as_xacro.with_properties,
-    "xacro macro": as_xacro.with_macro,
+    "xacro properties": with_properties,
+    "xacro macro": with_macro,
 }
 _SPELLING, _LAYOUT, SEVERAL = "spelling of numbers", "layout of the text", "several at once"
 FAMILIES = (*_STEPS, _SPELLING, _LAYOUT, *_AS_XACRO, SEVERAL)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from grader.mutation.elements import FOREIGN
 from grader.mutation.trees import (
-    Element,
     add_joint,
     add_link,
     end,
@@ -24,6 +23,7 @@ from grader.mutation.trees import (
     written,
 )
 from grader.robot.transforms import Transform, unit
+from grader.xml.parsing import Element
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _SLIDING = "prismatic"

@@ -6,7 +6,7 @@ from grader.checks.registry import Check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
-from grader.mutation.references import texts
+from grader.mutation.trial import texts
 from grader.robot.model import Robot
 from grader.text import enumerated
 

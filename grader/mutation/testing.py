@@ -1,16 +1,79 @@
-"""Test a rubric on its own reference solution."""
+"""Test a rubric on its own reference solution, whose equivalents must lose nothing."""
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
 from itertools import count
 
 from grader.errors import InputError
+from grader.grading.deciding import decide
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric
-from grader.mutation.equivalent_test import tested_equivalents
+from grader.mutation.equivalents import FAMILIES, UNASKED, Equivalent, Equivalents, forbidden
 from grader.mutation.mutation_test import MutationTest
-from grader.mutation.result import RubricTest
+from grader.mutation.result import EquivalentResults, Loss, RubricTest, hunk
 from grader.mutation.samples import Sample, tested_samples
 from grader.mutation.trial import Trial
+from grader.submission.editing import with_urdf
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+
+
+def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
+    """Return which rewritings of the reference lose points."""
+    urdf = trial.reference.urdf
+    if not isinstance(urdf, Read) or urdf.loaded.verdict != "clean" or urdf.reading.root is None:
+        return EquivalentResults({}, dict.fromkeys(FAMILIES, "ROS 2 does not load the reference without problems"))
+    assert urdf.reading.robot is not None
+    tried: Counter[str] = Counter()
+    losses: list[Loss] = []
+    for equivalent in Equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed).all():
+        submission = _submission(trial.reference, urdf, equivalent)
+        if _has_forbidden_problem(trial, submission):
+            continue
+        tried[equivalent.family] += 1
+        lost = dict(_lost(trial, submission))
+        if lost:
+            diff = hunk(urdf.path, equivalent.before, equivalent.text)
+            losses.append(Loss(equivalent.name, lost, diff))
+    reasons = {name: f"{criterion} forbids it" for name, criterion in forbidden(trial.rubric).items()}
+    unused = {name: reasons.get(name, "there is nothing to change") for name in FAMILIES if name not in tried}
+    return EquivalentResults(dict(tried), unused, tuple(losses))
+
+
+def _submission(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own, by its name."""
+    data = equivalent.text.encode()
+    if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
+        return with_urdf(reference, {urdf.path: data})
+    name = urdf.path.rpartition("/")[2]
+    return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
+
+
+def _lost(trial: Trial, submission: Submission) -> Iterator[tuple[str, str]]:
+    for result in decide(trial.rubric, submission, _asked(trial, submission)):
+        if trial.is_lost(result):
+            yield result.criterion.id, result.outcome.message
+
+
+def _asked(trial: Trial, submission: Submission) -> Collection[str]:
+    """Return the criteria that depend on the robot; for a URDF on its own, those that need nothing else."""
+    checks = {name: trial.expected[name].criterion.check for name in trial.tested}
+    others = ("package", "submission") if submission.is_single else ("package",)
+    return [name for name, check in checks.items() if check.subject not in others and check.name not in UNASKED]
+
+
+def _has_forbidden_problem(trial: Trial, submission: Submission) -> bool:
+    """Return whether the reader reports a problem that a criterion forbids, which the reference does not have."""
+    codes = {
+        code
+        for name in trial.tested
+        if trial.expected[name].criterion.check.name == "without_problems"
+        for code in trial.expected[name].criterion.arguments.get("problems", ())
+    }
+    urdf = submission.urdf
+    return isinstance(urdf, Read) and any(problem.code in codes for problem in urdf.problems)
+
 
 MAX_MUTANTS = 500  # by default
 Progress = Callable[[int, int], None]  # how many submissions of how many are graded

@@ -9,14 +9,22 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.files.ignore_rules import ignored_part
+from grader.files.limits import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import EvaluationStopped
-from grader.static_python.inspection import MAX_PATH, PACKAGE_FOLDER, names_package_folder
 from grader.static_python.parse import Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
+from grader.static_python.values import (
+    MAX_PATH,
+    PACKAGE_FOLDER,
+    UNKNOWN_KEYS,
+    Call,
+    Unknown,
+    Value,
+    names_package_folder,
+    unknown_in,
+)
 from grader.text import enumerated
 
 # Other arguments that install files and are not evaluated.

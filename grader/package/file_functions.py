@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePosixPath
 
-from grader.files.ignore_rules import ignored_part
+from grader.files.limits import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
-from grader.static_python.inspection import distinct, items_of, path_text
 from grader.static_python.operators import WalkFolders
 from grader.static_python.parse import Position
-from grader.static_python.values import Call, Unknown, Value, unknown_in
+from grader.static_python.values import Call, Unknown, Value, distinct, items_of, path_text, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"

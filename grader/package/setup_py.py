@@ -10,10 +10,9 @@ from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.source import Location, Source
 from grader.static_python.evaluation import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
-from grader.static_python.inspection import PACKAGE_FOLDER
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
-from grader.static_python.values import Unknown
+from grader.static_python.values import PACKAGE_FOLDER, Unknown
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")

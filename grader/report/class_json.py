@@ -3,13 +3,12 @@
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.gradebook.summary import ClassSummary
+from grader.classroom.gradebook.summary import Agreement, ClassSummary
 from grader.report.as_json import kinds
 from grader.report.json_data import edit, exact, rounded, to_json
 

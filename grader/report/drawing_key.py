@@ -1,16 +1,40 @@
-"""The words of a drawing: the key of its signs with the scale bar, and the failed criteria that its numbers refer to."""
+"""The words of a drawing: the key of its signs, the failed criteria that it marks, and the description of the picture for screen readers."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
-from grader.drawing.picture import Callout, Picture
+from grader.drawing.picture import Callout, Picture, picture_of
 from grader.drawing.sheet import WIDTH, Place, Sheet
-from grader.report.callouts import heading
+from grader.grading.report import Report
+from grader.report.content import points_of
 from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
-from grader.report.svg_elements import circle, put, segments
-from grader.report.svg_text import put_lines
-from grader.text import counted_points
+from grader.report.svg_elements import circle, put, put_lines, segments
+from grader.text import counted_points, enumerated, printable
+
+_NOWHERE = "not in the picture"
+
+
+def drawn(report: Report) -> str:
+    """Return a description of the drawing of a report; empty if there is no robot."""
+    picture = picture_of(report)
+    return f"Top, side and front view of the robot. {description(picture)}".strip() if picture is not None else ""
+
+
+def heading(callout: Callout) -> str:
+    """Return the link of a callout, the lost points, and a remark if it is not in the picture."""
+    words = f"{callout.link or 'The robot'}: {points_of(callout.results)} lost"
+    return words if callout.point is not None else f"{words} ({_NOWHERE})"
+
+
+def description(picture: Picture) -> str:
+    """Return a description of the callouts of a picture, and of what it does not show."""
+    called = [
+        f"{callout.number}: {heading(callout)}, {enumerated([result.criterion.id for result in callout.results])}."
+        for callout in picture.callouts
+    ]
+    return printable(" ".join((*called, *picture.scene.missing)))
+
 
 _ROW = 18.0
 _SIGN = 34.0  # pixels left of the text of a row

@@ -4,11 +4,10 @@ from collections.abc import Iterable, Iterator
 from math import hypot
 from typing import Any
 
+from grader.drawing.curves import AXES
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.projection import seen_in
-from grader.drawing.sheet import Cell, Place
-from grader.drawing.views import AXES
+from grader.drawing.sheet import Cell, Place, seen_in
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 

@@ -10,8 +10,7 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import SYMBOLS, Details, location_text, result_details, sentence, status_of
-from grader.report.diff import diff_lines
+from grader.report.details import SYMBOLS, Details, diff_lines, location_text, result_details, sentence, status_of
 from grader.report.order import Failure, hint_of
 from grader.text import printable
 

@@ -36,12 +36,12 @@ class Format(StrEnum):
     JSON = "json", "json", "as_json:render_json"
     JUNIT = "junit", "xml", "junit:render_junit", "base"
     SARIF = "sarif", "sarif", "sarif:render_sarif", "base"
-    GITHUB = "github", "github.txt", "github:render_github", "base"
-    GRADESCOPE = "gradescope", "gradescope.json", "gradescope:render_gradescope"
-    CLASSROOM50 = "classroom50", "classroom50.json", "classroom50:render_classroom50", "identity"
+    GITHUB = "github", "github.txt", "annotations:render_github", "base"
+    GRADESCOPE = "gradescope", "gradescope.json", "platforms:render_gradescope"
+    CLASSROOM50 = "classroom50", "classroom50.json", "platforms:render_classroom50", "identity"
     HTML = "html", "html", "pages.student:render_html"
-    CODECLIMATE = "codeclimate", "codeclimate.json", "codeclimate:render_codeclimate", "base"
-    SVG = "svg", "svg", "svg:render_svg"
+    CODECLIMATE = "codeclimate", "codeclimate.json", "annotations:render_codeclimate", "base"
+    SVG = "svg", "svg", "drawing:render_svg"
 
     def __new__(cls, name: str, ending: str = "", function: str = "", needs: Need = "") -> Self:
         """Return a member with its row; the defaults are for a look-up by name alone."""
@@ -59,7 +59,7 @@ class InspectFormat(StrEnum):
 
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
-    SVG = "svg", "svg:inspection_svg"
+    SVG = "svg", "drawing:inspection_svg"
     HTML = "html", "pages.inspection:inspection_html"
 
     def __new__(cls, name: str, function: str = "", needs: Need = "") -> Self:
@@ -120,7 +120,7 @@ def needed(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple
 
         return (base or Base(),)
     if kind.needs == "identity":
-        from grader.report.classroom50 import identity_from
+        from grader.report.platforms import identity_from
 
         return (identity_from(os.environ),)
     if kind.needs == "picture":

@@ -8,12 +8,10 @@ from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, Details, location_text, result_details, status_of
-from grader.report.diff import diff_lines
-from grader.report.evidence import evidence
+from grader.report.details import SYMBOLS, Details, diff_lines, location_text, result_details, status_of
 from grader.report.markdown_text import code, escaped, fenced, folded
 from grader.report.order import Group, alike, groups, has_passed, in_order
-from grader.report.plain_text import excerpt_lines, problem_line, provenance
+from grader.report.plain_text import evidence, excerpt_lines, problem_line, provenance
 from grader.text import enumerated, printable
 
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
@@ -63,7 +61,7 @@ def _picture(report: Report, address: str) -> str:
     """Return the image of the robot's drawing with a description; empty without a robot."""
     if not address:
         return ""
-    from grader.report.callouts import drawn  # late: few reports show a picture
+    from grader.report.drawing_key import drawn  # late: few reports show a picture
 
     shown = drawn(report)
     return f"![{escaped(shown)}]({address})" if shown else ""

@@ -12,8 +12,8 @@ from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped
 from grader.report.details import group_status, status_of
 from grader.report.entries import INDENT, Page, mark
-from grader.report.evidence import evidence, evidence_line
 from grader.report.order import Group, alike, groups
+from grader.report.plain_text import evidence, evidence_line
 from grader.text import counted, first_lines, printable
 
 _MAX_LISTED, _MAX_KINDS = 12, 3

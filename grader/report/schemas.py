@@ -3,10 +3,11 @@
 from typing import Any
 
 from grader.grading.schema import rubric_schema
-from grader.report.class_schemas import CLASS_SCHEMA, DIFF_SCHEMA
-from grader.report.schema_types import (
+from grader.report.class_schemas import (
     ADJUSTMENT,
+    CLASS_SCHEMA,
     COUNT,
+    DIFF_SCHEMA,
     EDIT,
     FLAG,
     GRADER,

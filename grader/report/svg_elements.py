@@ -1,12 +1,14 @@
-"""SVG elements: their looks in light and dark mode, curves as path data, escaped text.
+"""SVG elements: their looks in light and dark mode, curves as path data, escaped text and its estimated width.
 
 The looks for light mode and print are presentation attributes, which need no style sheet; a style sheet changes the colours of
 classes in dark mode.
 """
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from math import atan2, degrees, hypot, tau
 from typing import Any
+from unicodedata import east_asian_width
 
 from lxml import etree
 
@@ -153,3 +155,59 @@ def circle(centre: Place, radius: float) -> str:
     """Return a circle on the sheet as path data."""
     half = f"{number(radius)} {number(radius)} 0 1 1"
     return f"M{number(centre[0] - radius)} {number(centre[1])}a{half} {number(2 * radius)} 0a{half} {number(-2 * radius)} 0"
+
+
+SIZE = 12.0  # pixels
+LINE = 15.0  # from one line to the next
+_NARROW, _WIDE = frozenset(" .,:;'|!ijlt()[]fr-"), frozenset("mwMW@%")
+_MAX_LINES = 3
+_MAX_LENGTH = 1000  # characters: more do not fit into three lines
+
+
+def put_lines(group: Any, left: float, top: float, width: float, text: str, most: int = _MAX_LINES) -> float:
+    """Add a text in lines, the first of them at `top`; return the position of the next line."""
+    lines = wrapped(text, width, most)
+    paragraph = put(group, "text")
+    for number, line in enumerate(lines):
+        put(paragraph, "tspan", "", {"x": left, "y": top + number * LINE}, line)
+    return top + len(lines) * LINE
+
+
+def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
+    """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
+    lines: list[str] = []
+    line = ""
+    for word in printable(text[:_MAX_LENGTH]).split():
+        longer = f"{line} {word}" if line else word
+        if line and text_width(longer) > width:
+            if len(lines) == most - 1:
+                return [*lines, _shortened(line, width)]
+            lines.append(line)
+            longer = word
+        line = cut(longer, width)
+    return [*lines, line] if line else lines
+
+
+def cut(text: str, width: float) -> str:
+    """Return a text, cut with "..." if it is wider."""
+    return text if text_width(text) <= width else _shortened(text, width)
+
+
+def _shortened(text: str, width: float) -> str:
+    while text and text_width(text) > width - SIZE:
+        text = text[:-1]
+    return f"{text.rstrip(' .,;:')}..."
+
+
+def text_width(text: str) -> float:
+    """Return the estimated width of a text in DejaVu Sans, which is wider than most fonts."""
+    return SIZE * sum(map(_letter_width, text))
+
+
+@lru_cache(maxsize=1024)
+def _letter_width(letter: str) -> float:
+    if letter in _NARROW:
+        return 0.38
+    if east_asian_width(letter) in "WF" or letter in _WIDE:
+        return 1.0
+    return 0.72 if letter.isupper() else 0.62

@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
 from grader.static_python.closed_functions import call
-from grader.static_python.closed_methods import attribute
-from grader.static_python.closed_operators import compare, operate, subscript
+from grader.static_python.closed_operators import attribute, compare, operate, subscript
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, items_of, run
 
 _MAX_LENGTH = 4_000  # characters of an expression

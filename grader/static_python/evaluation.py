@@ -11,9 +11,8 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from grader.static_python.imports import USUAL_NAMES
-from grader.static_python.inspection import MAX_ITEMS
 from grader.static_python.parse import Position, position_of
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Scope, Unknown, Value
+from grader.static_python.values import MAX_ITEMS, UNKNOWN_KEYS, Call, Function, QualifiedName, Scope, Unknown, Value
 
 
 class PythonError(NamedTuple):

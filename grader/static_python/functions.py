@@ -7,19 +7,22 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.inspection import (
+from grader.static_python.methods import in_order
+from grader.static_python.operators import extend
+from grader.static_python.values import (
     MAX_ITEMS,
     MAX_PATH,
+    Call,
+    Unknown,
+    Value,
     as_text,
     distinct,
     items_of,
     names_package_folder,
     path_text,
     truth,
+    unknown_in,
 )
-from grader.static_python.methods import in_order
-from grader.static_python.operators import extend
-from grader.static_python.values import Call, Unknown, Value, unknown_in
 
 _MAX_NUMBER = 10**9
 

@@ -57,6 +57,15 @@ USUAL_NAMES = {
     "xacro": "xacro",
     **{name: f"{module}.{name}" for module, names in _LAUNCH_NAMES.items() for name in names},
 }
+# The attributes of modules whose values are known.
+CONSTANTS = {
+    "os.sep": "/",
+    "os.path.sep": "/",
+    "os.linesep": "\n",
+    "os.curdir": ".",
+    "os.pardir": "..",
+    "os.name": "posix",
+}
 
 
 def import_error(module: str, name: str) -> str | None:

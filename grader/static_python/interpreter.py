@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
-from grader.static_python.inspection import items_of, truth
 from grader.static_python.parse import Code, Position, position_of
 from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import Call, Function, Scope, Unknown, Value
+from grader.static_python.values import Call, Function, Scope, Unknown, Value, items_of, truth
 
 _CONDITION = "a condition is known only at run time"
 

@@ -6,11 +6,23 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.imports import attribute_error
-from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, PACKAGE_FOLDER, as_text, names_package_folder
+from grader.static_python.imports import CONSTANTS, attribute_error
 from grader.static_python.operators import WalkFolders, extend, forget, join_path
 from grader.static_python.parse import Position
-from grader.static_python.values import UNKNOWN_KEYS, BoundMethod, Call, QualifiedName, Unknown, Value, unknown_in
+from grader.static_python.values import (
+    MAX_ITEMS,
+    MAX_TEXT,
+    PACKAGE_FOLDER,
+    UNKNOWN_KEYS,
+    BoundMethod,
+    Call,
+    QualifiedName,
+    Unknown,
+    Value,
+    as_text,
+    names_package_folder,
+    unknown_in,
+)
 
 _MAX_PARTS = 100  # of a path
 _MAX_NAME = 255  # characters of a file name
@@ -20,14 +32,6 @@ _TEXT_METHODS = frozenset(
      "endswith", "split", "rsplit", "splitlines", "partition", "rpartition", "count", "find", "isdigit"}
 )  # fmt: skip
 _LIST_METHODS = ("reverse", "clear", "count", "index", "remove", "pop")
-_CONSTANTS = {
-    "os.sep": "/",
-    "os.path.sep": "/",
-    "os.linesep": "\n",
-    "os.curdir": ".",
-    "os.pardir": "..",
-    "os.name": "posix",
-}
 
 
 def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> Value:
@@ -46,7 +50,7 @@ def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> 
             error = attribute_error(module, name) if full not in evaluation.functions else None
             if error is not None:
                 evaluation.error(error, at, AttributeError)
-            return _CONSTANTS.get(full, QualifiedName(full))
+            return CONSTANTS.get(full, QualifiedName(full))
         case PurePosixPath() if name in ("name", "stem", "suffix", "parent", "parents", "parts"):
             if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(owner, name)):
                 return Unknown("the name of the package's folder is not known", at)

@@ -8,9 +8,21 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, EvaluationStopped
-from grader.static_python.inspection import MAX_ITEMS, MAX_PATH, MAX_TEXT, as_text, items_of, names_package_folder, size
 from grader.static_python.parse import Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, QualifiedName, Unknown, Value
+from grader.static_python.values import (
+    MAX_ITEMS,
+    MAX_PATH,
+    MAX_TEXT,
+    UNKNOWN_KEYS,
+    Call,
+    QualifiedName,
+    Unknown,
+    Value,
+    as_text,
+    items_of,
+    names_package_folder,
+    size,
+)
 
 _TYPE_NAMES: dict[type, str] = {
     str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",

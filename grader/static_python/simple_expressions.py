@@ -5,11 +5,11 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.inspection import MAX_TEXT, as_text, size, truth
 from grader.static_python.methods import attribute, call_method
 from grader.static_python.operators import compare, extend, operate, subscript, type_name
 from grader.static_python.parse import Position, position_of
 from grader.static_python.values import (
+    MAX_TEXT,
     UNKNOWN_KEYS,
     BoundMethod,
     Call,
@@ -18,6 +18,9 @@ from grader.static_python.values import (
     Scope,
     Unknown,
     Value,
+    as_text,
+    size,
+    truth,
     unknown_in,
 )
 

@@ -1,4 +1,6 @@
-"""The package of a submission that is graded, and the reasons against the others."""
+"""The package of a submission that is graded, and the reasons against the others and against files kept of earlier work."""
+
+import re
 
 from grader.errors import InputError
 from grader.files.tree import Tree
@@ -6,8 +8,24 @@ from grader.names import closest, folded
 from grader.package.manifest import Manifest, read_manifest
 from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
 from grader.source import Location, Source
-from grader.submission.backups import BACKUP, is_backup
 from grader.text import enumerated, quoted
+
+BACKUP = "it is named like a backup"
+
+_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = re.compile(r"[^\W\d_]+")
+_WORDS = frozenset(
+    {
+        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived", "previous", "prev",
+        "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
+    }
+)  # fmt: skip
+
+
+def is_backup(path: str) -> bool:
+    """Return whether a file, or a folder around it, is named like a backup: old_ws, my_robot - Copy, my_robot.urdf.bak."""
+    return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
+
 
 _MAX_PACKAGES = 40
 _MAX_NAMED = 5  # packages in a message

@@ -6,8 +6,7 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
-from grader.submission.backups import BACKUP, is_backup
-from grader.submission.packages import DEEPER, LATER
+from grader.submission.packages import BACKUP, DEEPER, LATER, is_backup
 from grader.submission.robots import RobotFile, find_robots, parts_of
 from grader.submission.urdf import OtherCandidate
 

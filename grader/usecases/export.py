@@ -21,8 +21,7 @@ from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, 
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.feedback_zip import feedback_zip
-from grader.usecases.grades_csv import grades_csv
-from grader.usecases.lms_files import FILLERS, fill_lms_file, preflight_lines
+from grader.usecases.grade_files import FILLERS, fill_lms_file, grades_csv, preflight_lines
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8

@@ -30,7 +30,7 @@ def publish_report(
 
     Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the report.
     """
-    from grader.report.github import render_github
+    from grader.report.annotations import render_github
     from grader.report.markdown import cut_markdown
 
     if annotate is not None:
@@ -40,7 +40,7 @@ def publish_report(
 
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
-    from grader.report.github import command
+    from grader.report.annotations import command
     from grader.report.markdown_text import escaped
 
     lines = [printable(line) for line in reason.splitlines()]

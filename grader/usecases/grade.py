@@ -98,7 +98,7 @@ def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -
 def _arguments(request: GradeRequest) -> dict[str, str]:
     if not request.arguments:
         return {}
-    from grader.usecases.arguments import read_arguments  # late: most URDFs are no xacro
+    from grader.usecases.saves import read_arguments  # late: most URDFs are no xacro
 
     return read_arguments(request.arguments)
 

@@ -25,7 +25,7 @@ from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_cla
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
 from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
 from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
-from grader.usecases.grades_csv import grades_csv
+from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
 

@@ -12,7 +12,7 @@ from grader.submission.opening import open_submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
 from grader.usecases import Warn
-from grader.usecases.arguments import read_arguments
+from grader.usecases.saves import read_arguments
 
 _MAX_NAMED = 20
 

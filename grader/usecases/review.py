@@ -9,7 +9,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.errors import InputError
 from grader.report.review import mark_text, render_item
 from grader.report.screen import draw

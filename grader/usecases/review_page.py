@@ -1,22 +1,27 @@
-"""Grade what needs manual grading on a page in the browser, one item at a time."""
+"""Grade what needs manual grading on a page in the browser, one item at a time, which a server on this machine serves."""
 
 import json
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
+from pathlib import Path
 from typing import Any
 
-from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
-from grader.classroom.review.pictures import item_pictures
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.documents.pictures import NotShown, Picture
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
-from grader.usecases.local_server import Request, Response
+from grader.usecases import Terminal
+from grader.usecases.local_server import LocalServer, Request, Response
+from grader.usecases.review import NOTHING, summary
+from grader.usecases.review_pictures import item_pictures
 
 Album = tuple[Picture | NotShown, ...]
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
@@ -74,8 +79,8 @@ class ReviewPage:
 
     def _picture(self, which: str) -> Response:
         pictures = self._album(self.session.position, self.session.current_item()).result()
-        found = dict(enumerate(map(_shown, pictures), 1)).get(int(which) if _is_number(which) else 0)
-        if found is None:
+        found = dict(enumerate(pictures, 1)).get(int(which) if _is_number(which) else 0)
+        if not isinstance(found, Picture):
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
         return Response(found.data, found.kind.media_type)
 
@@ -161,13 +166,54 @@ def _is_number(text: str) -> bool:
     return text.isascii() and text.isdigit() and len(text) < 9
 
 
-def _shown(found: Picture | NotShown) -> Picture | None:
-    return found if isinstance(found, Picture) else None
-
-
 def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> Response:
     return Response(page.encode("utf-8", "backslashreplace"), _HTML, status, policy=_PAGE_POLICY)
 
 
 def _json(answer: Mapping[str, Any], status: HTTPStatus = HTTPStatus.OK) -> Response:
     return Response(json.dumps(answer).encode(), _JSON, status)
+
+
+def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: Terminal) -> str:
+    """Serve the review page until Ctrl-C, and return a summary. Prints the address. Raises InputError."""
+    with serving(gradebook, scope, port) as (server, page):
+        if server is None:
+            return NOTHING
+        with suppress(KeyboardInterrupt):
+            terminal.show(f"{server.url}\n")
+            terminal.warn(
+                "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
+            )
+            server.serve_forever()
+        return server.worker.submit(lambda: summary(page.session)).result()
+
+
+@contextmanager
+def serving(
+    gradebook: Path, scope: ReviewScope = EVERYTHING, port: int = 0
+) -> Iterator[tuple[LocalServer | None, ReviewPage]]:
+    """Yield a server for a review, None if nothing needs manual grading.
+
+    One thread opens, reads and writes the gradebook; another one reads pictures.
+    """
+    with ThreadPoolExecutor(1) as worker, ThreadPoolExecutor(1) as reader:
+        book = worker.submit(Gradebook, gradebook).result()
+        try:
+            session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), scope)).result()
+            page = ReviewPage(session, book.shown, reader)
+            if not session.queue:
+                yield None, page
+                return
+            book.check_writable()
+
+            def followed(request: Request) -> Response:
+                """Answer a request, and then read the pictures of the item after the one that is shown."""
+                response = page(request)
+                if request.body is None and len(request.path) == 1 and response.status is HTTPStatus.OK:
+                    worker.submit(page.prepare)
+                return response
+
+            with LocalServer(followed, worker, port) as server:
+                yield server, page
+        finally:
+            worker.submit(book.close).result()

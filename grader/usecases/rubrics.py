@@ -29,8 +29,7 @@ def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
 
 def shown(name: str, warn: Warn, *, answers: bool, markdown: bool) -> str:
     """Return the parts and criteria of a rubric: with or without its model answers, or in Markdown for students."""
-    from grader.report.handout import render_handout
-    from grader.report.rubrics import rubric_text
+    from grader.report.rubrics import render_handout, rubric_text
 
     if answers and markdown:
         raise GraderError("--markdown is for students, so it shows no model answers: leave out --answers")

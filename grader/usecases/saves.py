@@ -1,4 +1,4 @@
-"""The files of `--save`, and the pictures among them that other reports link to."""
+"""The values of two options: the files of --save, with the pictures among them that other reports link to, and the arguments of xacro of --arg."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -61,3 +61,14 @@ def saved_pictures(saves: Saves) -> Iterator[str]:
 
 def _is_regular(file: Path) -> bool:
     return file.is_file() or not file.exists()
+
+
+def read_arguments(texts: Sequence[str]) -> dict[str, str]:
+    """Return the values that `--arg` gives arguments of xacro, by their names. Raises GraderError."""
+    arguments: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.removesuffix(":"):
+            raise GraderError(f"--arg takes NAME=VALUE, an argument of the xacro file, not {text!r}")
+        arguments[name.removesuffix(":")] = value  # NAME:=VALUE, as xacro takes it
+    return arguments

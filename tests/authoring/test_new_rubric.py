@@ -421,7 +421,7 @@ def test_an_element_with_too_much_in_it_is_omitted(tag: str, item: str, omitted:
 
 def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The loader reads rubrics up to a size, so no larger one is written."""
-    monkeypatch.setattr("grader.usecases.new_rubric.URDF_LIMIT", 1000)
+    monkeypatch.setattr("grader.usecases.rubric_making.URDF_LIMIT", 1000)
     assert_refused(run(("rubric", "new", tmp_path / "lab.toml", "--from", ARM)), "too many facts for a rubric")
     assert not (tmp_path / "lab.toml").exists()
 

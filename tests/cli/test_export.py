@@ -25,7 +25,7 @@ from grader.classroom.students import ClassSubmission
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
-from grader.usecases.lms_files import preflight_lines
+from grader.usecases.grade_files import preflight_lines
 from tests.classroom.gradebooks import (
     batch,
     graded_as,

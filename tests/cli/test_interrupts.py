@@ -6,7 +6,7 @@ import sys
 
 SCRIPT = """
 import signal, sys, time
-from grader.cli.interrupts import quiet_interrupts
+from grader.cli.ending import quiet_interrupts
 
 class Interrupted:
     def __del__(self):
@@ -59,7 +59,7 @@ def test_an_ignored_interrupt_stays_ignored() -> None:
 
 def test_the_handler_is_restored() -> None:
     """A caller in the same process gets its own handler back."""
-    from grader.cli.interrupts import quiet_interrupts
+    from grader.cli.ending import quiet_interrupts
 
     before = signal.getsignal(signal.SIGINT), sys.unraisablehook
     with quiet_interrupts():

@@ -14,8 +14,8 @@ import grader.grading.subjects
 import grader.submission.opening
 import grader.usecases.hints
 import grader.usecases.inspect
+from grader.cli import ending
 from grader.errors import OutOfTime
-from grader.usecases import limits
 from tests.command_line import ROOT, run
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX limits")
@@ -31,7 +31,7 @@ def hang(*_: object, **__: object) -> None:
 
 def fill_memory(*_: object, **__: object) -> bytes:
     """Ask for more memory than the limit allows."""
-    return bytes(2 * limits._MEMORY)
+    return bytes(2 * ending._MEMORY)
 
 
 @pytest.mark.parametrize(
@@ -41,8 +41,8 @@ def fill_memory(*_: object, **__: object) -> bytes:
 @pytest.mark.parametrize("command", ["grade", "inspect"])
 def test_reading_ends(command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     """One line says which limit it was, and nothing was graded: exit code 2."""
-    monkeypatch.setattr(limits, "_SECONDS", 1 if what is hang else 60)
-    monkeypatch.setattr(limits, "_MEMORY", 512 * 1024**2)
+    monkeypatch.setattr(ending, "_SECONDS", 1 if what is hang else 60)
+    monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
     monkeypatch.setattr(grader.submission.opening, "read_as_ros", what)
     done = run((command, URDF))
     assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
@@ -50,7 +50,7 @@ def test_reading_ends(command: str, what: Callable[..., object], said: bytes, mo
 
 def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time ends the command, not only the check."""
-    monkeypatch.setattr(limits, "_SECONDS", 1)
+    monkeypatch.setattr(ending, "_SECONDS", 1)
     monkeypatch.setattr(grader.grading.subjects.Subjects, "of", hang)
     done = run(("grade", URDF))
     assert (done.returncode, done.stderr) == (2, b"grader: this takes more than 1 s of processor time\n")
@@ -87,9 +87,9 @@ def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
     """Work inside of one call into C, which no exception can interrupt, ends with the process."""
     program = tmp_path / "stuck.py"
     program.write_text(
-        "from grader.usecases import limits\n"
-        "limits._SECONDS, limits._GRACE = 1, 1\n"
-        "with limits.outer_limits():\n"
+        "from grader.cli import ending\n"
+        "ending._SECONDS, ending._GRACE = 1, 1\n"
+        "with ending.outer_limits():\n"
         "    sum(range(10**12))\n"
     )
     done = subprocess.run(

@@ -146,7 +146,7 @@ def test_an_anonymous_review_in_the_browser(top: Path, scoped_class: Path) -> No
 def test_an_anonymous_student_who_is_removed(top: Path) -> None:
     """No message names the key, and no other student is shown instead."""
     from grader.classroom.gradebook.manual_queue import ReviewScope
-    from grader.classroom.review.session import ReviewSession
+    from grader.classroom.review import ReviewSession
     from grader.errors import InputError
 
     with Gradebook(top / "book.db") as book:

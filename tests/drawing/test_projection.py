@@ -7,9 +7,8 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from grader.drawing.curves import Curve, inner_edges, outline
-from grader.drawing.projection import Seen, projection
-from grader.drawing.views import FRONT, SIDE, TOP, View
+from grader.drawing.curves import FRONT, SIDE, TOP, Curve, View, inner_edges, outline
+from grader.drawing.sheet import Seen, projection
 from grader.robot.model import Box
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Rotation, Transform, Vector, rotation_from_rpy

@@ -15,7 +15,7 @@ import pytest
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.mutation import equivalent_test
+from grader.mutation import testing
 from grader.mutation.mutation_test import MutationTest
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
@@ -150,7 +150,7 @@ def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     rubric = rubric_of(lab)
     assert rubric.solution is not None
     trial = Trial(grade(rubric, rubric.solution.submission), rubric.solution.submission)
-    assert equivalent_test.tested_equivalents(trial, seed=15).losses == ()
+    assert testing.tested_equivalents(trial, seed=15).losses == ()
     mutation = MutationTest(trial, most=60, seed=15)
     mutation.idle.clear()  # the search for idle criteria takes as long as 500 mutants
     found = mutation.run(lambda: None)

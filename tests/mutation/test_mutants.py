@@ -5,10 +5,10 @@ from random import Random
 
 import pytest
 
-from grader.mutation.diffs import hunk
 from grader.mutation.elements import elements
 from grader.mutation.mutants import Mutant, mutants, with_visuals
-from grader.mutation.selection import sampled
+from grader.mutation.mutation_test import sampled
+from grader.mutation.result import hunk
 from tests.mutation.robots import ARM
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from grader.grading.report import Report
-from grader.report.classroom50 import identity_from, render_classroom50
+from grader.report.platforms import identity_from, render_classroom50
 from tests.golden.cases import CLASSROOM50, run
 from tests.report.readers import read_by_schema
 from tests.report.reports import half_points, marked

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from grader.grading.report import Report
-from grader.report.codeclimate import render_codeclimate
+from grader.report.annotations import render_codeclimate
 from grader.report.findings import findings
 from grader.report.locations import Base
 from tests.report.readers import read_by_schema

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from grader.grading.report import Report
 from grader.problems import Problem
+from grader.report.annotations import command, render_github
 from grader.report.findings import findings
-from grader.report.github import command, render_github
 from grader.report.locations import Base, RepositoryLocation
 from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location

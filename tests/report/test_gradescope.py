@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from grader.grading.report import Report
-from grader.report.gradescope import render_gradescope
+from grader.report.platforms import render_gradescope
 from tests.report.readers import read_as_github, read_by_schema
 from tests.report.reports import half_points, marked
 from tests.samples import REPORTED, SAMPLES

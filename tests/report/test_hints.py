@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from grader.grading.report import Hint, ManualMark
-from grader.report.diff import diff_lines
+from grader.report.details import diff_lines
 from grader.report.findings import findings
 from grader.report.formats import Format, render
 from grader.report.locations import Base

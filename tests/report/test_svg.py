@@ -8,13 +8,12 @@ from typing import Any
 
 import pytest
 
+from grader.drawing.curves import SIDE
 from grader.drawing.picture import picture_of
 from grader.drawing.sheet import single_cell
-from grader.drawing.views import SIDE
-from grader.report.drawing import drawing_element, thumbnail_element
+from grader.report.drawing import drawing_element, inspection_svg, thumbnail_element
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
-from grader.report.svg import inspection_svg
 from grader.report.svg_elements import DARK_RULES, LOOKS
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf

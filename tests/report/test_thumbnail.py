@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from lxml import etree
 
-from grader.report.pages.thumbnail import thumbnail
+from grader.report.pages.class_page import thumbnail
 from tests.samples import SAMPLES
 
 

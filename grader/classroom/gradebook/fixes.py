@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.hints import Mistaken, mistaken
-from grader.classroom.gradebook.reasons import manual_units
+from grader.classroom.gradebook.patterns import manual_units
 from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.grading.hints.record import StoredHint, hints_from_record
 from grader.grading.rubric import Rubric

@@ -5,8 +5,15 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.patterns import COLUMNS, pattern_of, units_of
-from grader.classroom.gradebook.reasons import GRADED, failure_counts, failures_in, manual_units
+from grader.classroom.gradebook.patterns import (
+    COLUMNS,
+    GRADED,
+    failure_counts,
+    failures_in,
+    manual_units,
+    pattern_of,
+    units_of,
+)
 from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.classroom.gradebook.statistics import ClassStatistics, tenth_of
 from grader.grading.rubric import Rubric

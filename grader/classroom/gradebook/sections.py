@@ -7,8 +7,7 @@ from statistics import fmean, median
 from typing import Literal, NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.patterns import COLUMNS, Pattern, pattern_of, units_of
-from grader.classroom.gradebook.reasons import GRADED, manual_units
+from grader.classroom.gradebook.patterns import COLUMNS, GRADED, Pattern, manual_units, pattern_of, units_of
 from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.criterion import Criterion

@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.failures import grouped
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.patterns import Pattern, patterns_of, units_of
-from grader.classroom.gradebook.reasons import failure_counts, undecided_reasons
+from grader.classroom.gradebook.patterns import Pattern, failure_counts, patterns_of, undecided_reasons, units_of
 from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric

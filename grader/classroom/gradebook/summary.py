@@ -1,17 +1,180 @@
-"""The summary of a class, for the terminal, the JSON and the class's page."""
+"""The summary of a class, for the terminal, the JSON and the class's page: who needs attention, how many are late or have only evidence, how two graders agree."""
 
+import json
 from collections import Counter
+from collections.abc import Iterator
+from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.gradebook.agreement import Agreement, agreement
-from grader.classroom.gradebook.attention import Attention, attention
-from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.fixes import CommonFix, common_fixes
+from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
-from grader.classroom.gradebook.late_totals import LateTotals, late_totals
+from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
+from grader.classroom.gradebook.student_grade import Reason
+from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
+
+MAX_DIFFERENCES = 5
+# A second opinion on an earlier submission, or of the person who gave the mark, is not compared.
+_PAIRS = """
+SELECT key, criterion, manual_mark.points, second_mark.points FROM second_mark
+JOIN manual_mark USING (student, criterion)
+JOIN result AS marked ON marked.id = manual_mark.result AND marked.digest = second_mark.digest
+JOIN student ON student.id = second_mark.student
+WHERE second_mark.points IS NOT NULL AND second_mark.grader_name <> manual_mark.grader_name
+ORDER BY key, criterion, second_mark.id
+"""
+
+
+class MarkedTwice(NamedTuple):
+    """A criterion of a student with the points of both graders, and the criterion's maximum."""
+
+    key: str
+    criterion: str
+    first: Decimal
+    second: Decimal
+    maximum: Decimal
+
+    @property
+    def difference(self) -> Decimal:
+        """The difference in percent of the maximum."""
+        return 100 * abs(self.first - self.second) / self.maximum
+
+
+class Agreement(NamedTuple):
+    """How many items were marked twice, how many of them with the same points, and the mean difference in percent of the maximum.
+
+    `largest` are the largest differences.
+    """
+
+    items: int
+    same: int
+    mean_difference: float
+    largest: tuple[MarkedTwice, ...]
+
+
+def agreement(book: Gradebook, rubric: Rubric) -> Agreement:
+    """Return the agreement on the criteria of a rubric that have points."""
+    maxima = {criterion.id: criterion.points for criterion in rubric.criteria if criterion.points}
+    items = [
+        MarkedTwice(str(key), name, Decimal(first) / UNITS_PER_POINT, Decimal(second) / UNITS_PER_POINT, maxima[name])
+        for key, name, first, second in book.rows(_PAIRS)
+        if name in maxima
+    ]
+    apart = sorted((item for item in items if item.difference), key=lambda item: -item.difference)
+    mean = float(sum((item.difference for item in items), Decimal(0)) / len(items)) if items else 0.0
+    return Agreement(len(items), len(items) - len(apart), mean, tuple(apart[:MAX_DIFFERENCES]))
+
+
+_MAY_NEED_ATTENTION = (
+    "((verdict <> 'graded' OR faults OR rubric <> ? OR removed_marks <> '') AND final IS NULL AND NOT is_excused)"
+    " OR older_marks || revalued_marks || over_marks <> '' OR is_gone OR is_on_roster = 0 OR final_is_older"
+)
+
+
+class AttentionItem(NamedTuple):
+    """A student who needs attention, with what distinguishes this case from others with the same reason."""
+
+    key: str
+    name: str
+    detail: str
+
+    @property
+    def who(self) -> str:
+        """The name and the key, or the key alone."""
+        return f"{self.name} ({self.key})" if self.name and self.name != self.key else self.key
+
+
+class AttentionGroup(NamedTuple):
+    """The students who need attention for one reason, in the order of their keys."""
+
+    reason: str
+    items: tuple[AttentionItem, ...]
+
+
+class Attention(NamedTuple):
+    """The groups, the most urgent first, and the number of students in them: one may be in several groups."""
+
+    groups: tuple[AttentionGroup, ...]
+    total: int
+
+
+def attention(grades: Grades) -> Attention:
+    """Return who needs attention: no readable submission, an error of the grader, a grade or mark that may be outdated."""
+    newest = grades.newest_rubric().sha256
+    found: dict[Reason, list[AttentionItem]] = {reason: [] for reason in Reason}
+    total = 0
+    for grade in grades.where(_MAY_NEED_ATTENTION, newest):
+        total += 1
+        for reason, detail in grade.concerns:
+            found[reason].append(AttentionItem(grade.student.key, grade.student.name, detail))
+    return Attention(tuple(_groups(found)), total)
+
+
+def _groups(found: dict[Reason, list[AttentionItem]]) -> Iterator[AttentionGroup]:
+    for reason, items in found.items():
+        if items:
+            yield AttentionGroup(reason.value, tuple(items))
+
+
+_QUERY = "SELECT result, statuses, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
+
+
+def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
+    """Return how many submissions have evidence, but no `URDF`, or one but no `package`, that this rubric grades."""
+    needed = {"URDF": ("urdf", "robot"), "package": ("package",)}
+    subjects = {row.check.subject for row in rubric.criteria}
+    graded = {kind for kind, names in needed.items() if subjects.intersection(names)}
+    package = [row.position for row in rubric.criteria if row.check.subject == "package"]
+    # A record takes long to read, so those of most classes are not: with a URDF and a package of the lab, or a URDF on its own.
+    found = [
+        result
+        for result, statuses, urdf, files in list(book.rows(_QUERY, rubric.sha256))
+        if not urdf or not (any(statuses[at] == "p" for at in package) or _is_single(files))
+    ]
+    lacking = (submission_of(book.record(result)[0]).lacks[:1] for result in found)
+    return Counter(kind for kinds in lacking for kind in kinds if kind in graded)
+
+
+def _is_single(files: str) -> bool:
+    paths = json.loads(files)[0]
+    return len(paths) == 1 and paths[0].lower().endswith((".urdf", ".xacro"))
+
+
+_MAYBE_LATE = (
+    "result IS NOT NULL AND final IS NULL AND NOT is_excused AND (is_late OR submitted <> '' OR days_late > 0)"
+)
+_TIMES = "SELECT is_late OR submitted <> '' OR days_late IS NOT NULL, roster_entry FROM grade WHERE result IS NOT NULL"
+
+
+class LateTotals(NamedTuple):
+    """How many submissions are late, the points that they lose in total, and the least and the most that one of them loses.
+
+    `unknown` counts the submissions if a deadline has no effect, because nothing says of any of them when it was submitted.
+    """
+
+    students: int
+    lost: Decimal
+    least: Decimal
+    most: Decimal
+    unknown: int = 0
+
+
+def late_totals(grades: Grades) -> LateTotals:
+    """Return the totals of a gradebook, without students who have a final mark or an excuse: they lose nothing."""
+    lost = [-grade.late.points for grade in grades.where(_MAYBE_LATE) if grade.late.days]
+    zero = Decimal(0)
+    unknown = _undated(grades) if grades.has_deadline else 0
+    return LateTotals(len(lost), sum(lost, zero), min(lost, default=zero), max(lost, default=zero), unknown)
+
+
+def _undated(grades: Grades) -> int:
+    """Return how many submissions there are; 0 if it is known of one when it was submitted, or whether it is late."""
+    rows = list(grades.book.rows(_TIMES))
+    is_known = any(has_time or (entry and json.loads(entry).get("is_late") is not None) for has_time, entry in rows)
+    return 0 if is_known else len(rows)
 
 
 class ClassSummary(NamedTuple):

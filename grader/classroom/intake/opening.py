@@ -10,7 +10,7 @@ from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.errors import InputError
 from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
-from grader.files.ignore_rules import ignored_part, is_generated
+from grader.files.limits import ignored_part, is_generated
 from grader.files.members import ARCHIVE_ERRORS
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start

@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
-from grader.classroom.lms.feedback import is_own_feedback
 from grader.classroom.lms.filling import (
     Filled,
     FillOptions,
@@ -22,10 +21,9 @@ from grader.classroom.lms.filling import (
     fill_rows,
     with_points,
 )
-from grader.classroom.lms.grades import LmsGrade, points_text, read_points, rounded_down
+from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
-from grader.classroom.lms.spreadsheet import neutral
-from grader.classroom.lms.tables import Table, TableRow, read_table
+from grader.classroom.lms.tables import Table, TableRow, neutral, read_table
 from grader.classroom.students import Student
 from grader.text import format_points
 

@@ -16,10 +16,9 @@ from grader.package.setup_py import location_in
 from grader.source import Location, Source
 from grader.static_python.evaluation import Evaluation, FunctionTable
 from grader.static_python.functions import standard_functions
-from grader.static_python.inspection import path_text
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
-from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value
+from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file

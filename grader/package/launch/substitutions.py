@@ -13,9 +13,8 @@ from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, text_of
-from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
-from grader.static_python.values import Call, Unknown, Value
+from grader.static_python.values import MAX_TEXT, Call, Unknown, Value, as_text
 
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import Details, location_text, result_details, status_of
-from grader.report.diff import diff_lines
+from grader.report.details import Details, diff_lines, location_text, result_details, status_of
 from grader.report.locations import excerpt, width_of
 from grader.report.order import Failure
 from grader.source import Location, Source

@@ -9,12 +9,11 @@ from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import SYMBOLS, group_status, status_of
-from grader.report.evidence import evidence
 from grader.report.order import alike, failures, groups, in_order
 from grader.report.pages.criteria import card_of, failure_card
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
-from grader.report.plain_text import problem_line, provenance
+from grader.report.plain_text import evidence, problem_line, provenance
 from grader.text import format_points, printable
 
 

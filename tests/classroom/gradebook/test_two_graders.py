@@ -21,14 +21,14 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
 from grader.report.screen import Screen
 from grader.usecases import Terminal
 from grader.usecases.manual_marks import MarkRequest, give_mark
-from grader.usecases.merge_gradebooks import merge_gradebooks
+from grader.usecases.two_gradebooks import merge_gradebooks
 from tests.classroom.gradebook.two_graders import TOTAL, Book, Entry, Grade, Item, Row
 from tests.classroom.gradebooks import graded_as, lab_text, record_run
 

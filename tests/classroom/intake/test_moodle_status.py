@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.moodle_status import days_late
 from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.intake.roster_values import days_late
 
 SUBMITTED = "Submitted for grading"
 GERMAN = "Zur Bewertung abgegeben"

@@ -12,12 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
-from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, feedback_items, is_own_feedback
 from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
-from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.grades import LIMIT, FeedbackItem, LmsGrade, feedback_html, feedback_items, is_own_feedback
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.spreadsheet import neutral
-from grader.classroom.lms.tables import read_table
+from grader.classroom.lms.tables import neutral, read_table
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.report import ManualMark, Result

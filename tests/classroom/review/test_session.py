@@ -11,7 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope, reusable_comments
 from grader.classroom.gradebook.marks import NewerMarkError, criterion_of
-from grader.classroom.review.session import ReviewSession
+from grader.classroom.review import ReviewSession
 from grader.errors import InputError
 from tests.classroom.gradebooks import grade_without, graded_as, lab, mark, record_run
 

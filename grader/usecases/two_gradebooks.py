@@ -1,16 +1,42 @@
-"""Merge the marks of two gradebooks, and ask which of two different marks counts."""
+"""Compare two runs of a gradebook, or two gradebooks; merge the marks of two, and ask which of two different marks counts."""
 
 from collections.abc import Iterator
+from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
+from grader.classroom.gradebook.changes import Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.histories import MergeItem, compare
 from grader.classroom.gradebook.merge import Choice, Conflict, Merged, conflict_of, copy_of, merge
-from grader.errors import InputError
+from grader.errors import GraderError, InputError
+from grader.report.changes import render_changes, render_changes_json
+from grader.report.formats import OutputFormat
 from grader.report.review import mark_text
+from grader.report.screen import Screen, draw
 from grader.text import counted, printable, printable_path
 from grader.usecases import Terminal
 from grader.usecases.exit_codes import ExitCode
+
+
+def diff(
+    gradebook: Path, other: Path | None, before: int | None, after: int | None, kind: OutputFormat, screen: Screen
+) -> str:
+    """Return whose grade changed between two runs, by how much, and why. Raises GraderError."""
+    if other is not None and (before or after):
+        raise GraderError("--from and --to choose runs of one gradebook: give one gradebook, or omit them")
+    with ExitStack() as opened:
+        book = opened.enter_context(Gradebook(gradebook))
+        if other is None:
+            sides = last_two(book, before, after)
+        else:
+            sides = Snapshot(book), Snapshot(opened.enter_context(Gradebook(other)))
+        found = changes(*sides)
+        runs = sides[0].newest_run, sides[1].newest_run
+    if kind is OutputFormat.JSON:
+        return render_changes_json(found, runs)
+    return draw(partial(render_changes, found, runs), screen)
+
 
 _ANSWERS: dict[str, Choice | None] = {
     "k": "first", "keep": "first", "t": "second", "take": "second", "s": None, "skip": None,

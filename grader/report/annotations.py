@@ -1,7 +1,8 @@
-"""A report as annotations of GitHub Actions: workflow commands, one line each.
+"""A report as annotations of its files: workflow commands for GitHub, and Code Climate's JSON for a merge request on GitLab.
 
 GitHub shows ten annotations of each type in a step and drops the others silently, so the last one of a type counts the rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
+https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,6 +11,7 @@ from decimal import Decimal
 from grader.grading.report import Report
 from grader.report.content import score_text
 from grader.report.findings import Finding, Level, findings
+from grader.report.json_data import to_json_list
 from grader.report.locations import Base, RepositoryLocation
 from grader.report.plain_text import note_lines, provenance, summary_lines
 from grader.text import counted_points, printable
@@ -79,3 +81,24 @@ def _position(location: RepositoryLocation | None) -> Iterable[tuple[str, str]]:
 
 def _data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+_SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
+
+
+def render_codeclimate(report: Report, base: Base) -> str:
+    """Return the findings of a report; an empty list if there is nothing to fix."""
+    issues = []
+    for finding in findings(report, base):
+        location = finding.location or finding.fallback
+        cost = f" ({counted_points(finding.lost)} lost)" if finding.lost else ""
+        issues.append(
+            {
+                "description": finding.text.replace("\n", " ") + cost or finding.rule,
+                "check_name": finding.rule,
+                "fingerprint": finding.fingerprint,
+                "severity": _SEVERITIES[finding.level],
+                "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
+            }
+        )
+    return to_json_list(issues)

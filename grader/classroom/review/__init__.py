@@ -1,1 +1,0 @@
-"""Manual grading: the queue of items, and their pictures."""
