@@ -15,6 +15,7 @@ from grader.xacro.scopes import Place, UnknownName, XacroFails
 
 _MAX_NAMES = 8
 _MAX_VALUES = 40
+_DEFINING = ("property", "arg", "macro")
 _UNKNOWN = "a name that xacro does not know"
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
@@ -43,6 +44,9 @@ class Corrector:
         for refusal in refusals[:_MAX_NAMES]:
             unknown, lacking = refusal.error.unknown, refusal.error.lacking
             if unknown is not None:
+                for node in (it for tag in _DEFINING for it in self._nodes(tag) if _name_of(it) == unknown.name):
+                    edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
+                    yield Correction(edits, f"<{node.tag}> without xacro:", f"write <xacro:{node.tag}>")
                 for edits in self._respelled(refusal.place, refusal.attribute, unknown):
                     yield Correction(edits, _UNKNOWN, "correct the name")
                 source, start = refusal.place.source.element(0)

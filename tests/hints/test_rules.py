@@ -99,3 +99,20 @@ def test_a_convention_of_the_whole_robot_is_one_hint() -> None:
     assert len(hints.lost) >= 4
     assert hints.is_full
     assert len(hints.found) <= 2
+
+
+def test_a_colour_in_a_link_is_corrected_there() -> None:
+    """No second definition of the material is added under <robot>."""
+    text = BASES["equivalent-materials-in-links"].text
+    hints = hints_for(changed(('rgba="0.7 0.7 0.7 1"', 'rgba="0.1 0.1 0.4 1"'), text=text))
+    assert hints.is_full
+    assert edits_of(hints) == [[('rgba="0.1 0.1 0.4 1"', 'rgba="0.7 0.7 0.7 1"')]]
+
+
+def test_a_property_without_prefix_gets_it() -> None:
+    """The cause is where the property is written, not where its value is missing."""
+    base = BASES["equivalent-xacro-numbers"]
+    first = base.text.index("<xacro:property")
+    hints = hints_for(base.changed(f"{base.text[:first]}<property{base.text[first + len('<xacro:property') :]}"))
+    assert hints.is_full
+    assert edits_of(hints)[0] == [("<property", "<xacro:property")]

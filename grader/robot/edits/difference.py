@@ -163,6 +163,11 @@ class Difference(PieceMaker):
         if parent is not self.draft.root:
             yield from self._inner(parent, element)
             return
+        defined = self.draft.material(element.get("name") or "") if tag == "material" else None
+        colours = zip(*(found.iter("color") for found in (defined, element) if found is not None), strict=False)
+        if defined is not None and len(defined):  # in a link
+            yield from (self.of_sets([Set(own, "", "rgba", its.get("rgba") or "")]) for own, its in colours)
+            return
         if tag not in ("joint", "link"):
             text = self.text(element)
             edits = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
