@@ -15,6 +15,7 @@ from grader.text import counted, quoted
 
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large
+_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+")  # 0,15 for 0.15
 _VERSION = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
 _MAX_LONG = 2**63 - 1
 
@@ -84,6 +85,7 @@ def _reason(text: str) -> str:
     if not text.strip():
         return "it is empty"
     reasons = {
+        "contains a comma: write a decimal point, or a space between two numbers": _COMMA.fullmatch(text),
         "contains a comma: separate numbers by spaces": "," in text,
         "is xacro, which ROS 2 does not evaluate in a .urdf file": "$" in text,
         "contains a tab or a line break: separate numbers by plain spaces": not set("\t\n\v\f\r").isdisjoint(text),

@@ -105,6 +105,11 @@ REFERENCE = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text("utf-8
     [
         ("0 0.6 0 1", "0 153 0 1", '(URDF052: cannot read rgba="0 153 0 1": 153 is outside 0..1; ROS 2 shows black).'),
         ("0.6 0.4 0.2", "0.6,0.4,0.2", "'0.6,0.4,0.2' contains a comma: separate numbers by spaces"),
+        (
+            "0.15 0 0.225",
+            "0,15 0 0.225",
+            "'0,15' contains a comma: write a decimal point, or a space between two numbers",
+        ),
         ("<sphere radius", "<sphere raduis", "no visual with a size: ROS 2 ignores the unknown attribute 'raduis'"),
         ("0.6 0.4 0.2", "600 400 200", "it should be 0.6 0.4 0.2 m (a URDF is in metres, not in millimetres)."),
         ("0.15 0 0.225", "15 0 22.5", "it should be at 0.15 0 0.225 m (a URDF is in metres, not in centimetres)."),
