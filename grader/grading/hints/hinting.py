@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
@@ -46,7 +47,7 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     hints: dict[str, Hint] = {}
     for name, found in shown.items():
         with trials.isolated():
-            text = message(found, level, submission, costs, shown)
+            text = message(found, level, submission, lambda earlier: _entry(earlier, shown, results, costs))
             hints[name] = _hint(found, text, keeps_edits=keep_edits or level == "edit")
     causes = search.causes if level in ("cause", "edit") else {}
     with_hints = [_explained(result, hints.get(result.criterion.id), causes) for result in report.results]
@@ -79,6 +80,20 @@ def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]
     outcome = result.outcome
     message = f"{outcome.message}. Several places differ from the reference solution: {enumerated(wrong)}"
     return result._replace(outcome=outcome._replace(message=message, mistake=outcome.mistake or outcome.message))
+
+
+def _entry(
+    found: Found, shown: Mapping[str, Found], results: Mapping[str, Result], costs: Mapping[str, Decimal]
+) -> str:
+    """Return the criterion under which a report shows a hint: the one at the line that is edited, else the costliest."""
+
+    def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
+        where, at = results[name].outcome.location, found.edits[0]
+        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
+        cost = costs.get(name, found.gains[name])
+        return name not in costs, not is_there, results[name].criterion.check.subject != "urdf", -cost
+
+    return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
 
 
 def _hint(found: Found, text: str, *, keeps_edits: bool) -> Hint:

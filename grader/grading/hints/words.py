@@ -1,8 +1,6 @@
 """What a hint says, at each level: nothing, where to look, what is wrong there, or the edit."""
 
-from collections.abc import Mapping
-from decimal import Decimal
-from types import MappingProxyType
+from collections.abc import Callable
 
 from grader.grading.hints.search import Found
 from grader.grading.levels import Level
@@ -17,19 +15,9 @@ _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(
-    found: Found,
-    level: Level,
-    submission: Submission,
-    costs: Mapping[str, Decimal],
-    shown: Mapping[str, Found] = MappingProxyType({}),
-) -> str:
-    """Return the hint in a sentence; the name of the URDF needs no mention.
-
-    `costs` are the points that failed criteria cost, `shown` is the hint of each: an earlier hint is named by the costliest criterion
-    that shows it.
-    """
-    own, names = _own_edits(found), list(dict.fromkeys(_entry(before, costs, shown) for before in found.after))
+def message(found: Found, level: Level, submission: Submission, entry: Callable[[Found], str]) -> str:
+    """Return the hint in a sentence; the name of the URDF needs no mention. `entry` is the criterion that shows an earlier hint."""
+    own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
     earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
     if not own:
         return f"Make {earlier}."
@@ -87,11 +75,6 @@ def _own_edits(found: Found) -> list[Edit]:
         return []
     earlier = {edit for before in found.after for edit in before.edits}
     return [edit for edit in found.edits if edit not in earlier]
-
-
-def _entry(found: Found, costs: Mapping[str, Decimal], shown: Mapping[str, Found]) -> str:
-    names = [name for name in found.gains if shown.get(name) is found] or [*found.gains]
-    return min(names, key=lambda name: (name not in costs, -costs.get(name, found.gains[name])))
 
 
 def _moves(edits: list[Edit], submission: Submission) -> list[str]:
