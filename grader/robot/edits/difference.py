@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 
-from grader.difference import Node, Step, paired, steps
+from grader.difference import Node, Step, is_alike, paired, steps
 from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of, escaped
 from grader.robot.edits.numbers import number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
@@ -96,6 +96,7 @@ class Difference(PieceMaker):
         added = [
             step.like for step in found if step.like is not None and step.verb == "add" and step.own.tag == "robot"
         ]
+        removed = [step.own for step in found if step.verb == "remove"]
         is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
         for _, group in groupby(found, key=is_set):
             those = [*group]
@@ -113,7 +114,7 @@ class Difference(PieceMaker):
                 case "move" if step.parent is not None and step.like is not None:
                     yield self.moved(step.own.of, step.parent.of)
                 case "add" if step.like is not None:
-                    yield from self._added(step, added)
+                    yield from self._added(step, added, removed)
                 case "remove":
                     yield from self._removed(step.own)
 
@@ -155,7 +156,7 @@ class Difference(PieceMaker):
                 text = re.sub(pattern, rf"\g<1>{name}\g<3>", text) if old != new else text
         return text
 
-    def _added(self, step: Step, added: Sequence[Node]) -> Iterator[Piece]:
+    def _added(self, step: Step, added: Sequence[Node], removed: Sequence[Node]) -> Iterator[Piece]:
         """Add an element: a link with its joint and its materials where these are missing, too."""
         like, parent = step.like, step.own.of
         assert like is not None
@@ -169,9 +170,13 @@ class Difference(PieceMaker):
             yield from (self.of_sets([Set(own, "", "rgba", its.get("rgba") or "")]) for own, its in colours)
             return
         if tag not in ("joint", "link"):
+            spare = (
+                it.of for it in removed if any(is_alike(it, inner) for inner in like.walk())
+            )  # what the new one has
+            away = tuple(edit for it in spare for edit in self.draft.remove(it))
             text = self.text(element)
-            edits = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
-            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", edits)
+            there = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
+            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", (*away, *there))
             return
         name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
         joints = [it.of for it in added if tag == "link" and it.tag == "joint"]
