@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import combinations, islice
 
 from grader.names import closest
 
@@ -15,6 +15,7 @@ ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
 _LOOSE = re.compile(r"(?<!\$)\{(\w+)\}|\$\((\w+)\)|\$(?=\w)(\w+)")
 _WORD = re.compile(r"(?<![\w${.(])[^\W\d]\w*(?![\w(])")
 _MAX_VARIANTS = 80  # of one text
+_MAX_PARTS = 4  # that are exchanged
 # Kinds of changes, the most plausible first.
 SPELLING, SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NUMBER, OTHER_NAME = range(8)
 _OPERATOR = r"(?<=[\w.)\s])(?<!\*){}(?![*/])"
@@ -62,6 +63,9 @@ def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tu
     for found in _WORD.finditer(text) if "${" not in text else ():  # the name of a parameter, not its value
         if found[0] in own:
             yield SPELLING, f"{text[: found.start()]}${{{found[0]}}}{text[found.end() :]}"
+    parts = [*TOKEN.finditer(text)] if "$" in text else []
+    for one, other in combinations(parts[:_MAX_PARTS], 2):  # x and z exchanged
+        yield SIGN, text[: one.start()] + other[0] + text[one.end() : other.start()] + one[0] + text[other.end() :]
     for found in EXPRESSION.finditer(text):
         start, end = found.span(1)
         for rank, inner in islice(_of_expression(found[1].strip(), names, own), _MAX_VARIANTS):

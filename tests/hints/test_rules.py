@@ -116,3 +116,16 @@ def test_a_property_without_prefix_gets_it() -> None:
     hints = hints_for(base.changed(f"{base.text[:first]}<property{base.text[first + len('<xacro:property') :]}"))
     assert hints.is_full
     assert edits_of(hints)[0] == [("<property", "<xacro:property")]
+
+
+def test_exchanged_expressions_are_exchanged() -> None:
+    """They are not replaced by numbers."""
+    base, right, wrong = (
+        BASES["equivalent-xacro-inertials"],
+        "${length/4} 0 ${height+0.05/2}",
+        "${length/4} ${height+0.05/2} 0",
+    )
+    assert right in base.text
+    hints = hints_for(base.changed(base.text.replace(right, wrong)))
+    assert hints.is_full
+    assert edits_of(hints) == [[(f'xyz="{wrong}"', f'xyz="{right}"')]]
