@@ -9,6 +9,7 @@ from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
 from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
+from grader.submission.robots import find_robots, parts_of
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
@@ -111,15 +112,15 @@ def setup_imports(package: Package) -> Outcome:
 
 
 def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else those with other endings, else all of the kind."""
+    """Return the file of a package that has this name, else all of the kind that are no part of another one."""
     if kind == "launch":
         chosen = package.launch_file(name)
         return [chosen] if chosen is not None else []
     endings = _ENDINGS[kind]
     paths = [path for path in package.tree.files if path.lower().endswith(endings)]
-    names = {path: posixpath.basename(path) for path in paths}
-    like = [path for path in paths if names[path].partition(".")[0] == name.partition(".")[0]]  # my_robot.urdf.xacro
-    return [path for path in paths if names[path] == name] or like or paths
+    named = [path for path in paths if posixpath.basename(path) == name]
+    parts = parts_of(find_robots(package.tree)) if kind == "urdf" and not named else frozenset()
+    return named or [path for path in paths if path not in parts] or paths
 
 
 def _readable_setup(package: Package) -> "Setup | Outcome":

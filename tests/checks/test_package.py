@@ -349,11 +349,21 @@ def test_no_such_file_at_all(kind: str, folder: str, message: str) -> None:
 
 def test_a_file_that_the_urdf_includes_does_not_count_for_it() -> None:
     """The URDF has another ending than in the handout; only the file that it includes is installed."""
-    xacro = REFERENCE.renaming(URDF, f"{URDF}.xacro").with_files({f"{FOLDER}/urdf/parts/macros.xacro": "<robot/>"})
+    include = '<robot><xacro:include filename="parts/macros.xacro"/>'
+    xacro = REFERENCE.replacing(URDF, '<robot name="my_robot">', include).renaming(URDF, f"{URDF}.xacro")
+    xacro = xacro.with_files({f"{FOLDER}/urdf/parts/macros.xacro": "<robot/>"})
     submitted = setup(URDF_ENTRY, "('share/my_robot/urdf/parts', glob('urdf/parts/*')),", xacro)
     assert lacks(build_installs, submitted, kind="urdf", name=KINDS["urdf"])[2].startswith(
         "a build does not install urdf/my_robot"
     )
+
+
+def test_another_file_like_the_urdf_need_not_be_installed() -> None:
+    """Of several that may be the URDF, one is enough: a xacro file beside the URDF that was made of it."""
+    other = REFERENCE.renaming(URDF, f"{FOLDER}/urdf/robot.urdf").with_files(
+        {f"{FOLDER}/xacro/my_robot.xacro": "<robot/>"}
+    )
+    assert finds(build_installs, other, kind="urdf", name=KINDS["urdf"])[0] == "passed"
 
 
 def test_a_launch_file_of_another_name_is_installed() -> None:
