@@ -1,21 +1,19 @@
 """Measure a reference, write a rubric of the facts, and keep the criteria that the reference passes."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from grader.authoring.bodies import body_facts
-from grader.authoring.elements import element_facts
-from grader.authoring.fact import Fact, Omission, Solution, why_invalid
 from grader.authoring.ignored import ignored_mutants
-from grader.authoring.joints import joint_facts, loading_facts, motion_facts, tree_facts
 from grader.authoring.oddities import Doubts, oddities
-from grader.authoring.package import package_facts
 from grader.authoring.rubric_text import Head, criterion_ids, literal, rubric_text
-from grader.authoring.shapes import shape_facts
+from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
+from grader.checks.registry import check_names, declared, usable_check
+from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
@@ -35,7 +33,7 @@ class Draft(NamedTuple):
 
 def draft(solution: Solution, head: Head, path: Path) -> Draft:
     """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test. Raises InputError."""
-    found = list(islice(_measured(solution), MAX_FACTS + 1))
+    found = _measured(solution)
     if len(found) > MAX_FACTS:
         raise InputError(
             f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
@@ -74,29 +72,36 @@ def _lost(rubric: Rubric) -> dict[str, Outcome]:
     return {name: (results[it.because] if it.because else it).outcome for name, it in lost.items()}
 
 
-def _measured(solution: Solution) -> Iterator[Fact | Omission]:
-    """Yield all facts in the order of the rubric."""
-    yield from loading_facts(solution)
-    for link in solution.links:
-        joint = solution.joints.get(link.name)
-        of_joint = joint_facts(solution, joint) if joint is not None else ()
-        for found in chain(of_joint, shape_facts(link), body_facts(link)):
-            yield replace(found, about=link.name) if isinstance(found, Fact) else found
-    yield from tree_facts(solution)
-    yield from motion_facts(solution)
-    if solution.reading.root is not None:
-        yield from element_facts(solution.reading.root)
-    package, path = solution.submission.package, solution.submission.path
-    if package is not None and path is not None:
-        yield from package_facts(package, path.removeprefix(f"{package.folder}/") if package.holds(path) else "")
-    for other in solution.submission.packages:
-        if other is not package:
-            yield Omission(f"the package {other.name}", "a rubric is about one package")
+def _measured(solution: Solution) -> list[Fact | Omission]:
+    """Return what the checks measure: first the file, then each link, the robot, elements and the package."""
+    found = list(islice(chain.from_iterable(_measured_by(name, solution) for name in check_names()), MAX_FACTS + 1))
+    headings = [THE_FILE, *(link.name for link in solution.links), THE_ROBOT]
+    others = dict.fromkeys(it.about for it in found if isinstance(it, Fact) and it.about not in headings)
+    headings += [*sorted(others, key=THE_PACKAGE.__eq__)]
+    ranks = {about: rank for rank, about in enumerate(headings)}
+    found.sort(key=lambda it: ranks[it.about] if isinstance(it, Fact) else 0)
+    unused = (other for other in solution.submission.packages if other is not solution.submission.package)
+    return [*found, *(Omission(f"the package {other.name}", "a rubric is about one package") for other in unused)]
+
+
+def _measured_by(name: str, solution: Solution) -> Iterator[Fact | Omission]:
+    """Yield what a check measures, if it does. Raises InputError for a check of another package that fails at it."""
+    check = usable_check(name)
+    if check is None or not check.about.measure:
+        return
+    try:
+        measure: Measure = declared(check.about.measure)
+        yield from measure(solution)
+    except Exception as error:
+        if not check.distribution:
+            raise
+        reason = f"{type(error).__name__}: {error}"
+        raise InputError(f"the check {name} of the package {check.distribution} cannot measure: {reason}") from None
 
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
     """Return the facts that a rubric can hold: with arguments that the check takes, and each check with its arguments once."""
-    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not why_invalid(fact)}
+    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
     return list(different.values())
 
 
@@ -104,5 +109,28 @@ def _omissions(found: Iterable[Fact | Omission]) -> Iterator[Omission]:
     for it in found:
         if isinstance(it, Omission):
             yield it
-        elif why_invalid(it):
-            yield Omission(it.title, why_invalid(it))
+        elif _why_invalid(it):
+            yield Omission(it.title, _why_invalid(it))
+
+
+def _why_invalid(fact: Fact) -> str:
+    """Return why the check does not take the arguments of a fact, such as a negative mass; empty if it does."""
+    check = usable_check(fact.check)
+    if check is None:
+        return f"there is no check {fact.check}"
+    for name, value in fact.arguments.items():
+        try:
+            check.parameters[name].type.parse(_as_read(value))
+        except WrongValue as error:
+            return f"{name} must be {error}"
+    return ""
+
+
+def _as_read(value: Any) -> Any:
+    """Return a value as it is read from a TOML file."""
+    match value:
+        case Mapping():
+            return {key: _as_read(item) for key, item in value.items()}
+        case list():
+            return list(map(_as_read, value))
+    return Decimal(repr(value)) if isinstance(value, float) else value

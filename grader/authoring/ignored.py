@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from grader.authoring.fact import Solution
+from grader.checks.measures.fact import Solution
 from grader.package.package import Package
 from grader.submission.urdf import Read
 

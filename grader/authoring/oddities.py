@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from itertools import chain, combinations
 
-from grader.authoring.elements import texts_in
-from grader.authoring.fact import Fact, Solution, shown
+from grader.checks.measures.elements import texts_in
+from grader.checks.measures.fact import Fact, Solution, shown
 from grader.checks.outcome import Outcome
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import is_of_one_machine, one_machine_only

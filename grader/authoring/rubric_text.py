@@ -5,8 +5,9 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.authoring.fact import Fact
 from grader.authoring.ignored import Ignored
+from grader.checks.measures.fact import Fact
+from grader.checks.registry import check_names, usable_check
 from grader.text import printable
 
 WIDTH = 120  # columns
@@ -75,22 +76,6 @@ def _key(key: str) -> str:
 _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
 _MUTANTS = "Mutants of the reference that keep full marks: `grader rubric test`"
-# The project's tolerances, which leave room for rounding but not for mistakes.
-_DEFAULTS: Mapping[str, tuple[Mapping[str, Any], str]] = {
-    "shows_box": ({"tolerance": 0.002}, "metres"),
-    "shows_cylinder": ({"tolerance": 0.002}, "metres"),
-    "shows_sphere": ({"tolerance": 0.002}, "metres"),
-    "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
-    "centre_at": ({"tolerance": 0.002}, "metres"),
-    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
-    "joint_axis": ({"tolerance": 1.0}, "degrees"),
-    "joint_limits": ({"tolerance": 1.0}, "degrees"),
-    "mass_is": ({"tolerance": 0.001}, "kilograms"),
-    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
-    "collision_matches_visual": ({"tolerance": 0.002}, "metres"),
-    "collides_as": ({"tolerance": 0.002}, "metres"),
-    "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
-}
 
 
 class Head(NamedTuple):
@@ -165,12 +150,13 @@ def _head(head: Head, points: int) -> Iterator[str]:
 
 def _defaults(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
-    used = {check: given for check, given in _DEFAULTS.items() if check in checks}
-    lines = {check: assignment(check, arguments) for check, (arguments, _) in used.items()}
+    known = (usable_check(name) for name in check_names() if name in checks)
+    abouts = {check.name: check.about for check in known if check is not None and check.about.usual}
+    lines = {name: assignment(name, about.usual) for name, about in abouts.items()}
     if lines:
         yield from ("", "[defaults.with]")
         width = max(map(len, lines.values()))
-        yield from (f"{line:{width}}  # {used[check][1]}" for check, line in lines.items())
+        yield from (f"{line:{width}}  # {abouts[name].unit}" for name, line in lines.items())
 
 
 def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:

@@ -5,6 +5,7 @@ from itertools import permutations, repeat
 from math import cos, radians
 from typing import TypeVar
 
+from grader.checks.about import About
 from grader.checks.outcome import (
     SLACK,
     Outcome,
@@ -25,13 +26,36 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
-LOOKS_AT = {
-    "shows_box": ("box", "visual"),
-    "shows_cylinder": ("cylinder", "visual"),
-    "shows_sphere": ("sphere", "visual"),
-    "shows_colour": ("material",),
-    "shows_grey": ("material",),
-    "shows_nothing": ("visual",),
+ABOUT = {
+    "shows_box": About(
+        ("box", "visual"),
+        measure="grader.checks.measures.shapes:boxes",
+        usual={"tolerance": 0.002},
+        unit="metres",
+        picture="outline",
+    ),
+    "shows_cylinder": About(
+        ("cylinder", "visual"),
+        measure="grader.checks.measures.shapes:cylinders",
+        usual={"tolerance": 0.002},
+        unit="metres",
+        picture="outline",
+    ),
+    "shows_sphere": About(
+        ("sphere", "visual"),
+        measure="grader.checks.measures.shapes:spheres",
+        usual={"tolerance": 0.002},
+        unit="metres",
+        picture="outline",
+    ),
+    "shows_colour": About(
+        ("material",),
+        measure="grader.checks.measures.shapes:colours",
+        usual={"tolerance": 0.01},
+        unit="of a channel from 0 to 1",
+    ),
+    "shows_grey": About(("material",)),
+    "shows_nothing": About(("visual",)),
 }
 
 _ALIGNED = cos(radians(1.0))

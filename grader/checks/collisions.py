@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from math import hypot, inf
 
+from grader.checks.about import About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals
@@ -16,9 +17,23 @@ from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.source import LazyLocation
 from grader.text import counted
 
-LOOKS_AT = dict.fromkeys(("collision_matches_visual", "collides_as"), ("collision",))
+ABOUT = {
+    "collision_matches_visual": About(
+        ("collision",),
+        suggests="grader.robot.edits.bodies:body_pieces",
+        measure="grader.checks.measures.bodies:collisions_as_shown",
+        usual={"tolerance": 0.002},
+        unit="metres",
+    ),
+    "collides_as": About(
+        ("collision",),
+        suggests="grader.robot.edits.bodies:body_pieces",
+        measure="grader.checks.measures.bodies:collisions",
+        usual={"tolerance": 0.002},
+        unit="metres",
+    ),
+}
 
-SUGGESTS = dict.fromkeys(("collision_matches_visual", "collides_as"), "grader.robot.edits.bodies:body_pieces")
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
 

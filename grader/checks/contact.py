@@ -3,6 +3,7 @@
 from itertools import product
 from operator import itemgetter
 
+from grader.checks.about import About
 from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, pending, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
@@ -11,6 +12,8 @@ from grader.robot.model import Box, Geometry, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
 from grader.robot.transforms import Transform, Vector
+
+ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
 
 _AHEAD: Vector = (1.0, 0.0, 0.0)
 _LEFT: Vector = (0.0, 1.0, 0.0)

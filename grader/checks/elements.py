@@ -1,8 +1,10 @@
 """Checks of the XML elements of a URDF, whatever reads them: Gazebo, ros2_control, transmissions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from copy import deepcopy
+from typing import Any
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
 from grader.errors import MissingElement, NotDecided
@@ -25,7 +27,21 @@ from grader.xml.element_values import (
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import WantedElement, readable
 
-LOOKS_AT = {"element_present": ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration")}
+
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """The text of an element that ROS 2 reads is compared, not what it means."""
+    frames = ("fixed joints split", "frames moved", "full turns", "axes scaled")
+    is_read = arguments.get("tag") in ("link", "joint", "material")
+    return (*frames, "links renamed", "joints renamed") if is_read else ()
+
+
+ABOUT = {
+    "element_present": About(
+        ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
+        measure="grader.checks.measures.elements:elements",
+        breaks_under=_breaks_under,
+    ),
+}
 
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _MAX_NAMED = 5  # elements and values in a message

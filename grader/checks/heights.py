@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, difference, in_degrees, judged, measured, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
@@ -13,7 +14,11 @@ from grader.robot.transforms import IDENTITY_ROTATION, Vector
 from grader.source import LazyLocation
 from grader.text import enumerated
 
-LOOKS_AT = {"bottom_at_height": ("visual/origin",)}
+ABOUT = {
+    "bottom_at_height": About(("visual/origin",), picture="outline"),
+    "bottoms_at_height": About(picture="outline"),
+    "under_the_base": About(picture="frame"),
+}
 
 _UP: Vector = (0.0, 0.0, 1.0)
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
+from grader.checks.about import About
 from grader.checks.inertia_mistakes import mistake_of, rounded
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
@@ -17,9 +18,23 @@ from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
-LOOKS_AT = {"mass_is": ("mass", "inertial"), "inertia_plausible": ("inertial",)}
+ABOUT = {
+    "mass_is": About(
+        ("mass", "inertial"),
+        suggests="grader.robot.edits.bodies:body_pieces",
+        measure="grader.checks.measures.bodies:masses",
+        usual={"tolerance": 0.001},
+        unit="kilograms",
+    ),
+    "inertia_plausible": About(
+        ("inertial",),
+        suggests="grader.robot.edits.bodies:body_pieces",
+        measure="grader.checks.measures.bodies:inertias",
+        usual={"tolerance": 2.0},
+        unit="percent",
+    ),
+}
 
-SUGGESTS = dict.fromkeys(("inertia_plausible", "mass_is"), "grader.robot.edits.bodies:body_pieces")
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
 _ROUNDING = 0.01  # of the largest principal moment: what rounded numbers may add to it in a thin plate, where the others are equal to it
 _CENTRE = 0.002  # metres that a centre of mass may be off

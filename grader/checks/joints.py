@@ -2,6 +2,7 @@
 
 from math import degrees, hypot, isfinite
 
+from grader.checks.about import About
 from grader.checks.comparison import Number, compared, named, number_text, numbers_of
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
@@ -14,11 +15,15 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
-LOOKS_AT = {
-    "joint_limits": ("limit",),
-    "joint_axis": ("axis",),
-    "mimics": ("mimic",),
-    "joint_dynamics": ("dynamics",),
+ABOUT = {
+    "joint_limits": About(
+        ("limit",), measure="grader.checks.measures.joints:limits", usual={"tolerance": 1.0}, unit="degrees"
+    ),
+    "joint_axis": About(
+        ("axis",), measure="grader.checks.measures.joints:axes", usual={"tolerance": 1.0}, unit="degrees"
+    ),
+    "mimics": About(("mimic",), measure="grader.checks.measures.joints:mimics"),
+    "joint_dynamics": About(("dynamics",), measure="grader.checks.measures.joints:dynamics"),
 }
 
 _EXACT = 1e-6  # for numbers that a URDF states as they are expected

@@ -3,6 +3,7 @@
 import posixpath
 from typing import TYPE_CHECKING, Literal
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
     from grader.package.launch.model import Launch, Reference, StartedNode
 
 # What the edits for hints may change.
-LOOKS_AT = dict.fromkeys(("launch_found", "launch_starts", "launch_finds_files"), ("launch",))
+ABOUT = {
+    "launch_found": About(("launch",), measure="grader.checks.measures.package:launch_files"),
+    "launch_starts": About(("launch",), measure="grader.checks.measures.package:started_nodes"),
+    "launch_finds_files": About(("launch",), measure="grader.checks.measures.package:opened_files"),
+}
 
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import hypot
 from typing import Literal
 
+from grader.checks.about import About
 from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place, main_visual, visual_pose, visuals
@@ -13,7 +14,11 @@ from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, degrees_between, dot, minus, unit
 
-LOOKS_AT = {"axis_along": ("axis",)}
+ABOUT = {
+    "rolls_forward": About(picture="wheel"),
+    "axis_along": About(("axis",), picture="frame"),
+    "turns_about_itself": About(picture="outline"),
+}
 
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
@@ -21,12 +22,12 @@ if TYPE_CHECKING:
 FileKind = Literal["urdf", "launch", "rviz"]
 
 # What the edits for hints may change.
-LOOKS_AT = {
-    "package_found": (MANIFEST, SETUP),
-    "package_type": (MANIFEST,),
-    "build_installs": (SETUP, "file"),
-    "installs_files": (SETUP, "file"),
-    "setup_imports": (SETUP,),
+ABOUT = {
+    "package_found": About((MANIFEST, SETUP), measure="grader.checks.measures.package:names"),
+    "package_type": About((MANIFEST,), measure="grader.checks.measures.package:build_types"),
+    "build_installs": About((SETUP, "file"), measure="grader.checks.measures.package:installed_files"),
+    "installs_files": About((SETUP, "file"), measure="grader.checks.measures.package:installed_folders"),
+    "setup_imports": About((SETUP,), measure="grader.checks.measures.package:setup_names"),
 }
 
 _ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}

@@ -2,6 +2,7 @@
 
 from math import acos, degrees
 
+from grader.checks.about import About
 from grader.checks.outcome import (
     SLACK,
     Outcome,
@@ -20,7 +21,22 @@ from grader.robot.shapes import UnknownShape
 from grader.robot.transforms import Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 
-LOOKS_AT = {"frame_at": ("joint/origin",), "centre_at": ("visual/origin",)}
+ABOUT = {
+    "frame_at": About(
+        ("joint/origin",),
+        measure="grader.checks.measures.joints:frames",
+        usual={"tolerance": 0.002, "angle": 1.0},
+        unit="metres, degrees",
+        picture="frame",
+    ),
+    "centre_at": About(
+        ("visual/origin",),
+        measure="grader.checks.measures.shapes:places",
+        usual={"tolerance": 0.002},
+        unit="metres",
+        picture="outline",
+    ),
+}
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
 _UP: Vector = (0.0, 0.0, 1.0)

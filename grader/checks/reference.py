@@ -1,9 +1,10 @@
 """Checks that compare a robot with that of the rubric's reference solution: the motion of its links, and because of which joint it differs."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import degrees
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
+from grader.checks.about import About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, place, point
 from grader.checks.toml_types import Constraint, NonNegative
 from grader.errors import MissingElement, NotDecided, RubricError
@@ -90,7 +91,20 @@ class MotionComparison:
         return enumerated(moved, _MAX_NAMED)
 
 
-LOOKS_AT = {"kinematics_match_reference": ("joint/origin",)}
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """The joints are paired by name, or by their order along the chains to the links."""
+    return () if arguments.get("match") == "order" else ("joints renamed",)
+
+
+ABOUT = {
+    "kinematics_match_reference": About(
+        ("joint/origin",),
+        measure="grader.checks.measures.joints:motions",
+        usual={"samples": 20},
+        unit="random positions, besides the ends of each range",
+        breaks_under=_breaks_under,
+    ),
+}
 
 Match = Literal["name", "order"]
 Samples = Annotated[

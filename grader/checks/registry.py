@@ -3,11 +3,12 @@
 import inspect
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError, OutOfTime
@@ -103,10 +104,7 @@ class Check:
 
     `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
     submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
-    for the grader's own. `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result
-    depends: hints propose edits of these; or the tags of a URDF (`limit`, `visual/origin`, `joint@type`): `rubric test` suggests the
-    check where a mutant of these survives. `suggests` is the function that yields edits for it, as "module:function", where neither
-    the reference nor the numbers that it measures lead to them.
+    for the grader's own. `about` is what its module declares of it.
     """
 
     name: str
@@ -114,8 +112,7 @@ class Check:
     examined: tuple[Subject, ...]
     parameters: Mapping[str, Parameter]
     distribution: str = ""
-    looks_at: tuple[str, ...] = ()
-    suggests: str = ""
+    about: About = field(default_factory=About)
 
     @property
     def subject(self) -> Subject:
@@ -151,10 +148,11 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     examined = tuple(
         name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
     )
-    name, module = function.__name__, sys.modules.get(function.__module__)
-    looks_at, suggests = (getattr(module, table, {}).get(name, ()) for table in ("LOOKS_AT", "SUGGESTS"))
-    texts = tuple(map(str, looks_at))
-    return Check(name, function, examined, parameters, distribution, texts, str(suggests or ""))
+    name = function.__name__
+    about = getattr(sys.modules.get(function.__module__), "ABOUT", {}).get(name, About())
+    if not isinstance(about, About):
+        raise InputError(f"ABOUT says of {name} what is no About(...)")
+    return Check(name, function, examined, parameters, distribution, about)
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
@@ -203,6 +201,13 @@ def usable_check(name: str) -> Check | None:
         return find_check(name)
     except InputError:
         return None
+
+
+def declared(place: str) -> Callable[..., Any]:
+    """Return the function that a check declares, as "module:function"."""
+    module, _, name = place.partition(":")
+    function: Callable[..., Any] = getattr(import_module(module), name)
+    return function
 
 
 def _load(name: str, entry: "EntryPoint") -> Check:

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
@@ -15,7 +16,12 @@ if TYPE_CHECKING:
     from grader.package.rviz import Display, RvizFile
 
 # What the edits for hints may change.
-LOOKS_AT = dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"), ("rviz",))
+ABOUT = {
+    "rviz_found": About(("rviz",), measure="grader.checks.measures.package:rviz_files"),
+    "rviz_fixed_frame": About(("rviz",), measure="grader.checks.measures.package:fixed_frames"),
+    "rviz_shows_robot": About(("rviz",), measure="grader.checks.measures.package:shown_robots"),
+    "rviz_display_on": About(("rviz",), measure="grader.checks.measures.package:displays"),
+}
 
 _PLUGINS = "rviz_default_plugins"
 

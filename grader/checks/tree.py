@@ -2,7 +2,9 @@
 
 from collections import Counter
 from collections.abc import Collection, Mapping
+from typing import Any
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, failed, judged, passed, pending, place
 from grader.checks.toml_types import Count
 from grader.errors import MissingElement
@@ -16,11 +18,21 @@ from grader.text import counted, enumerated
 from grader.xml import catalogue as xml_catalogue
 from grader.xml.urdf_format import JOINT_TYPES, JointType
 
-LOOKS_AT = {
-    "urdf_loads": ("joint", "link"),
-    "held_by": ("parent", "child", "joint", "joint@type"),
-    "joints_named": ("joint@name",),
-    "counts": ("joint", "joint@type", "link"),
+
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """Splitting a fixed joint adds a link and a fixed joint."""
+    is_counted = any(arguments.get(key) is not None for key in ("links", "joints", "fixed"))
+    return ("fixed joints split",) if is_counted else ()
+
+
+ABOUT = {
+    "urdf_loads": About(("joint", "link"), measure="grader.checks.measures.joints:loading"),
+    "held_by": About(("parent", "child", "joint", "joint@type"), measure="grader.checks.measures.joints:types"),
+    "joints_named": About(("joint@name",), measure="grader.checks.measures.joints:names"),
+    "root_of_tree": About(measure="grader.checks.measures.joints:roots"),
+    "counts": About(
+        ("joint", "joint@type", "link"), measure="grader.checks.measures.joints:counts", breaks_under=_breaks_under
+    ),
 }
 
 _OF_XML = kinds_in(vars(xml_catalogue).values())

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from grader.checks.about import About, everything
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Count
 from grader.errors import InputError, MissingElement, NotDecided
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
     from grader.xacro.inventory import Definitions
 
-LOOKS_AT = {"xacro_uses": ("xacro:property", "xacro:macro", "xacro:include")}
+ABOUT = {
+    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything),
+}
 
 _MAX_NAMED = 5  # names in a message
 

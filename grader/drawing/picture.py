@@ -1,12 +1,11 @@
 """The content of a picture of a graded robot: the scene, differences from the reference, failed criteria."""
 
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
 from grader.drawing.scene import Body, Scene, is_drawable, scene_of
 from grader.errors import InputError, MissingElement, NotDecided
@@ -21,13 +20,6 @@ from grader.robot.selectors import texts_in
 from grader.robot.transforms import Vector, minus
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
-# Checks of the size and place of a link's visuals: a failure shows the reference's outlines.
-_SHAPES = {
-    "shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "centre_at", "bottom_at_height", "bottoms_at_height", "stands_on",
-    "clear_of", "turns_about_itself", "rolls_forward",
-}  # fmt: skip
-# Checks of a link's frame: a failure shows the reference's frame as well.
-_PLACES = {"frame_at", "axis_along", "under_the_base"}
 # The arguments that name the frame of a measurement.
 _FRAMES = ("relative_to", "base", "on", "of", "parent")
 _SAME = 0.001  # metres: shapes and frames that differ by less look equal
@@ -130,7 +122,7 @@ def _root_of(robot: Configuration, link: str) -> str:
 def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
     """Yield the links that the rubric expects to roll."""
     for criterion in rubric.criteria:
-        if criterion.check.function is rolls_forward:
+        if criterion.check.about.picture == "wheel":
             yield selected(robot, str(criterion.arguments["link"]))
 
 
@@ -162,8 +154,16 @@ def _differences(
 ) -> tuple[tuple[Body, ...], tuple[str, ...]]:
     """Return the bodies and frames of the reference that differ from the scene's, where criteria about them failed."""
     seen = {body.link for body in scene.bodies}
-    shapes = {link for link, results in about.items() if link not in seen or _has_check(results, _SHAPES | _PLACES)}
-    places = {link for link, results in about.items() if link not in scene.poses or _has_check(results, _PLACES)}
+    shapes = {
+        link
+        for link, results in about.items()
+        if link not in seen or any(it.criterion.check.about.picture for it in results)
+    }
+    places = {
+        link
+        for link, results in about.items()
+        if link not in scene.poses or any(it.criterion.check.about.picture == "frame" for it in results)
+    }
     outlines = tuple(body for body in reference.bodies if body.link in shapes and not _shows(scene, reference, body))
     frames = tuple(
         link
@@ -171,10 +171,6 @@ def _differences(
         if link in places and link in reference.poses and not _is_same_place(scene, reference, link)
     )
     return outlines, frames
-
-
-def _has_check(results: Sequence[Result], names: Collection[str]) -> bool:
-    return any(result.criterion.check.name in names for result in results)
 
 
 def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:

@@ -2,10 +2,11 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from random import Random
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from grader.checks.about import EQUIVALENTS
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation import rewritings
@@ -72,85 +73,45 @@ def _inserted(text: str, content: str) -> str:
     return f"{text[:end]}{_NAMESPACE}{text[end : root.head_end]}{content}{text[root.head_end :]}"
 
 
-_STEPS: Mapping[str, Step] = {
-    "order of elements": rewritings.shuffle,
-    "fixed joints split": rewritings.split_joints,
-    "frames moved": rewritings.move_frames,
-    "full turns": rewritings.turn_fully,
-    "axes scaled": rewritings.scale_axes,
-    "links renamed": rewritings.rename_links,
-    "joints renamed": rewritings.rename_joints,
-}
-_AS_XACRO: Mapping[str, Callable[[Random, str], str | None]] = {
-    "xacro properties": with_properties,
-    "xacro macro": with_macro,
-}
-_SPELLING, _LAYOUT, SEVERAL = "spelling of numbers", "layout of the text", "several at once"
-FAMILIES = (*_STEPS, _SPELLING, _LAYOUT, *_AS_XACRO, SEVERAL)
+_OF_TREES: tuple[Step, ...] = (
+    rewritings.shuffle,
+    rewritings.split_joints,
+    rewritings.move_frames,
+    rewritings.turn_fully,
+    rewritings.scale_axes,
+    rewritings.rename_links,
+    rewritings.rename_joints,
+)
+_STEPS = dict(zip(EQUIVALENTS, _OF_TREES, strict=False))
+_SPELLING, _LAYOUT, *_XACRO = EQUIVALENTS[len(_STEPS) :]
+_AS_XACRO = dict(zip(_XACRO, (with_properties, with_macro), strict=True))
+SEVERAL = "several at once"
+FAMILIES = (*EQUIVALENTS, SEVERAL)
 _OF_EACH, _OF_SEVERAL = 4, 12  # rewritings of a family
 _MOST_STEPS = 4
 
-_POSES = ("fixed joints split", "frames moved", "full turns", "axes scaled")
-_OWN_TAGS = ("link", "joint", "material")
-
 
 class Equivalent(NamedTuple):
-    """Another text for the robot: its families, in words, whether it is xacro, and the text with only its layout changed."""
+    """Another text for the robot: how it was rewritten, also in words, and the text with only its layout changed."""
 
     family: str
+    families: tuple[str, ...]
     name: str
     text: str
     before: str
     is_xacro: bool
 
 
-def _for_counts(arguments: Mapping[str, Any]) -> tuple[str, ...]:
-    """Splitting a joint adds a link and a fixed joint."""
-    return (
-        ("fixed joints split",) if any(arguments.get(key) is not None for key in ("links", "joints", "fixed")) else ()
-    )
-
-
-def _for_kinematics(arguments: Mapping[str, Any]) -> tuple[str, ...]:
-    """The joints are paired by name, or by their order along the chains to the links."""
-    return () if arguments.get("match") == "order" else ("joints renamed",)
-
-
-def _for_elements(arguments: Mapping[str, Any]) -> tuple[str, ...]:
-    """The text of an element that ROS 2 reads is compared, not what it means."""
-    return (*_POSES, "links renamed", "joints renamed") if arguments.get("tag") in _OWN_TAGS else ()
-
-
-# The families that a check forbids. Names in the arguments of any check are renamed nowhere, and their frames are not moved. Problems
-# that `without_problems` forbids are looked for in each rewriting, and criteria with `xacro_uses` are not graded on any.
-FORBIDDEN: Mapping[str, Callable[[Mapping[str, Any]], tuple[str, ...]]] = {
-    "counts": _for_counts,
-    "kinematics_match_reference": _for_kinematics,
-    "element_present": _for_elements,
-}
-UNASKED = ("xacro_uses",)  # checks of the text itself
-
-
-def forbidden(rubric: Rubric) -> dict[str, str]:
-    """Return the families that a criterion forbids, with its id."""
-    found: dict[str, str] = {}
-    for criterion in rubric.criteria:
-        for family in _forbidden_by(criterion):
-            found.setdefault(family, criterion.id)
-    return found
-
-
-def _forbidden_by(criterion: Criterion) -> tuple[str, ...]:
-    rule = FORBIDDEN.get(criterion.check.name)
-    return rule(criterion.arguments) if rule is not None else ()
+def breaking(criterion: Criterion, families: Iterable[str]) -> bool:
+    """Return whether a criterion may fail under one of these families, as its check declares."""
+    return not set(criterion.check.about.breaks_under(criterion.arguments)).isdisjoint(families)
 
 
 class Equivalents:
-    """The rewritings of a robot that a rubric does not forbid; those that `kept` names are renamed nowhere."""
+    """The rewritings of a robot; what `kept` names is renamed nowhere."""
 
     def __init__(self, rubric: Rubric, root: Element, robot: Robot, kept: set[str], seed: int) -> None:
         self._root, self._robot, self._seed = root, robot, seed
-        self._forbidden = forbidden(rubric)
         self._named = kept | words_of_foreign(root)
         self._is_structural = any(name.startswith("@") for name in names_in(rubric))
 
@@ -158,7 +119,7 @@ class Equivalents:
         """Yield the rewritings, of each family some."""
         for family in FAMILIES:
             for number in range(_OF_SEVERAL if family == SEVERAL else _OF_EACH):
-                found = self._made(family, number) if family not in self._forbidden else None
+                found = self._made(family, number)
                 if found is not None:
                     yield found
 
@@ -176,11 +137,10 @@ class Equivalents:
         if not done:
             return None
         name = f"{family} {number + 1}" + (f": {', '.join(done)}" if family == SEVERAL else "")
-        return Equivalent(family, name, text, before, any(name in _AS_XACRO for name in done))
+        return Equivalent(family, tuple(done), name, text, before, any(name in _AS_XACRO for name in done))
 
     def _several(self, random: Random) -> list[str]:
-        steps = [name for name in _STEPS if name not in self._forbidden]
-        chosen = random.sample(steps, min(len(steps), random.randint(2, _MOST_STEPS)))
+        chosen = random.sample(list(_STEPS), random.randint(2, _MOST_STEPS))
         others = [name for name in (_SPELLING, _LAYOUT) if random.random() < 0.5]
         return chosen + others + ([random.choice(list(_AS_XACRO))] if random.random() < 0.3 else [])
 

@@ -51,7 +51,7 @@ def suggestion(
 
 def _checks_for(tags: Sequence[str], known: Iterable[Check]) -> list[str]:
     """Return the checks that look at what changed: at the innermost of the tags around it that any check looks at."""
-    depths = {check.name: max((_depth(place, tags) for place in check.looks_at), default=0) for check in known}
+    depths = {check.name: max((_depth(place, tags) for place in check.about.looks_at), default=0) for check in known}
     deepest = max(depths.values(), default=0)
     return [name for name, depth in depths.items() if depth == deepest > 0]
 

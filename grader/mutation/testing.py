@@ -8,7 +8,7 @@ from grader.errors import InputError
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric
-from grader.mutation.equivalents import FAMILIES, UNASKED, Equivalent, Equivalents, forbidden
+from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
 from grader.mutation.mutation_test import MutationTest
 from grader.mutation.result import EquivalentResults, Loss, RubricTest, hunk
 from grader.mutation.samples import Sample, tested_samples
@@ -29,15 +29,12 @@ def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
     losses: list[Loss] = []
     for equivalent in Equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed).all():
         submission = _submission(trial.reference, urdf, equivalent)
-        if _has_forbidden_problem(trial, submission):
-            continue
         tried[equivalent.family] += 1
-        lost = dict(_lost(trial, submission))
+        lost = dict(_lost(trial, submission, equivalent))
         if lost:
             diff = hunk(urdf.path, equivalent.before, equivalent.text)
             losses.append(Loss(equivalent.name, lost, diff))
-    reasons = {name: f"{criterion} forbids it" for name, criterion in forbidden(trial.rubric).items()}
-    unused = {name: reasons.get(name, "there is nothing to change") for name in FAMILIES if name not in tried}
+    unused = {name: "there is nothing to change" for name in FAMILIES if name not in tried}
     return EquivalentResults(dict(tried), unused, tuple(losses))
 
 
@@ -50,29 +47,17 @@ def _submission(reference: Submission, urdf: Read, equivalent: Equivalent) -> Su
     return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
 
 
-def _lost(trial: Trial, submission: Submission) -> Iterator[tuple[str, str]]:
-    for result in decide(trial.rubric, submission, _asked(trial, submission)):
+def _lost(trial: Trial, submission: Submission, equivalent: Equivalent) -> Iterator[tuple[str, str]]:
+    for result in decide(trial.rubric, submission, _asked(trial, submission, equivalent)):
         if trial.is_lost(result):
             yield result.criterion.id, result.outcome.message
 
 
-def _asked(trial: Trial, submission: Submission) -> Collection[str]:
-    """Return the criteria that depend on the robot; for a URDF on its own, those that need nothing else."""
-    checks = {name: trial.expected[name].criterion.check for name in trial.tested}
+def _asked(trial: Trial, submission: Submission, equivalent: Equivalent) -> Collection[str]:
+    """Return the criteria that depend on the robot and must keep; for a URDF on its own, those that need nothing else."""
+    criteria = (trial.expected[name].criterion for name in trial.tested)
     others = ("package", "submission") if submission.is_single else ("package",)
-    return [name for name, check in checks.items() if check.subject not in others and check.name not in UNASKED]
-
-
-def _has_forbidden_problem(trial: Trial, submission: Submission) -> bool:
-    """Return whether the reader reports a problem that a criterion forbids, which the reference does not have."""
-    codes = {
-        code
-        for name in trial.tested
-        if trial.expected[name].criterion.check.name == "without_problems"
-        for code in trial.expected[name].criterion.arguments.get("problems", ())
-    }
-    urdf = submission.urdf
-    return isinstance(urdf, Read) and any(problem.code in codes for problem in urdf.problems)
+    return [it.id for it in criteria if it.check.subject not in others and not breaking(it, equivalent.families)]
 
 
 MAX_MUTANTS = 500  # by default

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.authoring.draft import Draft, draft
-from grader.authoring.fact import Omission, Solution
 from grader.authoring.rubric_text import Head
+from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
 from grader.classroom.run.batch import Progress
 from grader.errors import GraderError, InputError

@@ -609,7 +609,7 @@ def test_one_link_is_a_robot(tmp_path: Path) -> None:
     """A link alone has criteria for what it shows, and none for joints."""
     rubric, _ = rubric_of(robot(), tmp_path)
     checks = [row["check"] for row in rubric["criterion"]]
-    assert checks == ["urdf_loads", "shows_box", "centre_at", "shows_colour"]
+    assert checks == ["urdf_loads", "shows_box", "shows_colour", "centre_at"]
 
 
 def test_names_are_escaped_and_ids_unique(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import sys
 
 import pytest
 
+from grader.checks.about import About
 from grader.checks.outcome import Outcome, passed
 from grader.checks.registry import describe
 from grader.package.package import Package
@@ -114,7 +115,7 @@ def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
 def test_a_check_of_a_package_declares_what_it_looks_at(case: PackageCase) -> None:
     """Hints propose edits of these files, and `rubric test` suggests the check for mutants of them and of its tags."""
     check = describe(case.check)
-    files = {name for name in check.looks_at if not name.startswith("xacro:")}
+    files = {name for name in check.about.looks_at if not name.startswith("xacro:")}
     assert check.subject != "package" or files
     assert files <= {"setup.py", "package.xml", "launch", "rviz", "file"}
 
@@ -126,6 +127,6 @@ def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatc
         """The package starts its driver."""
         return passed(f"{package.name} starts {name}")
 
-    assert describe(has_driver).looks_at == ()
-    monkeypatch.setattr(sys.modules[__name__], "LOOKS_AT", {"has_driver": ("launch",)}, raising=False)
-    assert describe(has_driver).looks_at == ("launch",)
+    assert describe(has_driver).about == About()
+    monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": About(("launch",))}, raising=False)
+    assert describe(has_driver).about.looks_at == ("launch",)

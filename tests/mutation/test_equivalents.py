@@ -1,14 +1,17 @@
-"""Equivalents of a reference are the same robot, and a criterion that forbids a family is never asked about it."""
+"""Equivalents of a reference are the same robot, and a criterion is never asked about a family under which its check breaks."""
 
 from collections.abc import Iterator
+from decimal import Decimal
 from pathlib import Path
 
 import pytest
 from lxml import etree
 
+from grader.checks.about import EQUIVALENTS
+from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
-from grader.mutation.equivalents import FAMILIES, FORBIDDEN, Equivalent, Equivalents, forbidden
+from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
 from grader.mutation.trees import copied
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
@@ -122,16 +125,10 @@ def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
             assert moved.translation == pytest.approx(before.translation, abs=1e-9)
 
 
-def _criterion(check: str, **arguments: object) -> Criterion:
-    class Named:
-        name = check
-
-    return Criterion("a", "", "", 1, Named(), arguments)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     ("check", "arguments", "families"),
     [
+        ("frame_at", {"link": "tool"}, ()),
         ("counts", {"moving": 3}, ()),
         ("counts", {"links": 3, "moving": None}, ("fixed joints split",)),
         ("counts", {"fixed": 3}, ("fixed joints split",)),
@@ -139,21 +136,17 @@ def _criterion(check: str, **arguments: object) -> Criterion:
         ("kinematics_match_reference", {"links": ["tool"]}, ("joints renamed",)),
         ("element_present", {"tag": "gazebo"}, ()),
         ("element_present", {"tag": "joint"}, ("fixed joints split", "frames moved", "full turns", "axes scaled", "links renamed", "joints renamed")),
+        ("without_problems", {"problems": ["URDF063"]}, EQUIVALENTS),
+        ("xacro_uses", {"macros": 1}, EQUIVALENTS),
     ],
 )  # fmt: skip
-def test_a_check_forbids_families(check: str, arguments: dict[str, object], families: tuple[str, ...]) -> None:
-    """By its arguments: a count of links forbids more links, and one of moving joints does not."""
-    assert FORBIDDEN[check](arguments) == families
-
-
-def test_a_family_that_a_criterion_forbids_is_not_used(tmp_path: Path) -> None:
-    """Neither alone nor among several."""
-    rubric = rubric_in(tmp_path, TOP)
-    object.__setattr__(rubric, "criteria", (*rubric.criteria, _criterion("counts", links=7)))
-    assert forbidden(rubric) == {"fixed joints split": "a"}
-    found = made(rubric)
-    assert {equivalent.family for equivalent in found} == {*FAMILIES} - {"fixed joints split"}
-    assert all(len(read(equivalent).links) == len(read_arm().links) for equivalent in found)
+def test_a_check_breaks_under_families(check: str, arguments: dict[str, object], families: tuple[str, ...]) -> None:
+    """By its arguments: a count of links breaks where there are more links, and one of moving joints does not."""
+    found = find_check(check)
+    assert found is not None
+    assert found.about.breaks_under(arguments) == families
+    criterion = Criterion("a", "", "", Decimal(1), found, arguments)
+    assert [name for name in EQUIVALENTS if breaking(criterion, [name])] == [it for it in EQUIVALENTS if it in families]
 
 
 SHARED = """<robot name="r">

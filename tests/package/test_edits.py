@@ -118,7 +118,7 @@ def _proposals(submission: Submission) -> list[Proposal]:
     """Return the edits for the criteria of the package that failed or are skipped."""
     passed = _passed(submission)
     lost = [criterion for criterion in LAB6.criteria if criterion.part == "task2" and criterion.id not in passed]
-    wanted = [(criterion.check.looks_at, criterion.arguments) for criterion in lost]
+    wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in lost]
     return package_proposals(submission.package, _REFERENCE.package, wanted, nullcontext)
 
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from decimal import Decimal
-from importlib import import_module
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
+from grader.checks.registry import declared
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.look import Look
@@ -117,9 +117,9 @@ class Choice:
 
     def _suggested(self, look: Look, criterion: Criterion, lost: Sequence[str]) -> Iterator[Proposal]:
         """Yield the edits that the check suggests itself."""
-        module, _, name = criterion.check.suggests.partition(":")
-        if look.draft is not None and name:
-            make = getattr(import_module(module), name)
+        place = criterion.check.about.suggests
+        if look.draft is not None and place:
+            make = declared(place)
             failed = [look.with_links(it) for it in self._trials.rubric.criteria if it.id in lost]
             own = look.with_links(criterion).arguments
             others = [it.arguments for it in failed if it.arguments.get("link") == own.get("link")]

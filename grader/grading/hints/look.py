@@ -119,7 +119,7 @@ class Look:
         if criterion.check.subject not in ("urdf", "robot"):
             from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
 
-            wanted = [(criterion.check.looks_at, criterion.arguments)]
+            wanted = [(criterion.check.about.looks_at, criterion.arguments)]
             found += package_proposals(self.state.submission.package, self._package(), wanted, self.trials.isolated)
         with self.trials.isolated():
             found += raw_xacro_proposals(self.state.submission) if criterion.check.subject == "urdf" else ()

@@ -4,7 +4,6 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 from typing import Any
 
-from grader.checks.motion import rolls_forward
 from grader.checks.visuals import main_visual
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene, Wheel
@@ -47,10 +46,11 @@ def _indices(scene: Scene) -> dict[str, int]:
 
 def _failed_wheels(picture: Picture) -> set[str]:
     """Return the links whose drive direction failed a criterion."""
-    checks = {
-        callout.link: [result.criterion.check.function for result in callout.results] for callout in picture.callouts
+    return {
+        callout.link
+        for callout in picture.callouts
+        if any(result.criterion.check.about.picture == "wheel" for result in callout.results)
     }
-    return {link for link, functions in checks.items() if rolls_forward in functions}
 
 
 def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] = ()) -> Data:

@@ -1,63 +1,107 @@
 """Facts about what a link shows: its shapes, where they are in its frame, their colours; and its meshes."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
-from grader.authoring.fact import Fact, Omission, direction, is_same, length, lengths, shown
+from grader.checks.measures.fact import Fact, Measure, Omission, direction, is_same, length, lengths, of_links, shown
 from grader.checks.mesh_files import mesh_file
 from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty, volume
 from grader.robot.transforms import rotation_from_rpy
 
-_MANY = f"it has more than {MAX_SHAPES} visuals"
 _Z = (0.0, 0.0, 1.0)
 _CLEARLY_SMALLER = 0.95  # of the largest volume: more could be the largest in an equivalent robot
 
 
-def shape_facts(link: Link) -> Iterator[Fact | Omission]:
-    """Yield what a link shows, shape by shape; of several shapes of one kind all sizes, and the place of the largest."""
+class _Group(NamedTuple):
+    """The visuals of a link that have shapes of one kind; `selected` are the arguments that choose the kind."""
+
+    link: str
+    kind: type[Geometry]
+    visuals: Sequence[Visual]
+    selected: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """The name of the kind: box."""
+        return self.kind.__name__.lower()
+
+    @property
+    def largest(self) -> Visual | None:
+        """The largest shape, which alone the checks of places and colours examine; None where that is not clear."""
+        largest, *others = sorted(self.visuals, key=lambda visual: volume(visual.geometry), reverse=True)
+        is_clear = not others or volume(others[0].geometry) <= _CLEARLY_SMALLER * volume(largest.geometry)
+        return largest if is_clear else None
+
+
+def _groups(link: Link) -> Iterator[_Group]:
+    """Yield what a link shows, by the kind of shape; nothing where it shows too much."""
     if len(link.visuals) > MAX_SHAPES:
-        yield Omission(f"what {link.name} shows", _MANY)
         return
     visuals = [visual for visual in link.visuals if not is_empty(visual.geometry)]
     by_kind: dict[type[Geometry], list[Visual]] = {}
     for visual in visuals:
         by_kind.setdefault(type(visual.geometry), []).append(visual)
-    yield from _meshes(link.name, by_kind.pop(Mesh, []))
     for kind, same in by_kind.items():
-        yield from _sizes(link.name, same)
-        name = kind.__name__.lower()
-        selected = {"shape": name} if len(visuals) > 1 else {}
-        largest, *others = sorted(same, key=lambda visual: volume(visual.geometry), reverse=True)
-        if others and volume(others[0].geometry) > _CLEARLY_SMALLER * volume(largest.geometry):
-            yield Omission(f"{link.name}: place and colour of its {_PLURALS[kind]}", "they are equally large")
+        selected = {"shape": kind.__name__.lower()} if len(visuals) > 1 and kind is not Mesh else {}
+        yield _Group(link.name, kind, same, selected)
+
+
+def _places(link: Link) -> Iterator[Fact | Omission]:
+    """Yield the place of the largest shape of each kind."""
+    if len(link.visuals) > MAX_SHAPES:
+        yield Omission(f"what {link.name} shows", f"it has more than {MAX_SHAPES} visuals")
+    for group in _groups(link):
+        largest = group.largest if group.kind is not Mesh else None
+        if largest is not None:
+            yield _place(link.name, largest, group.name, group.selected)
+            if len(group.visuals) > 1:
+                what = f"{link.name}: place and colour of all its {_PLURALS[group.kind]} but the largest"
+                yield Omission(what, "a check examines the largest shape of a kind")
+        elif group.kind is not Mesh:
+            yield Omission(f"{link.name}: place and colour of its {_PLURALS[group.kind]}", "they are equally large")
+
+
+def _colours(link: Link) -> Iterator[Fact | Omission]:
+    """Yield the colour of the largest shape of each kind, and that of the meshes."""
+    for group in _groups(link):
+        if group.kind is not Mesh:
+            examined = group.largest
+        elif len({visual.material and visual.material.rgba for visual in group.visuals}) == 1:
+            examined = group.visuals[0]
+        else:
+            yield Omission(f"{link.name}: the colours of its meshes", "a check examines one mesh, and they differ")
             continue
-        yield _place(link.name, largest, name, selected)
-        yield from _colour(link.name, largest, name, selected)
-        if others:
-            what = f"{link.name}: place and colour of all its {_PLURALS[kind]} but the largest"
-            yield Omission(what, "a check examines the largest shape of a kind")
+        if examined is not None:
+            yield from _colour(link.name, examined, group.name, group.selected)
 
 
-def _meshes(link: str, meshes: Sequence[Visual]) -> Iterator[Fact | Omission]:
-    for number, visual in enumerate(meshes):
-        yield from _mesh(link, visual, number)
-    if len({visual.material and visual.material.rgba for visual in meshes}) == 1:
-        yield from _colour(link, meshes[0], "mesh", {})
-    elif meshes:
-        yield Omission(f"{link}: the colours of its meshes", "a check examines one mesh, and they differ")
+def _meshes(link: Link) -> Iterator[Fact]:
+    for group in _groups(link):
+        if group.kind is Mesh:
+            yield from (_mesh(link.name, visual, number) for number, visual in enumerate(group.visuals))
 
 
-def _sizes(link: str, visuals: Sequence[Visual]) -> Iterator[Fact]:
-    """Yield a fact for each different size of shapes of one kind."""
-    seen: list[Mapping[str, Any]] = []
-    for visual in visuals:
-        check, arguments, title = _SIZES[type(visual.geometry)](visual)
-        if arguments not in seen:
-            seen.append(arguments)
-            aspect = check.removeprefix("shows_")
-            yield Fact(link, aspect, f"{link} shows a {title}", check, {"link": link, **arguments})
+def _sizes(kind: type[Geometry]) -> Measure:
+    """Return a fact for each different size of shapes of one kind."""
+
+    def of_link(link: Link) -> Iterator[Fact]:
+        seen: list[Mapping[str, Any]] = []
+        for visual in (it for group in _groups(link) if group.kind is kind for it in group.visuals):
+            check, arguments, title = _SIZES[kind](visual)
+            if arguments not in seen:
+                seen.append(arguments)
+                aspect = check.removeprefix("shows_")
+                yield Fact(link.name, aspect, f"{link.name} shows a {title}", check, {"link": link.name, **arguments})
+
+    return of_links(of_link)
+
+
+boxes, cylinders, spheres = map(_sizes, (Box, Cylinder, Sphere))
+meshes = of_links(_meshes)
+places = of_links(_places)
+colours = of_links(_colours)
 
 
 def _box(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
@@ -120,7 +164,7 @@ def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -
     yield Fact(link, aspect, title, "shows_colour", {"link": link, **selected, "colour": channels})
 
 
-def _mesh(link: str, visual: Visual, number: int) -> Iterator[Fact]:
+def _mesh(link: str, visual: Visual, number: int) -> Fact:
     mesh = visual.geometry
     assert isinstance(mesh, Mesh)
     file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
@@ -129,4 +173,4 @@ def _mesh(link: str, visual: Visual, number: int) -> Iterator[Fact]:
     title += f", scaled by {shown(scale)}" if scale != [1.0, 1.0, 1.0] else ""
     title += f", at {shown(xyz)} m in its frame" if any(xyz) else ""
     arguments = {"link": link, "file": file, "scale": scale, "xyz": xyz, "rpy": rpy}
-    yield Fact(link, f"mesh-{number + 1}" if number else "mesh", title, "shows_mesh", arguments)
+    return Fact(link, f"mesh-{number + 1}" if number else "mesh", title, "shows_mesh", arguments)

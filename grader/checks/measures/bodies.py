@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, Omission, exact, length, lengths, shown, whole_angle
+from grader.checks.measures.fact import Fact, Omission, exact, length, lengths, of_links, shown, whole_angle
 from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
@@ -20,25 +20,46 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _DIAGONAL = (0, 3, 5)
 
 
-def body_facts(link: Link) -> Iterator[Fact | Omission]:
-    """Yield the mass of a link, and that its inertia and its collision shapes fit its shapes."""
+def _masses(link: Link) -> Iterator[Fact]:
     if link.inertial is not None and isfinite(link.inertial.mass):
         yield _mass(link.name, exact(link.inertial.mass))
-        if link.inertial.mass > 0:
-            yield _inertia(link, link.inertial)
+
+
+def _inertias(link: Link) -> Iterator[Fact]:
+    if link.inertial is not None and isfinite(link.inertial.mass) and link.inertial.mass > 0:
+        yield _inertia(link, link.inertial)
+
+
+def _collisions(link: Link) -> Iterator[Fact | Omission]:
+    """Yield the collision shapes of a link that shows nothing."""
     if len(link.collisions) > MAX_SHAPES:
         yield Omission(f"how {link.name} collides", f"it has more than {MAX_SHAPES} collisions")
-        return
-    others = [
-        _collision(link.name, collision, index, only=len(link.collisions) == 1)
-        for index, collision in enumerate(link.collisions)
-    ]
-    if others and any(not is_empty(visual.geometry) for visual in link.visuals):
+    elif not _is_shown(link):
+        yield from _each_collision(link)
+
+
+def _collisions_as_shown(link: Link) -> Iterator[Fact]:
+    """Yield that the collision shapes of a link are those that it shows, or else what they are."""
+    if link.collisions and len(link.collisions) <= MAX_SHAPES and _is_shown(link):
         title = f"The collision shapes of {link.name} are those that it shows"
         fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name}, is_doubtful=True)
-        yield replace(fact, otherwise=tuple(others))
-    else:
-        yield from others
+        yield replace(fact, otherwise=tuple(_each_collision(link)))
+
+
+def _is_shown(link: Link) -> bool:
+    return any(not is_empty(visual.geometry) for visual in link.visuals)
+
+
+def _each_collision(link: Link) -> Iterator[Fact]:
+    is_only = len(link.collisions) == 1
+    for index, collision in enumerate(link.collisions):
+        yield _collision(link.name, collision, index, only=is_only)
+
+
+masses = of_links(_masses)
+inertias = of_links(_inertias)
+collisions = of_links(_collisions)
+collisions_as_shown = of_links(_collisions_as_shown)
 
 
 def _mass(link: str, mass: float) -> Fact:

@@ -1,42 +1,31 @@
 """Facts about the joints of a robot and about the robot as a whole: that it loads, its root, how many joints move, how its tips move."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any
 
-from grader.authoring.elements import texts_in
-from grader.authoring.fact import (
+from grader.checks.measures.elements import texts_in
+from grader.checks.measures.fact import (
+    THE_FILE,
+    THE_ROBOT,
     Fact,
-    Omission,
+    Facts,
     Solution,
     direction,
     exact,
     length,
     lengths,
+    of_joints,
     shown,
     whole_angle,
     whole_degrees,
 )
-from grader.errors import MissingElement, NotDecided
 from grader.robot.model import Joint
 from grader.text import counted, enumerated
 
 _A = {"fixed": "a fixed", "continuous": "a continuous", "revolute": "a revolute", "prismatic": "a prismatic"}
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _SLIDING_TOLERANCE = 0.002  # m: the default of joint_limits is in degrees
-
-
-def joint_facts(solution: Solution, joint: Joint) -> Iterator[Fact | Omission]:
-    """Yield what is true of a joint and of the frame of the link below it."""
-    for rule in _RULES:
-        try:
-            fact = rule(solution, joint)
-        except (MissingElement, NotDecided) as error:  # an axis of length zero
-            yield Omission(f"{joint.child}: {rule.__name__.strip('_')}", str(error))
-            continue
-        if fact is not None:
-            yield fact
 
 
 def _type(solution: Solution, joint: Joint) -> Fact:
@@ -111,58 +100,64 @@ def _mimic(solution: Solution, joint: Joint) -> Fact | None:
     return Fact(joint.child, "mimic", title, "mimics", arguments)
 
 
-_RULES: tuple[Callable[[Solution, Joint], Fact | None], ...] = (
-    _type,
-    _frame,
-    _axis,
-    _limits,
-    _dynamics,
-    _mimic,
-)
+types = of_joints("type", _type)
+frames = of_joints("frame", _frame)
+axes = of_joints("axis", _axis)
+limits = of_joints("limits", _limits)
+dynamics = of_joints("dynamics", _dynamics)
+mimics = of_joints("mimic", _mimic)
 
 
-_THE_FILE, _THE_ROBOT = "The file", "The robot"
 _COUNTED = ("revolute", "continuous", "prismatic")
 _MAX_TIPS = 20
 
 
-def loading_facts(solution: Solution) -> Iterator[Fact]:
+def loading(solution: Solution) -> Facts:
     """Yield that ROS 2 loads the file."""
     del solution
     title = "ROS 2 loads the URDF, and all links form one tree"
-    yield Fact("urdf", "loads", title, "urdf_loads", about=_THE_FILE)
+    yield Fact("urdf", "loads", title, "urdf_loads", about=THE_FILE)
 
 
-def tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the root of the tree, with a link that is fixed to it, and the numbers of joints that move, if there are joints."""
+def roots(solution: Solution) -> Facts:
+    """Yield the root of the tree, with a link that is fixed to it, if there are joints."""
     if not solution.joints:
         return
     root = solution.root
     fixed = (joint.child for joint in solution.joints.values() if joint.parent == root and joint.type == "fixed")
     holds = next(fixed, root)
     title = f"{root} is the root of the tree{f', and {holds} is fixed to it' if holds != root else ''}"
-    yield Fact("root", "", title, "root_of_tree", {"link": root, "holds": holds}, about=_THE_ROBOT)
+    yield Fact("root", "", title, "root_of_tree", {"link": root, "holds": holds}, about=THE_ROBOT)
+
+
+def counts(solution: Solution) -> Facts:
+    """Yield the numbers of joints that move, if there are joints."""
+    if not solution.joints:
+        return
     kinds = Counter(joint.type for joint in solution.moving_joints)
     moving = sum(joint.mimic is None for joint in solution.moving_joints)
     numbers = {"moving": moving, **{kind: kinds[kind] for kind in _COUNTED}}
-    types = [f"{kinds[kind]} {kind}" for kind in _COUNTED if kinds[kind]]
-    title = f"{counted(moving, 'joint')} can be moved{f': {enumerated(types)}' if types else ''}"
+    listed = [f"{kinds[kind]} {kind}" for kind in _COUNTED if kinds[kind]]
+    title = f"{counted(moving, 'joint')} can be moved{f': {enumerated(listed)}' if listed else ''}"
     title += " (with those that mimic)" if moving != len(solution.moving_joints) else ""
-    yield Fact("joint", "counts", title, "counts", numbers, about=_THE_ROBOT)
+    yield Fact("joint", "counts", title, "counts", numbers, about=THE_ROBOT)
 
 
-def motion_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield that the last links of the chains that move do so as those of the reference, and names that other elements use."""
-    if solution.tips:
-        tips = list(solution.tips[:_MAX_TIPS])
+def motions(solution: Solution) -> Facts:
+    """Yield that the last links of the chains that move do so as those of the reference."""
+    tips = list(solution.tips[:_MAX_TIPS])
+    if tips:
         title = f"{enumerated(tips, 4)} {'moves' if len(tips) == 1 else 'move'} as in the reference solution"
-        yield Fact(
-            "motion", "", title, "kinematics_match_reference", {"links": tips, "match": "order"}, about=_THE_ROBOT
-        )
+        arguments = {"links": tips, "match": "order"}
+        yield Fact("motion", "", title, "kinematics_match_reference", arguments, about=THE_ROBOT)
+
+
+def names(solution: Solution) -> Facts:
+    """Yield the names of joints that other elements use."""
     words = texts_in(solution.reading.root) if solution.reading.root is not None else set()
     joints = {solution.joints[link.name].name: link.name for link in solution.links if link.name in solution.joints}
     used = {name: link for name, link in joints.items() if name in words}
     if used:
         title = f"The joints that controllers use are named {enumerated(list(used))}"
         arguments = {"parent": solution.root, "joints": used}
-        yield Fact("joint", "names", title, "joints_named", arguments, about=_THE_ROBOT)
+        yield Fact("joint", "names", title, "joints_named", arguments, about=THE_ROBOT)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
-from grader.authoring.fact import Fact, Omission, shown
+from grader.checks.measures.fact import Fact, Facts, Omission, Solution, shown
 from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
 from grader.xml.element_values import name_of
@@ -25,8 +25,11 @@ _MAX_LISTED = 4  # values in a title
 Values = dict[str, Any]
 
 
-def element_facts(root: Element) -> Iterator[Fact | Omission]:
+def elements(solution: Solution) -> Facts:
     """Yield the values in the elements for simulators and controllers: a fact for each element in one of them."""
+    root = solution.reading.root
+    if root is None:
+        return
     used = texts_in(root)
     for element in _children(root):
         if name_of(element) in _FOREIGN:
@@ -40,7 +43,7 @@ def element_facts(root: Element) -> Iterator[Fact | Omission]:
                 yield from _fact_of_joint(element, child, is_used=_name(element) in used)
 
 
-def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Iterator[Fact | Omission]:
+def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Facts:
     """Yield what no other check tests of a joint; it is found by the name of the joint, which must not be free."""
     tag = name_of(child)
     is_limit = tag == "limit" and joint.get("type") == "continuous"

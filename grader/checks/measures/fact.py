@@ -1,14 +1,12 @@
 """The reference solution that a rubric is made from, what is measured on it, and how its numbers are written."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from decimal import Decimal
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, degrees, isclose, isfinite, radians
 from typing import Any
 
-from grader.checks.registry import find_check
-from grader.checks.toml_types import WrongValue
+from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link
 from grader.robot.reader import Reading
@@ -90,6 +88,40 @@ class Omission:
     why: str
 
 
+THE_FILE, THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
+
+Facts = Iterator[Fact | Omission]
+Measure = Callable[[Solution], Facts]
+
+
+def of_links(rule: Callable[[Link], Iterable[Fact | Omission]]) -> Measure:
+    """Return what a rule finds on each link."""
+
+    def measure(solution: Solution) -> Facts:
+        for link in solution.links:
+            for found in rule(link):
+                yield replace(found, about=link.name) if isinstance(found, Fact) else found
+
+    return measure
+
+
+def of_joints(name: str, rule: Callable[[Solution, Joint], Fact | None]) -> Measure:
+    """Return what a rule finds on each joint, under the link below it; `name` says what it is about."""
+
+    def measure(solution: Solution) -> Facts:
+        for link in solution.links:
+            joint = solution.joints.get(link.name)
+            try:
+                fact = rule(solution, joint) if joint is not None else None
+            except (MissingElement, NotDecided) as error:  # an axis of length zero
+                yield Omission(f"{link.name}: {name}", str(error))
+                continue
+            if fact is not None:
+                yield replace(fact, about=link.name)
+
+    return measure
+
+
 def length(value: float) -> float:
     """Return a measured length without what rounding has added: 0.15 for 0.15000000000000002."""
     return round(value, _DIGITS) + 0.0
@@ -131,25 +163,3 @@ def shown(values: Iterable[float]) -> str:
 def is_same(one: float, other: float) -> bool:
     """Return whether two numbers are equal up to rounding."""
     return isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)
-
-
-def why_invalid(fact: Fact) -> str:
-    """Return why the check does not take the arguments of a fact, such as a negative mass; empty if it does."""
-    check = find_check(fact.check)
-    assert check is not None, fact.check
-    for name, value in fact.arguments.items():
-        try:
-            check.parameters[name].type.parse(_as_read(value))
-        except WrongValue as error:
-            return f"{name} must be {error}"
-    return ""
-
-
-def _as_read(value: Any) -> Any:
-    """Return a value as it is read from a TOML file."""
-    match value:
-        case Mapping():
-            return {key: _as_read(item) for key, item in value.items()}
-        case list():
-            return list(map(_as_read, value))
-    return Decimal(repr(value)) if isinstance(value, float) else value
