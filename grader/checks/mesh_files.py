@@ -55,16 +55,19 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
         return MeshFile(filename, path, package, fault)
+    doubt = ""
     if not scheme:
         is_absolute = _ABSOLUTE.match(filename) is not None
-        return MeshFile(filename, rest, "", f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault)
-    if scheme == "file":
-        return MeshFile(filename, rest, "", f"is at a file:// path, which {_ONE_MACHINE}")
-    if scheme.lower() in ("package", "file") or not slashes:
-        return MeshFile(filename, rest, "", f"begins with {scheme}:{slashes or ''}; use package://")
-    if scheme in _WEB:
-        return MeshFile(filename, rest, "", "", "it is on the web, which the grader does not read")
-    return MeshFile(filename, rest, "", "", f"it is at a {scheme}:// path, which not every program finds")
+        fault = f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault
+    elif scheme == "file":
+        fault = f"is at a file:// path, which {_ONE_MACHINE}"
+    elif scheme.lower() in ("package", "file") or not slashes:
+        fault = f"begins with {scheme}:{slashes or ''}; use package://"
+    elif scheme in _WEB:
+        fault, doubt = "", "it is on the web, which the grader does not read"
+    else:
+        fault, doubt = "", f"it is at a {scheme}:// path, which not every program finds"
+    return MeshFile(filename, rest, "", fault, doubt)
 
 
 def why_not_found(mesh: MeshFile, submission: Submission) -> str:

@@ -166,13 +166,9 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
     setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
-    for stop in setup.stops:
-        if stop.path == MANIFEST and package.manifest is None:
-            continue  # other criteria report the missing package.xml
-        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
-        if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
-            message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
-            return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
+    stopped = _stopped(package, setup, files, kind)
+    if stopped is not None:
+        return stopped
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
@@ -189,18 +185,36 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
         message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake)
+    raise _not_installed(package, setup, files, kind)
+
+
+def _stopped(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> Outcome | None:
+    """Return that a build stops at the entry for these files; other criteria report a missing package.xml."""
+    folders = {posixpath.dirname(path) for path in files}
+    for stop in setup.stops:
+        if stop.path == MANIFEST and package.manifest is None:
+            continue
+        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
+        if owner == kind or posixpath.dirname(stop.path) in folders:
+            message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
+            return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
+    return None
+
+
+def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
+    """Return why a build does not install files: no call of setup(), no entry, or a pattern without a match."""
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"
-        raise MissingElement("call of setup", package.folder, message=message)
+        return MissingElement("call of setup", package.folder, message=message)
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
     empty = _meant(setup.empty, files, kind)
     if empty is None:
         message += ": no entry of data_files in setup.py names it"
-        raise MissingElement(what, package.folder, message=message)
+        return MissingElement(what, package.folder, message=message)
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
     detail, at = package.pattern_hint(empty.pattern), setup.location(empty.at)
     message += f": {problem}"
-    raise MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
+    return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
 
 
 def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":

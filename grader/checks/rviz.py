@@ -157,12 +157,12 @@ def _unknown_prefix() -> Outcome:
 def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
     """Return whether a RobotModel display shows the robot, and if not, why."""
     fault = _class_of_ros1(model) or _off(model)
+    if not fault and model.package != _PLUGINS:
+        return "pending", f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading"
+    if not fault and not model.is_on("Visual Enabled"):
+        fault = "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing"
     if fault:
         return "failed", fault
-    if model.package != _PLUGINS:
-        return "pending", f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading"
-    if not model.is_on("Visual Enabled"):
-        return "failed", "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing"
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
         return "pending", "the RobotModel display reads a local file instead of a topic; needs manual grading"
@@ -170,9 +170,8 @@ def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[St
     actual = (value.text or "" if value is not None else "").strip()
     if actual.strip("/") == topic.strip("/"):
         return _fault_of_prefix(model, opened)
-    if not actual:
-        return "failed", f"the RobotModel display has no Description Topic; it should be {topic!r}"
-    return "failed", f"the RobotModel display reads the topic {actual!r}; it should read {topic!r}"
+    fault = f"reads the topic {actual!r}; it should read" if actual else "has no Description Topic; it should be"
+    return "failed", f"the RobotModel display {fault} {topic!r}"
 
 
 def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:

@@ -109,15 +109,22 @@ def toml_type(annotation: Any) -> TomlType:
     if origin is Literal:
         return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
     if origin in (UnionType, Union):
-        members = [toml_type(member) for member in inner if member is not NoneType]  # None: the argument is absent
-        if len(members) == 1:
-            return members[0]
-        name = " or ".join(member.name for member in members)
-        choices = {"anyOf": [member.schema for member in members]}
-        return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))
+        return _union([toml_type(member) for member in inner if member is not NoneType])  # None: the argument is absent
     if origin in (list, tuple):
         length = len(inner) if origin is tuple and Ellipsis not in inner else None
         return _sequence(toml_type(inner[0]), origin, length, _PLURALS.get(inner[0], "values"))
+    return _table(inner)
+
+
+def _union(members: "list[TomlType]") -> TomlType:
+    if len(members) == 1:
+        return members[0]
+    name = " or ".join(member.name for member in members)
+    choices = {"anyOf": [member.schema for member in members]}
+    return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))
+
+
+def _table(inner: tuple[Any, ...]) -> TomlType:
     item, plural = (
         (toml_type(inner[1]), _PLURALS.get(inner[1], "values")) if len(inner) == 2 else (_SIMPLE[str], "strings")
     )

@@ -19,7 +19,7 @@ from grader.text import counted, enumerated, quoted
 
 if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
-    from grader.xacro.inventory import Definitions
+    from grader.xacro.inventory import Definitions, Inventory
 
 ABOUT = {
     "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything),
@@ -62,15 +62,8 @@ def xacro_uses(
         return source
     if not (file or properties or macros or includes):
         return _expansion(submission)
-    from grader.xacro.inventory import take_inventory  # late: few rubrics need it
-
-    try:
-        found = take_inventory(source.documents.values(), submission.budget)
-    except OutOfBudget as error:
-        raise NotDecided(str(error), str(error)) from None
-    paths = (
-        [path for path in source.documents if _ends(path, file)] if not submission.is_single else [*source.documents]
-    )
+    paths = [path for path in source.documents if submission.is_single or _ends(path, file)]
+    found = _inventory(source, submission)
     included = [path for (by, _), every in source.includes.items() if by in paths for path in every]
     lacks = [
         *_unused("property", "properties", properties, found.properties, found.used, paths),
@@ -80,6 +73,22 @@ def xacro_uses(
     if not lacks:
         names = [path.rpartition("/")[2] for path in paths]
         return passed(f"{enumerated(names, _MAX_NAMED)}: xacro with the expected properties, macros and includes")
+    _refuse_unknown(source, found)
+    at = next((lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0))
+    return failed("; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks))
+
+
+def _inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
+    from grader.xacro.inventory import take_inventory  # late: few rubrics need it
+
+    try:
+        return take_inventory(source.documents.values(), submission.budget)
+    except OutOfBudget as error:
+        raise NotDecided(str(error), str(error)) from None
+
+
+def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
+    """Raise NotDecided if what seems to be missing may be in a part that is not known."""
     followed = source.includes.keys()
     is_open = any((place.source.path, place.tag) not in followed for place in found.includes)
     if source.open_reason and is_open:
@@ -88,8 +97,6 @@ def xacro_uses(
         place = found.dynamic[0].at()
         reason = "xacro evaluates the name of a property or macro"
         raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
-    at = next((lack.location for lack in lacks if lack.location is not None), LazyLocation(source, 0))
-    return failed("; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks))
 
 
 def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
