@@ -83,13 +83,12 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: Docu
     others = [proof for proof in proofs if not proof.label.is_complete]
     meant = [proof for proof in others if proof.loose.is_complete and any(matches(it, proof.loose) for it in wanted)]
     perhaps = [proof for proof in others if proof not in meant and any(_may_match(it, proof) for it in wanted)]
-    inside = [*_below_headings(documents, wanted)] if documents is not None else []
+    inside = [*_below_headings(documents, wanted)]
     certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
     if meant or certain:
         return Found((*describe(meant), *certain))
     listed = {proof.file.path for proof in perhaps}
-    searched = _whole_documents(documents) if documents is not None else ()
-    whole = [file for file in searched if file.path not in listed and not _PRELAB.search(file.path)]
+    whole = (file for file in _whole_documents(documents) if file.path not in listed)
     return Found((), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole)))
 
 
@@ -108,19 +107,19 @@ def find_all_evidence(
         perhaps = tuple(exhibit for exhibit in one.perhaps if exhibit.heading or exhibit.path not in claimed - unread)
         claimed |= {exhibit.path for exhibit in perhaps}
         found[index] = Found(one.files, perhaps)
-    steps = [
-        (label, index)
-        for index, one in enumerate(found)
-        if not one.files
-        for label in map(read_label, names[index])
-        if label.is_complete
-    ]
+    without = [index for index, one in enumerate(found) if not one.files]
+    steps = [(label, index) for index in without for label in map(read_label, names[index]) if label.is_complete]
     for proof in (proof for proof in proofs if proof.file.path not in claimed and proof.loose.is_complete):
-        of_task = [(label, index) for label, index in steps if label.task == proof.loose.task]
-        if of_task:
-            near = min((abs(min(label.steps) - min(proof.loose.steps)), index) for label, index in of_task)[1]
+        near = _nearest(proof.loose, steps)
+        if near is not None:
             found[near] = Found((), (*found[near].perhaps, *describe([proof])))
     return found
+
+
+def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
+    """Return what belongs to the nearest step of the same task; None if there is none of it."""
+    distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
+    return min(distances)[1] if distances else None
 
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
@@ -154,14 +153,22 @@ def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tupl
     return next(filter(None, found), [])
 
 
-def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
+def _below_headings(documents: DocumentCollection | None, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
     """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
-    for document, head, label in _headed(documents, wanted):
+    for document, head, label in _headed(documents, wanted) if documents is not None else ():
         yield _below(document, head), _is_certain(label, document, head)
 
 
-def _whole_documents(documents: DocumentCollection) -> Iterator[File]:
-    """Yield the documents that may hold any evidence: those that were not read, and those with pictures without headings."""
+def _whole_documents(documents: DocumentCollection | None) -> Iterator[File]:
+    """Yield the documents that may hold any evidence: those that were not read, and those with pictures without headings.
+
+    A pre-lab has none.
+    """
+    if documents is not None:
+        yield from (file for file in _without_headings(documents) if not _PRELAB.search(file.path))
+
+
+def _without_headings(documents: DocumentCollection) -> Iterator[File]:
     read, unread = documents.named(DOCUMENTS)
     for document in read:
         has_steps = any(head.label.steps for head in _step_headings(documents, document))

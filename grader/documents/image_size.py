@@ -20,32 +20,32 @@ def image_size(start: bytes) -> tuple[int, int] | None:
 
 def _read(start: bytes) -> tuple[int, int, int]:
     """Return width, height and the EXIF orientation, 1 where there is none."""
-    if start.startswith(b"\x89PNG\r\n\x1a\n") and start[12:16] == b"IHDR":
-        return *struct.unpack_from(">II", start, 16), 1
-    if start.startswith((b"GIF87a", b"GIF89a")):
-        return *_gif(start), 1
-    if start.startswith(b"BM"):
-        is_old = struct.unpack_from("<I", start, 14)[0] == 12  # OS/2
-        width, height = struct.unpack_from("<HH" if is_old else "<ii", start, 18)
-        return width, abs(height), 1  # negative: from top to bottom
-    if start.startswith(b"\xff\xd8\xff"):
-        return _jpeg(start)
-    if start.startswith((b"II*\0", b"MM\0*")):
-        tags = _tiff_tags(start)
-        return tags[_TIFF_WIDTH], tags[_TIFF_HEIGHT], tags.get(_TIFF_ORIENTATION, 1)
-    if start.startswith(b"RIFF") and start[8:12] == b"WEBP":
-        return *_webp(start), 1
-    return 0, 0, 1
+    return next((read(start) for magic, read in _READERS.items() if start.startswith(magic)), (0, 0, 1))
 
 
-def _gif(start: bytes) -> tuple[int, int]:
+def _png(start: bytes) -> tuple[int, int, int]:
+    return (*struct.unpack_from(">II", start, 16), 1) if start[12:16] == b"IHDR" else (0, 0, 1)
+
+
+def _bmp(start: bytes) -> tuple[int, int, int]:
+    is_old = struct.unpack_from("<I", start, 14)[0] == 12  # OS/2
+    width, height = struct.unpack_from("<HH" if is_old else "<ii", start, 18)
+    return width, abs(height), 1  # negative: from top to bottom
+
+
+def _tiff(start: bytes) -> tuple[int, int, int]:
+    tags = _tiff_tags(start)
+    return tags[_TIFF_WIDTH], tags[_TIFF_HEIGHT], tags.get(_TIFF_ORIENTATION, 1)
+
+
+def _gif(start: bytes) -> tuple[int, int, int]:
     """Return the size of the screen, or of the first frame if that is larger: a viewer enlarges the screen for it."""
     width, height = struct.unpack_from("<HH", start, 6)
     try:
         left, top, wide, high = struct.unpack_from("<HHHH", start, _first_frame(start) + 1)
     except (struct.error, IndexError):  # only the screen is known
-        return width, height
-    return max(width, left + wide), max(height, top + high)
+        return width, height, 1
+    return max(width, left + wide), max(height, top + high), 1
 
 
 def _first_frame(gif: bytes) -> int:
@@ -90,15 +90,27 @@ def _tiff_tags(data: bytes) -> dict[int, int]:
     return tags
 
 
-def _webp(start: bytes) -> tuple[int, int]:
-    match start[12:16]:
-        case b"VP8 ":
-            width, height = struct.unpack_from("<HH", start, 26)
-            return width & 0x3FFF, height & 0x3FFF
-        case b"VP8L":
+def _webp(start: bytes) -> tuple[int, int, int]:
+    width, height = 0, 0
+    match start[8:16]:
+        case b"WEBPVP8 ":
+            width, height = (side & 0x3FFF for side in struct.unpack_from("<HH", start, 26))
+        case b"WEBPVP8L":
             bits = struct.unpack_from("<I", start, 21)[0]
-            return (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
-        case b"VP8X":
+            width, height = (bits & 0x3FFF) + 1, (bits >> 14 & 0x3FFF) + 1
+        case b"WEBPVP8X":
             low_width, high_width, low_height, high_height = struct.unpack_from("<HBHB", start, 24)
-            return (high_width << 16 | low_width) + 1, (high_height << 16 | low_height) + 1
-    return 0, 0
+            width, height = (high_width << 16 | low_width) + 1, (high_height << 16 | low_height) + 1
+    return width, height, 1
+
+
+_READERS = {
+    b"\x89PNG\r\n\x1a\n": _png,
+    b"GIF87a": _gif,
+    b"GIF89a": _gif,
+    b"BM": _bmp,
+    b"\xff\xd8\xff": _jpeg,
+    b"II*\0": _tiff,
+    b"MM\0*": _tiff,
+    b"RIFF": _webp,
+}

@@ -57,19 +57,9 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
     if task is not None and len(below) == 1 and all(answer.section is not None for answer in answers):
         return Match(tuple(below), True, f"the only {_shown(answers, below)} below the heading of task {task}")
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
-    numbers = [answer.number for answer in answers]
-    if None not in numbers and max(filter(None, numbers), default=0) <= wanted.total:
-        hits = [index for index, number in enumerate(numbers) if number == wanted.number]
-        if len(hits) > 1:  # a table of contents, a list of the questions
-            hits = [index for index in hits if index in written] or hits
-        if not hits:
-            return None
-        if len(hits) == 1:
-            section = answers[hits[0]].section
-            is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
-            where = f", but below the heading of task {section}" if is_other else ""
-            return Match(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
-        return Match(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
+    numbers = [answer.number for answer in answers if answer.number is not None]
+    if len(numbers) == len(answers) and max(numbers) <= wanted.total:
+        return _numbered(wanted, task, answers, written)
     for indices in (list(range(len(answers))), written, _repeated(answers, wanted.total)):
         in_order = all(answers[index].number in (None, place) for place, index in enumerate(indices, start=1))
         if len(indices) == wanted.total and in_order:
@@ -79,6 +69,21 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
     indices = written or list(range(len(answers)))
     count = f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like {_shown(answers, indices)}"
     return Match(tuple(indices), False, f"{count} for {wanted.total} questions: it may answer another question")
+
+
+def _numbered(wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]) -> Match | None:
+    """Return the answer below the heading with the question's number; of several, such as a list of the questions, that with text."""
+    hits = [index for index, answer in enumerate(answers) if answer.number == wanted.number]
+    if len(hits) > 1:
+        hits = [index for index in hits if index in written] or hits
+    if not hits:
+        return None
+    if len(hits) > 1:
+        return Match(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
+    section = answers[hits[0]].section
+    is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
+    where = f", but below the heading of task {section}" if is_other else ""
+    return Match(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
 
 
 def _repeated(answers: Sequence[Answer], total: int) -> list[int]:

@@ -107,19 +107,16 @@ def _candidates(
 def _tier(robot: RobotFile, wanted: str) -> int:
     parts = [part for part in wanted.split("/") if part not in ("", ".")]
     stem = parts[-1].split(".")[0]
-    if not robot.size:
-        return _EMPTY
-    if robot.path.split("/")[-len(parts) :] == parts:
-        return _EXACT
-    if robot.name == parts[-1]:
-        return _SAME_NAME
-    if folded(robot.name.split(".")[0]) == folded(stem):
-        return _OTHER_ENDING
-    if folded(robot.name).startswith(folded(stem)):
-        return _SAME_START
-    if folded(robot.robot) == folded(stem):
-        return _OTHER_NAME if robot.is_urdf else _NOT_NAMED
-    return _OTHER_ROBOT if robot.is_urdf else _OTHER_ROBOT_NOT_NAMED
+    is_robot = folded(robot.robot) == folded(stem)
+    ranks = (
+        (not robot.size, _EMPTY),
+        (robot.path.split("/")[-len(parts) :] == parts, _EXACT),
+        (robot.name == parts[-1], _SAME_NAME),
+        (folded(robot.name.split(".")[0]) == folded(stem), _OTHER_ENDING),
+        (folded(robot.name).startswith(folded(stem)), _SAME_START),
+        (robot.is_urdf, _OTHER_NAME if is_robot else _OTHER_ROBOT),
+    )
+    return next((tier for is_so, tier in ranks if is_so), _NOT_NAMED if is_robot else _OTHER_ROBOT_NOT_NAMED)
 
 
 def _same_named_packages(tree: Tree, package: str | None) -> tuple[str, ...]:
@@ -130,18 +127,22 @@ def _same_named_packages(tree: Tree, package: str | None) -> tuple[str, ...]:
 
 
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
-    if other.in_other_package and not best.in_other_package:
-        return _OUTSIDE
-    if other.has_no_link and not best.has_no_link and other.tier != _EMPTY:
-        return _PART if other.is_part else _NO_LINK
-    if other.is_backup != best.is_backup and other.is_other == best.is_other:
-        return BACKUP
-    if other.tier != best.tier:
-        is_another = best.tier in (_OTHER_NAME, _NOT_NAMED) and other.tier in (_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED)
-        reason = _ANOTHER if is_another else _TIERS[other.tier]
-        return reason.format(wanted=wanted, stem=wanted.rpartition("/")[2].split(".")[0])
-    if other.is_part != best.is_part:
-        return _PART
-    if other.outside != best.outside:
-        return _OUTSIDE
-    return DEEPER if other.depth != best.depth else LATER
+    reasons = (
+        (other.in_other_package and not best.in_other_package, _OUTSIDE),
+        (
+            other.has_no_link and not best.has_no_link and other.tier != _EMPTY,
+            _PART if other.is_part else _NO_LINK,
+        ),
+        (other.is_backup != best.is_backup and other.is_other == best.is_other, BACKUP),
+        (other.tier != best.tier, _reason_of_name(best, other, wanted)),
+        (other.is_part != best.is_part, _PART),
+        (other.outside != best.outside, _OUTSIDE),
+        (other.depth != best.depth, DEEPER),
+    )
+    return next((reason for is_so, reason in reasons if is_so), LATER)
+
+
+def _reason_of_name(best: _Candidate, other: _Candidate, wanted: str) -> str:
+    is_another = best.tier in (_OTHER_NAME, _NOT_NAMED) and other.tier in (_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED)
+    reason = _ANOTHER if is_another else _TIERS.get(other.tier, "")
+    return reason.format(wanted=wanted, stem=wanted.rpartition("/")[2].split(".")[0])

@@ -1,6 +1,6 @@
 """What of a submission is graded: the files of this lab, and of these the URDF and the package."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.files.tree import Tree
@@ -48,67 +48,87 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists, only for the robot that the
     rubric names. `limit` is in bytes of a URDF.
     """
-    robots = find_robots(tree, wanted.rpartition("/")[2], limit)
-    roots = [path for path in tree.files if path.rpartition("/")[2] in (MANIFEST, SETUP)]
-    scope = _Scope(tree, robots, roots, wanted, folders)
-    lab_of_robots, lab_of_packages = scope.nearest(robot.path for robot in robots), scope.nearest(roots)
-    candidates = tuple(
-        robot for robot in robots if lab_of_robots is not None and scope.lab(robot.path) == lab_of_robots
-    )
-    packages = read_packages(scope.only(lab_of_packages), package, wanted) if lab_of_packages is not None else ()
+    scope = _Scope(tree, wanted, folders, limit)
+    packages = scope.packages(package, wanted)
     named = best_named(packages, package)
     preferred = named or next(iter(packages), None)
-    urdf, others = find_urdf(scope.tree, wanted, preferred.folder if preferred else None, candidates)
+    urdf, others = find_urdf(scope.tree, wanted, preferred.folder if preferred else None, tuple(scope.robots))
     graded = named or package_around(packages, urdf)
     others += tuple(
         OtherCandidate(it.path(MANIFEST), why_not(graded, it, wanted)) for it in packages if it is not graded
     )
-    elsewhere = [robot.path for robot in robots if lab_of_robots is None or scope.lab(robot.path) != lab_of_robots]
-    passed = [path for path in roots if lab_of_packages is None or scope.lab(path) != lab_of_packages]
-    elsewhere += [path for path in passed if path.rpartition("/")[2] == MANIFEST]
-    others += tuple(OtherCandidate(path, scope.why_not(path)) for path in elsewhere[:_MAX_ELSEWHERE])
+    others += tuple(OtherCandidate(path, scope.why_not(path)) for path in scope.elsewhere[:_MAX_ELSEWHERE])
     names = {it.folder: it.name for it in packages}
-    works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in candidates[:_MAX_WORKS] if it.size]
-    works += [Work(folder, is_wanted=True) for folder, name in names.items() if name == package]
     lab = {word for name in folders for word in lab_words(name)}
-    students = students_in(works, names, lab, package) if len(works) > 1 else ()
-    of_other_labs = read_packages(tree, package, wanted) if passed and not packages else ()
-    reason, which = why_none(packages, of_other_labs, package)
-    no_package = reason, which + (_built_package(scope.tree) if not packages else "")
-    notes = list(scope.notes(urdf))
+    students = _students(scope.robots, names, lab, wanted, package)
+    notes = scope.notes(urdf)
     if urdf is not None and not students:
         own, beside = students_beside(urdf.rpartition("/")[0], scope.documents.folders, names, lab, package)
-        notes += [_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own)] if beside else []
-    return Selection(
-        scope.documents, urdf, graded, packages, no_package, others, tuple(notes), students, scope.other_lab
-    )
+        notes += (_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own),) if beside else ()
+    no_package = scope.no_package(packages, package, wanted)
+    return Selection(scope.documents, urdf, graded, packages, no_package, others, notes, students, scope.other_lab)
+
+
+def _students(
+    robots: Sequence[RobotFile], names: Mapping[str, str], lab: set[str], wanted: str, package: str
+) -> tuple[str, ...]:
+    """Return the folders of the students if the robots and packages are of several; `names` are those of packages."""
+    works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in robots[:_MAX_WORKS] if it.size]
+    works += [Work(folder, is_wanted=True) for folder, name in names.items() if name == package]
+    return students_in(works, names, lab, package) if len(works) > 1 else ()
 
 
 class _Scope:
-    """The part of a submission in which its lab is searched: `tree`, and `documents` without what is outside of the lab's folder."""
+    """The part of a submission in which its lab is searched: `tree`, and `documents` without what is outside of the lab's folder.
 
-    def __init__(
-        self, tree: Tree, robots: Sequence[RobotFile], roots: Sequence[str], wanted: str, folders: Sequence[str]
-    ) -> None:
+    `robots` are the candidates in it, `elsewhere` are other robots and packages.
+    """
+
+    def __init__(self, tree: Tree, wanted: str, folders: Sequence[str], limit: int) -> None:
         self._whole = tree
         self._labs = LabFolders(folders, tree.files)
+        robots = find_robots(tree, wanted.rpartition("/")[2], limit)
+        roots = [path for path in tree.files if path.rpartition("/")[2] in (MANIFEST, SETUP)]
         self.other_lab = ""
-        present = set(map(self._labs.belonging, tree.files))
+        has_own = self._find_labs(robots, roots, wanted)
+        self.tree = self.only(*self._allowed)
+        self.documents = self.only(Belonging.THIS_LAB) if has_own else self.tree
+        self._own = next(map(self._labs.around, self.documents.files), "") if has_own else ""
+        lab_of_robots, self._lab_of_packages = self.nearest(robot.path for robot in robots), self.nearest(roots)
+        self.robots = [it for it in robots if lab_of_robots is not None and self.lab(it.path) == lab_of_robots]
+        self._passed = [
+            path for path in roots if self._lab_of_packages is None or self.lab(path) != self._lab_of_packages
+        ]
+        own = {robot.path for robot in self.robots}
+        self.elsewhere = [robot.path for robot in robots if robot.path not in own]
+        self.elsewhere += [path for path in self._passed if path.rpartition("/")[2] == MANIFEST]
+
+    def _find_labs(self, robots: Sequence[RobotFile], roots: Sequence[str], wanted: str) -> bool:
+        """Find out which labs' folders are searched; return whether there is one of this lab."""
+        present = set(map(self._labs.belonging, self._whole.files))
         work = {self._labs.belonging(path) for path in (*(robot.path for robot in robots), *roots)}
         has_own = Belonging.THIS_LAB in present
         of_labs = [robot for robot in robots if not self._labs.is_project(robot.path)]
         is_elsewhere = work == {Belonging.OTHER_LAB} and any(is_wanted(robot, wanted) for robot in of_labs)
+        self._allowed = [Belonging.NO_LAB]
         if has_own and not is_elsewhere:
-            self._allowed = [Belonging.THIS_LAB, Belonging.NO_LAB]
-        elif work == {Belonging.OTHER_LAB} or present == {Belonging.OTHER_LAB}:
-            best = find_urdf(tree, wanted, None, tuple(of_labs or robots)).path or next(iter([*roots, *tree.files]))
-            self.other_lab = self._labs.around(best)
-            self._allowed = [Belonging.OTHER_LAB, Belonging.NO_LAB]
-        else:
-            self._allowed = [Belonging.NO_LAB]
-        self.tree = self.only(*self._allowed)
-        self.documents = self.only(Belonging.THIS_LAB) if has_own else self.tree
-        self._own = next(map(self._labs.around, self.documents.files), "") if has_own else ""
+            self._allowed.insert(0, Belonging.THIS_LAB)
+        elif Belonging.OTHER_LAB in present and {Belonging.OTHER_LAB} in (work, present):
+            robot = find_urdf(self._whole, wanted, None, tuple(of_labs or robots)).path
+            self.other_lab = self._labs.around(robot or next(iter([*roots, *self._whole.files])))
+            self._allowed.insert(0, Belonging.OTHER_LAB)
+        return has_own
+
+    def packages(self, package: str, wanted: str) -> tuple[Package, ...]:
+        """Return the packages of the lab."""
+        lab = self._lab_of_packages
+        return read_packages(self.only(lab), package, wanted) if lab is not None else ()
+
+    def no_package(self, packages: tuple[Package, ...], package: str, wanted: str) -> tuple[str, str]:
+        """Return why no package is graded, and which there are."""
+        of_other_labs = read_packages(self._whole, package, wanted) if self._passed and not packages else ()
+        reason, which = why_none(packages, of_other_labs, package)
+        return reason, which + (_built_package(self.tree) if not packages else "")
 
     def lab(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not graded."""
