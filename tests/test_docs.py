@@ -14,13 +14,16 @@ from typer.main import get_command
 
 from grader import __version__
 from grader.classroom.run import pool
+from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
 from grader.documents import collection, converter, document, pictures
 from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.mutation.testing import MAX_MUTANTS
-from grader.package.package import PYTHON_LIMIT
-from grader.static_python import closed_values
+from grader.package import package
+from grader.robot import diagnostics
+from grader.static_python import closed, closed_values
+from grader.submission import packages
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024
@@ -81,12 +84,14 @@ def commands(command: Any, name: str) -> Iterator[tuple[str, set[str]]]:
 
 
 def test_every_command_and_option_is_in_the_reference() -> None:
-    """The synopsis of each command has its options, and no other ones."""
+    """Each command has a synopsis with its options, and no other ones."""
     page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
     block = re.search(r"^```text\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
     assert block is not None
     shown = re.split(r"\n(?=grader )", block[1].strip())
-    for name, options in commands(get_command(make_app(COMMANDS)), "grader"):
+    expected = dict(commands(get_command(make_app(COMMANDS)), "grader"))
+    assert len(shown) == len(expected)
+    for name, options in expected.items():
         [synopsis] = [synopsis for synopsis in shown if f"{synopsis} ".startswith(f"{name} ")]
         assert set(re.findall(r"--[a-z-]+", synopsis)) == options, name
 
@@ -118,15 +123,22 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         ),
         "| {} GiB; the ratio above |": (limits.MAX_ARCHIVE_SIZE / MIB / 1024,),
         "| {} deep, {} in all, 64 MiB each |": (limits.MAX_NESTED, limits.MAX_ARCHIVES),
-        "| `setup.py`, a launch file | {} KiB |": (PYTHON_LIMIT / 1024,),
+        "| `setup.py`, a launch file | {} KiB |": (package.PYTHON_LIMIT / 1024,),
         "| 1 MiB, and its first {:,} lines |": (document.MAX_LINES,),
         "| its first {} pages |": (converter.MAX_PAGES,),
-        "| {} s; 1 GiB of memory |": (collection.MAX_SECONDS,),
+        "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
+        "| `package.xml`; an RViz file | {} KiB; {} KiB |": (
+            packages._MAX_MANIFEST_SIZE / 1024,
+            package._RVIZ_LIMIT / 1024,
+        ),
+        "| {} s of processor time; {} GiB of memory |": (ending._SECONDS, ending._MEMORY / MIB / 1024),
+        "| problems of a URDF; links that `inspect` prints | {:,}; 500 |": (diagnostics._MAX_PROBLEMS,),
         "{} GiB of memory | graded again": (pool.MAX_MEMORY / MIB / 1024,),
     },
     "xacro.md": {
         "| work to read one submission | {:,} parts |": (closed_values.READING,),
-        "; {:,} |\n| parts of a list or dict, with everything in it | {:,} |": (
+        "| {:,}; {:,} |\n| parts of a list or dict, with everything in it | {:,} |": (
+            closed._MAX_LENGTH,
             closed_values.MAX_TEXT,
             closed_values.MAX_PARTS,
         ),
