@@ -1,4 +1,4 @@
-"""Write what is generated from the code into the pages: `python docs/make.py`. The tests fail if a page is out of date."""
+"""Write what is generated into the pages: `python docs/make.py`. The tests fail if a page is out of date."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Take the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser` installed."""
+"""Take the screenshots of the documentation: `python docs/screenshots.py`, with Chromium and the extra `browser`."""
 
 import shutil
 import subprocess
