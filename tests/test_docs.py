@@ -1,16 +1,32 @@
 """The documentation matches the code, and its commands and links work."""
 
+import json
 import re
 import runpy
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
+from typer.main import get_command
 
 from grader import __version__
+from grader.classroom.run import pool
+from grader.cli import ending
+from grader.cli.app import COMMANDS, make_app
+from grader.documents import collection, converter, document, pictures
+from grader.files import limits
+from grader.grading.rubric import load_rubric, shipped_rubrics
+from grader.mutation.testing import MAX_MUTANTS
+from grader.package import package
+from grader.robot import diagnostics
+from grader.static_python import closed, closed_values
+from grader.submission import packages
+from tests.command_line import ROOT, run
 
-ROOT = Path(__file__).parent.parent
+MIB = 1024 * 1024
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 GENERATED = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
 
@@ -47,8 +63,8 @@ def test_anchors_are_headings(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_codes_and_criteria_exist(page: Path) -> None:
     """Every problem code on a page is in the catalogue."""
-    codes = set(re.findall(r"(?:URDF|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
-    assert all(f"## {code}" in GENERATED["problems.md"] for code in codes)
+    codes = set(re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
+    assert all(f"- `{code}` (" in GENERATED["problems.md"] for code in codes)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -58,10 +74,105 @@ def test_code_blocks_can_be_parsed(page: Path) -> None:
         (yaml.safe_load if kind == "yaml" else tomllib.loads)(block)
 
 
+def commands(command: Any, name: str) -> Iterator[tuple[str, set[str]]]:
+    """Yield each command below this one with its options."""
+    below = getattr(command, "commands", {})
+    for word, subcommand in below.items():
+        yield from commands(subcommand, f"{name} {word}")
+    if not below:
+        yield name, {option for parameter in command.params for option in parameter.opts if option.startswith("--")}
+
+
+def test_every_command_and_option_is_in_the_reference() -> None:
+    """Each command has a synopsis with its options, and no other ones."""
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    block = re.search(r"^```text\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
+    assert block is not None
+    shown = re.split(r"\n(?=grader )", block[1].strip())
+    expected = dict(commands(get_command(make_app(COMMANDS)), "grader"))
+    assert len(shown) == len(expected)
+    for name, options in expected.items():
+        [synopsis] = [synopsis for synopsis in shown if f"{synopsis} ".startswith(f"{name} ")]
+        assert set(re.findall(r"--[a-z-]+", synopsis)) == options, name
+
+
+@pytest.mark.parametrize("name", ["report", "inspect", "class", "diff", "rubric-test"])
+def test_every_key_of_json_is_in_the_reference(name: str) -> None:
+    """Each key of each schema is on the page."""
+    page = (ROOT / "docs" / "command-line.md").read_text(encoding="utf-8")
+    shown = set(re.findall(r"\w+", " ".join(re.findall(r"`[^`\n]+`", page))))
+    assert set(keys(json.loads(run(("schema", name)).stdout))) <= shown
+
+
+def keys(schema: Any) -> Iterator[str]:
+    """Yield the names of all properties in a JSON Schema."""
+    if isinstance(schema, dict):
+        yield from schema.get("properties", {})
+    for part in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from keys(part)
+
+
+LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
+    "packages.md": {
+        "| files, and folders, of a submission | {:,} |": (limits.MAX_FILES,),
+        "| one file | {} MiB |": (limits.MAX_FILE_SIZE / MIB,),
+        "| {} MiB, and {} times the size of the archive beyond {} MiB |": (
+            limits.MAX_UNPACKED_SIZE / MIB,
+            limits.MAX_RATIO,
+            limits.HARMLESS_SIZE / MIB,
+        ),
+        "| {} GiB; the ratio above |": (limits.MAX_ARCHIVE_SIZE / MIB / 1024,),
+        "| {} deep, {} in all, 64 MiB each |": (limits.MAX_NESTED, limits.MAX_ARCHIVES),
+        "| `setup.py`, a launch file | {} KiB |": (package.PYTHON_LIMIT / 1024,),
+        "| 1 MiB, and its first {:,} lines |": (document.MAX_LINES,),
+        "| its first {} pages |": (converter.MAX_PAGES,),
+        "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
+        "| `package.xml`; an RViz file | {} KiB; {} KiB |": (
+            packages._MAX_MANIFEST_SIZE / 1024,
+            package._RVIZ_LIMIT / 1024,
+        ),
+        "| {} s of processor time; {} GiB of memory |": (ending._SECONDS, ending._MEMORY / MIB / 1024),
+        "| problems of a URDF; links that `inspect` prints | {:,}; 500 |": (diagnostics._MAX_PROBLEMS,),
+        "{} GiB of memory | graded again": (pool.MAX_MEMORY / MIB / 1024,),
+    },
+    "xacro.md": {
+        "| work to read one submission | {:,} parts |": (closed_values.READING,),
+        "| {:,}; {:,} |\n| parts of a list or dict, with everything in it | {:,} |": (
+            closed._MAX_LENGTH,
+            closed_values.MAX_TEXT,
+            closed_values.MAX_PARTS,
+        ),
+    },
+    "rubric-test.md": {"(default: {}, sampled": (MAX_MUTANTS,)},
+    "grade-a-class.md": {
+        "up to {} MiB and {} megapixels": (pictures.MAX_BYTES / MIB, pictures.MAX_PIXELS / 1_000_000),
+    },
+}
+
+
+@pytest.mark.parametrize(("page", "phrase"), [(page, phrase) for page, phrases in LIMITS.items() for phrase in phrases])
+def test_limits_are_those_of_the_code(page: str, phrase: str) -> None:
+    """The figures on the pages are the constants of the code."""
+    figures = (int(figure) for figure in LIMITS[page][phrase])
+    assert phrase.format(*figures) in (ROOT / "docs" / page).read_text(encoding="utf-8")
+
+
+def test_points_are_those_of_the_rubrics() -> None:
+    """The pages of the labs have the points of each part, and the README those of Lab 6."""
+    for name, path in shipped_rubrics().items():
+        rubric = load_rubric(str(path))
+        page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+        for part in rubric.parts:
+            points = sum(criterion.points for criterion in rubric.criteria if criterion.part == part.id)
+            assert re.search(rf"^\| `{part.id}` \|.*\| {points}(, manual)? \|$", page, re.MULTILINE), part
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert "all 90 automatic points; 10 more need manual grading" in readme
+    assert "the score, 64/70." in readme
+    assert "\n64/70  " in GENERATED["grade-one-submission.md"]
+
+
 def test_the_lab_page_names_every_criterion() -> None:
     """Each criterion of the rubric has a row; the two wheels share rows."""
-    from grader.grading.rubric import load_rubric
-
     text = (ROOT / "docs" / "lab6.md").read_text(encoding="utf-8")
     for criterion in load_rubric("lab6").criteria:
         name = re.sub(r"^(left|right)(?=-wheel)", "…", criterion.id)

@@ -29,7 +29,7 @@ with = { links = ["@tip"] }
 """
 
 HEAD = RUBRIC.partition("check =")[0]
-EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks-by-example.md").read_text(encoding="utf-8"), re.DOTALL)
+EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks.md").read_text(encoding="utf-8"), re.DOTALL)
 
 
 # What is wrong with the reference, by what is done to the folder of the rubric, and a part of the message.
