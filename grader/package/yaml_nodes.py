@@ -68,8 +68,7 @@ def read_yaml(data: bytes, path: str) -> Node:
 def _compose(events: Iterator[yaml.Event], path: str) -> Node:
     root = Node(Location(path, 1, 1), {})
     open_nodes: list[tuple[Node, list[str]]] = []  # each with the key in it whose value follows
-    anchors: dict[str, Node] = {}
-    aliases = 0
+    anchors = _Anchors(path)
     first = True
     for count, event in enumerate(events):
         if count > _MAX_EVENTS:
@@ -80,18 +79,7 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             break
         if not isinstance(event, yaml.NodeEvent):
             continue
-        if isinstance(event, yaml.AliasEvent):
-            aliases += 1
-            found = anchors.get(event.anchor or "")
-            if found is None or aliases > _MAX_ALIASES:
-                missing = f"there is no anchor for the alias {event.anchor}"
-                reason = f"the file has more than {_MAX_ALIASES} aliases" if found else missing
-                raise YamlFault(reason, _location(event, path))
-            node = found
-        else:
-            node = _node(event, path)
-            if event.anchor:
-                anchors[event.anchor] = node
+        node = anchors.node(event)
         if open_nodes:
             _attach(*open_nodes[-1], node)
         elif first:
@@ -101,6 +89,28 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             if len(open_nodes) > _MAX_DEPTH:
                 raise YamlFault("the file is too deeply nested", node.location)
     return root
+
+
+class _Anchors:
+    """The nodes that aliases stand for, by the names of their anchors."""
+
+    def __init__(self, path: str) -> None:
+        self._path, self._nodes, self._aliases = path, dict[str, Node](), 0
+
+    def node(self, event: yaml.NodeEvent) -> Node:
+        """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
+        if not isinstance(event, yaml.AliasEvent):
+            node = _node(event, self._path)
+            if event.anchor:
+                self._nodes[event.anchor] = node
+            return node
+        self._aliases += 1
+        found = self._nodes.get(event.anchor or "")
+        if found is None:
+            raise YamlFault(f"there is no anchor for the alias {event.anchor}", _location(event, self._path))
+        if self._aliases > _MAX_ALIASES:
+            raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", _location(event, self._path))
+        return found
 
 
 def _node(event: yaml.NodeEvent, path: str) -> Node:

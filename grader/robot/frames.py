@@ -146,16 +146,16 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
     if isinstance(position, int | float) and not isfinite(position):
         return None  # a chain of mimic joints can overflow
     if joint.type == "floating":
-        if isinstance(position, int | float):
-            return IDENTITY
-        x, y, z, roll, pitch, yaw = position
-        return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+        return _floating(position)
     direction = unit(joint.axis) if joint.axis is not None else None
     if direction is None:
         # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint moves.
         return IDENTITY if joint.axis is None and not position else None
-    if joint.type == "planar":
-        return _planar(direction, position)
+    return _planar(direction, position) if joint.type == "planar" else _along(joint, direction, position)
+
+
+def _along(joint: Joint, direction: Vector, position: Position) -> Transform:
+    """Return a motion along the axis of a prismatic joint, or about that of another one."""
     if not position:
         return IDENTITY
     assert isinstance(position, int | float)  # check_position has made sure
@@ -163,6 +163,13 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
         x, y, z = direction
         return Transform(translation=(x * position, y * position, z * position))
     return Transform(rotation_about(direction, position))
+
+
+def _floating(position: Position) -> Transform:
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, z, roll, pitch, yaw = position
+    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
 
 
 def _planar(normal: Vector, position: Position) -> Transform:

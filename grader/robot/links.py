@@ -19,6 +19,7 @@ from grader.robot.model import (
     Visual,
 )
 from grader.robot.numbers import NumberError, rgba
+from grader.source import LazyLocation
 from grader.text import quoted
 from grader.xml.parsing import Element
 
@@ -194,31 +195,40 @@ def _read_geometry(
         reader.fail("<geometry> is empty", element)
         return None
     shape = element[0]
-    location = problems.location(shape)
-    geometry: Geometry | None = None
-    sizes: list[tuple[str, float]] = []
-    match shape.tag:
-        case "box":
-            if shape.get("size") is None:
-                reader.fail("<box> has no size", shape)
-            geometry = Box(reader.vector(shape, "size"), location)
-            sizes = [("size", edge) for edge in geometry.size]
-        case "cylinder":
-            geometry = Cylinder(reader.number(shape, "radius"), reader.number(shape, "length"), location)
-            sizes = [("radius", geometry.radius), ("length", geometry.length)]
-        case "sphere":
-            geometry = Sphere(reader.number(shape, "radius"), location)
-            sizes = [("radius", geometry.radius)]
-        case "mesh":
-            if shape.get("filename") is None:
-                reader.fail("<mesh> has no filename", shape)
-            geometry = Mesh(shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location)
-        case unknown:
-            guess = problems.did_you_mean(str(unknown), _SHAPES)
-            reader.fail(f"<{unknown}> is not a shape that ROS 2 knows{guess}", shape)
-    for attribute, value in sizes:
+    if shape.tag not in _SHAPES:
+        guess = problems.did_you_mean(str(shape.tag), _SHAPES)
+        reader.fail(f"<{shape.tag}> is not a shape that ROS 2 knows{guess}", shape)
+        return None
+    needed = {"box": "size", "mesh": "filename"}.get(shape.tag)
+    if needed and shape.get(needed) is None:
+        reader.fail(f"<{shape.tag}> has no {needed}", shape)
+    geometry = _shape(shape, reader, problems.location(shape))
+    for attribute, value in _sizes(geometry):
         if value < 0:
             message = f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
             problems.add(catalogue.NEGATIVE_SIZE, message, shape, attribute)
             break
     return geometry
+
+
+def _shape(shape: Element, reader: ElementReader, location: LazyLocation) -> Geometry:
+    match shape.tag:
+        case "box":
+            return Box(reader.vector(shape, "size"), location)
+        case "cylinder":
+            return Cylinder(reader.number(shape, "radius"), reader.number(shape, "length"), location)
+        case "sphere":
+            return Sphere(reader.number(shape, "radius"), location)
+    return Mesh(shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location)
+
+
+def _sizes(geometry: Geometry) -> list[tuple[str, float]]:
+    """Return the attributes with the sizes of a shape that has some."""
+    match geometry:
+        case Box(size=edges):
+            return [("size", edge) for edge in edges]
+        case Cylinder(radius=radius, length=length):
+            return [("radius", radius), ("length", length)]
+        case Sphere(radius=radius):
+            return [("radius", radius)]
+    return []

@@ -60,16 +60,19 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
         inner = {parents[link].parent for link in places if link != root}
         tips = {link for link, place in places.items() if place.depth == most and link not in inner}
         return _only(robot, tips, name)
-    number = int(found[1])
+    return _only(robot, _moved(places, parents, int(found[1]), most, name), name)
+
+
+def _moved(places: dict[str, _Place], parents: Mapping[str, Joint], number: int, most: int, name: str) -> set[str]:
+    """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"
         raise MissingElement("link", name, message=f"there is no {name}: {longest}")
     on_chain = {link for link, place in places.items() if place.depth == most}
     for link in reversed(places):  # a link comes after its parent
-        if link in on_chain and link != root:
+        if link in on_chain and link != places[link].root:
             on_chain.add(parents[link].parent)
-    moved = {link for link in on_chain if places[link].is_moved and places[link].depth == number}
-    return _only(robot, moved, name)
+    return {link for link in on_chain if places[link].is_moved and places[link].depth == number}
 
 
 def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _Place]:

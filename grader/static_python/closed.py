@@ -53,6 +53,10 @@ def _parsed(text: str) -> ast.expr | str:
 _kept = lru_cache(1_000)(_parsed)
 
 
+# What makes a value that no function has measured yet.
+_MAKES_VALUES = (ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp)
+
+
 class _Evaluator:
     def __init__(self, find: Callable[[str], Value], budget: Budget) -> None:
         self._find = find
@@ -61,60 +65,67 @@ class _Evaluator:
     def value(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
         """Return the value of an expression; `local` has the names that comprehensions bind."""
         self._budget.charge(_OF_NODE)
-        match node:
-            case ast.Constant(value=value):
-                return self._budget.checked(value)
-            case ast.Name(id=name):
-                if name.startswith("__"):
-                    raise ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
-                return local[name] if name in local else self._find(name)
-            case ast.BinOp(left=left, op=op, right=right):
-                return operate(op, self.value(left, local), self.value(right, local), self._budget)
-            case ast.Compare(left=left, ops=ops, comparators=comparators):
-                return self._compare(self.value(left, local), ops, comparators, local)
-            case ast.BoolOp(op=op, values=operands):
-                return self._bool_op(op, operands, local)
-            case ast.IfExp(test=test, body=body, orelse=other):
-                return self.value(body if run(bool, self.value(test, local)) else other, local)
-            case ast.Attribute(value=owner, attr=name):
-                return attribute(self.value(owner, local), name, self._budget)
-            case ast.Subscript(value=owner, slice=key):
-                return subscript(self.value(owner, local), self._key(key, local), self._budget)
-            case ast.Call():
-                return self._call(node, local)
-            case _:
-                return self._budget.checked(self._rare(node, local))
+        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if kind is None:
+            raise Undetermined("an expression of this kind is not supported")
+        value: Value = kind(node, local)
+        return self._budget.checked(value) if isinstance(node, _MAKES_VALUES) else value
 
-    def _rare(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
-        match node:
-            case ast.UnaryOp(op=op, operand=operand) if type(op) in _UNARY:
-                return run(_UNARY[type(op)], self.value(operand, local))
-            case ast.List(elts=elements):
-                return [self.value(element, local) for element in elements]
-            case ast.Tuple(elts=elements):
-                return tuple(self.value(element, local) for element in elements)
-            case ast.ListComp(elt=element, generators=loops):
-                return [self.value(element, inner) for inner in self._rounds(loops, local)]
-            case ast.Await() | ast.Yield() | ast.YieldFrom():
-                raise ExpressionFails("SyntaxError: await and yield belong into functions")
-            case _:
-                raise Undetermined("an expression of this kind is not supported")
+    def _constant(self, node: ast.Constant, local: Mapping[str, Value]) -> Value:
+        del local
+        return node.value
 
-    def _compare(
-        self, left: Value, ops: list[ast.cmpop], comparators: list[ast.expr], local: Mapping[str, Value]
-    ) -> Value:
-        for op, comparator in zip(ops, comparators, strict=True):
+    def _name(self, node: ast.Name, local: Mapping[str, Value]) -> Value:
+        if node.id.startswith("__"):
+            raise ExpressionFails(f"names that begin with two underscores are not allowed: {node.id}")
+        return local[node.id] if node.id in local else self._find(node.id)
+
+    def _binop(self, node: ast.BinOp, local: Mapping[str, Value]) -> Value:
+        return operate(node.op, self.value(node.left, local), self.value(node.right, local), self._budget)
+
+    def _ifexp(self, node: ast.IfExp, local: Mapping[str, Value]) -> Value:
+        return self.value(node.body if run(bool, self.value(node.test, local)) else node.orelse, local)
+
+    def _attribute(self, node: ast.Attribute, local: Mapping[str, Value]) -> Value:
+        return attribute(self.value(node.value, local), node.attr, self._budget)
+
+    def _subscript(self, node: ast.Subscript, local: Mapping[str, Value]) -> Value:
+        return subscript(self.value(node.value, local), self._key(node.slice, local), self._budget)
+
+    def _unaryop(self, node: ast.UnaryOp, local: Mapping[str, Value]) -> Value:
+        if type(node.op) not in _UNARY:
+            raise Undetermined("an expression of this kind is not supported")
+        return run(_UNARY[type(node.op)], self.value(node.operand, local))
+
+    def _list(self, node: ast.List | ast.Tuple, local: Mapping[str, Value]) -> list[Value]:
+        return [self.value(element, local) for element in node.elts]
+
+    def _tuple(self, node: ast.Tuple, local: Mapping[str, Value]) -> Value:
+        return tuple(self._list(node, local))
+
+    def _listcomp(self, node: ast.ListComp, local: Mapping[str, Value]) -> Value:
+        return [self.value(node.elt, inner) for inner in self._rounds(node.generators, local)]
+
+    def _await(self, node: ast.Await | ast.Yield | ast.YieldFrom, local: Mapping[str, Value]) -> Value:
+        del node, local
+        raise ExpressionFails("SyntaxError: await and yield belong into functions")
+
+    _yield = _yieldfrom = _await
+
+    def _compare(self, node: ast.Compare, local: Mapping[str, Value]) -> Value:
+        left = self.value(node.left, local)
+        for op, comparator in zip(node.ops, node.comparators, strict=True):
             right = self.value(comparator, local)
             if not compare(op, left, right, self._budget):
                 return False
             left = right
         return True
 
-    def _bool_op(self, op: ast.boolop, operands: list[ast.expr], local: Mapping[str, Value]) -> Value:
+    def _boolop(self, node: ast.BoolOp, local: Mapping[str, Value]) -> Value:
         value: Value = None
-        for operand in operands:
+        for operand in node.values:
             value = self.value(operand, local)
-            if bool(value) != isinstance(op, ast.And):
+            if bool(value) != isinstance(node.op, ast.And):
                 break
         return value
 

@@ -60,24 +60,8 @@ class Budget:
         pending, size = [value], 0
         while pending:
             part = pending.pop()
-            inside: Collection[Value] = ()
-            if isinstance(part, str):
-                size += len(part) // CHARACTERS
-                if len(part) > MAX_TEXT:
-                    too_large("text")
-            elif isinstance(part, int):
-                size += part.bit_length() // _BITS
-                if part.bit_length() > MAX_BITS:
-                    too_large("number")
-            elif isinstance(part, list | tuple | range):
-                inside = part
-            elif isinstance(part, dict):
-                inside = [*part.keys(), *part.values()]
-            elif isinstance(part, Items):
-                inside = part.values
-            elif not isinstance(part, float | None | Function | Namespace):
-                raise Undetermined(f"values of the type {type(part).__name__} are not supported")
-            size += 1
+            size += 1 + _size_alone(part)
+            inside = _parts(part)
             if size + len(pending) + len(inside) > MAX_PARTS:
                 too_large("value")
             self.charge(len(inside))
@@ -90,6 +74,33 @@ class Budget:
         if type(value) not in (float, bool):
             self.measure(value)
         return value
+
+
+def _size_alone(part: Value) -> int:
+    """Return the size of a text or number beyond one part. Raises Undetermined for one that is too large."""
+    if isinstance(part, str):
+        if len(part) > MAX_TEXT:
+            too_large("text")
+        return len(part) // CHARACTERS
+    if isinstance(part, int):
+        if part.bit_length() > MAX_BITS:
+            too_large("number")
+        return part.bit_length() // _BITS
+    return 0
+
+
+def _parts(part: Value) -> Collection[Value]:
+    """Return what a value contains. Raises Undetermined for a type that is not supported."""
+    match part:
+        case list() | tuple() | range():
+            return part
+        case dict():
+            return [*part.keys(), *part.values()]
+        case Items():
+            return part.values
+        case str() | int() | float() | None | Function() | Namespace():
+            return ()
+    raise Undetermined(f"values of the type {type(part).__name__} are not supported")
 
 
 class Function:

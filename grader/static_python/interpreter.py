@@ -43,43 +43,41 @@ class Interpreter(StatementEvaluator):
         except (ExitFlow, LoopFlow):
             return Unknown("the file exits here", at)
 
-    def statement(self, node: ast.stmt, scope: Scope) -> None:
-        """Evaluate a statement."""
-        match node:
-            case ast.FunctionDef() | ast.AsyncFunctionDef():
-                function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
-                decorated = Unknown("a decorator is not supported", position_of(node))
-                scope.bind(node.name, decorated if node.decorator_list else function)
-            case ast.If(test=test, body=body, orelse=other):
-                condition = truth(self.evaluate(test, scope))
-                if condition is None:
-                    self._branches([body, other], scope, position_of(node))
-                else:
-                    self._block(body if condition else other, scope)
-            case ast.For() | ast.AsyncFor():
-                self._for(node, scope)
-            case ast.While(test=test, body=body, orelse=other):
-                before = self.uncertainty
-                is_over = truth(self.evaluate(test, scope)) is False
-                # The body twice: its first round may change what the second one does.
-                self._block(other, scope) if is_over else self._branches([body, body, other], scope, position_of(node))
-                self.uncertainty = before
-            case ast.Match(subject=subject, cases=cases):
-                self.evaluate(subject, scope)
-                for pattern in ast.walk(node):
-                    if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
-                        scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
-                self._branches([case.body for case in cases], scope, position_of(node))
-            case ast.With() | ast.AsyncWith():
-                for item in node.items:
-                    value = self.evaluate(item.context_expr, scope)
-                    if item.optional_vars is not None:
-                        self.assign(item.optional_vars, value, scope)
-                self._block(node.body, scope)
-            case ast.Try() | ast.TryStar():
-                self._try(node, scope)
-            case _:
-                super().statement(node, scope)
+    def _functiondef(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> None:
+        function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
+        decorated = Unknown("a decorator is not supported", position_of(node))
+        scope.bind(node.name, decorated if node.decorator_list else function)
+
+    def _if(self, node: ast.If, scope: Scope) -> None:
+        condition = truth(self.evaluate(node.test, scope))
+        if condition is None:
+            self._branches([node.body, node.orelse], scope, position_of(node))
+        else:
+            self._block(node.body if condition else node.orelse, scope)
+
+    def _while(self, node: ast.While, scope: Scope) -> None:
+        before = self.uncertainty
+        if truth(self.evaluate(node.test, scope)) is False:
+            self._block(node.orelse, scope)
+        else:  # the body twice: its first round may change what the second one does
+            self._branches([node.body, node.body, node.orelse], scope, position_of(node))
+        self.uncertainty = before
+
+    def _match(self, node: ast.Match, scope: Scope) -> None:
+        self.evaluate(node.subject, scope)
+        for pattern in ast.walk(node):
+            if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
+                scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
+        self._branches([case.body for case in node.cases], scope, position_of(node))
+
+    def _with(self, node: ast.With | ast.AsyncWith, scope: Scope) -> None:
+        for item in node.items:
+            value = self.evaluate(item.context_expr, scope)
+            if item.optional_vars is not None:
+                self.assign(item.optional_vars, value, scope)
+        self._block(node.body, scope)
+
+    _asyncfunctiondef, _asyncwith = _functiondef, _with
 
     def _stop(self, error: Exception) -> str:
         is_deep = isinstance(error, RecursionError)
@@ -146,6 +144,8 @@ class Interpreter(StatementEvaluator):
             else:
                 self._block(node.orelse, scope)
         self._block(node.finalbody, scope)
+
+    _asyncfor, _trystar = _for, _try
 
     def _guarded(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
         """Evaluate a block whose errors are caught; return the error that is certainly raised, and whether another one may be."""

@@ -52,14 +52,18 @@ def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> 
                 evaluation.error(error, at, AttributeError)
             return CONSTANTS.get(full, QualifiedName(full))
         case PurePosixPath() if name in ("name", "stem", "suffix", "parent", "parents", "parts"):
-            if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(owner, name)):
-                return Unknown("the name of the package's folder is not known", at)
-            if name in ("parents", "parts") and len(owner.parts) > _MAX_PARTS:
-                return Unknown("a path is too long", at)
-            value = getattr(owner, name)
-            return list(value) if name == "parents" else value
+            return _part_of_path(owner, name, at)
         case _:
             return BoundMethod(owner, name)
+
+
+def _part_of_path(path: PurePosixPath, name: str, at: Position) -> Value:
+    value = getattr(path, name)
+    if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(value):
+        return Unknown("the name of the package's folder is not known", at)
+    if name in ("parents", "parts") and len(path.parts) > _MAX_PARTS:
+        return Unknown("a path is too long", at)
+    return list(value) if name == "parents" else value
 
 
 def call_method(evaluation: Evaluation, owner: Value, name: str, call: Call) -> Value:
@@ -108,15 +112,13 @@ def _text(text: str, name: str, call: Call) -> Value:
             return _format(text, call, unknown)
         case "replace", [str() as old, str() as new]:
             return text.replace(old, new) if len(text) + (text.count(old) + 1) * len(new) <= MAX_TEXT else unknown
-    if name not in _TEXT_METHODS or call.kwargs:
-        return unknown
-    try:
-        result: Any = getattr(text, name)(*call.args)
-    except (TypeError, ValueError, OverflowError):
-        return unknown
-    if not isinstance(result, list | tuple):
-        return result
-    return list(result) if len(result) <= MAX_ITEMS else unknown
+    result: Any = unknown
+    if name in _TEXT_METHODS and not call.kwargs:
+        with suppress(TypeError, ValueError, OverflowError):
+            result = getattr(text, name)(*call.args)
+    if isinstance(result, list | tuple):
+        return list(result) if len(result) <= MAX_ITEMS else unknown
+    return result
 
 
 def _format(text: str, call: Call, unknown: Unknown) -> Value:
@@ -136,21 +138,27 @@ def _format(text: str, call: Call, unknown: Unknown) -> Value:
 def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> Value:
     evaluation.may_have_failed = True
     is_known = evaluation.uncertainty is None and not any(isinstance(item, Unknown) for item in items)
-    unknown = Unknown(f"this use of the list method {name} is not supported", call.at)
     if isinstance(items, WalkFolders) and name not in ("copy", "index", "count"):
-        forget(items, unknown)
+        forget(items, Unknown(f"this use of the list method {name} is not supported", call.at))
     match name, call.args:
-        case "append", [value] if len(items) < MAX_ITEMS:
-            return items.append(evaluation.uncertainty or value)
-        case "insert", [int() as index, value] if len(items) < MAX_ITEMS:
-            return items.insert(max(-MAX_ITEMS, min(index, MAX_ITEMS)), evaluation.uncertainty or value)
-        case "extend", [value]:
-            return extend(evaluation, items, value, call.at)
         case "copy", []:
             return list(items)
+        case "append", [value] if len(items) < MAX_ITEMS:
+            items.append(evaluation.uncertainty or value)
+        case "insert", [int() as index, value] if len(items) < MAX_ITEMS:
+            items.insert(max(-MAX_ITEMS, min(index, MAX_ITEMS)), evaluation.uncertainty or value)
+        case "extend", [value]:
+            extend(evaluation, items, value, call.at)
         case "sort", [] if is_known:
             items[:] = in_order(evaluation, items, call)
-            return None
+        case _:
+            return _list_method(items, name, call, is_known=is_known)
+    return None
+
+
+def _list_method(items: list[Value], name: str, call: Call, *, is_known: bool) -> Value:
+    """Return the value of a list's own method; one that is not run may have changed the list."""
+    unknown = Unknown(f"this use of the list method {name} is not supported", call.at)
     if is_known and name in _LIST_METHODS and all(isinstance(value, str | int | PurePosixPath) for value in call.args):
         with suppress(TypeError, ValueError, IndexError, OverflowError):
             return getattr(items, name)(*call.args)
@@ -183,19 +191,12 @@ def _dict(evaluation: Evaluation, table: dict[Any, Value], name: str, call: Call
 
 def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) -> Value:
     texts = [value for value in call.args if isinstance(value, str | PurePosixPath)]
-    functions = evaluation.functions
-    given = Call(f"pathlib.Path.{name}", [path, *call.args], call.kwargs, call.at)
     match name, texts:
         case (("as_posix" | "__str__" | "__fspath__"), []):
             return str(path)
-        case "expanduser", _ if str(path).startswith("~"):
-            return Unknown("the home folder is known only at run time", call.at)
         case "expanduser", []:
-            return path
-        case (("resolve" | "absolute"), []):
-            absolute = functions.get("os.path.abspath")
-            found = absolute(evaluation, Call("", [str(path)], {}, call.at)) if absolute is not None else None
-            return PurePosixPath(found) if isinstance(found, str) else path
+            is_home = str(path).startswith("~")
+            return Unknown("the home folder is known only at run time", call.at) if is_home else path
         case "joinpath", _ if len(texts) == len(call.args):
             return join_path([path, *texts], call.at)
         case (("with_name" | "with_suffix" | "with_stem" | "relative_to"), [value]) if len(str(value)) <= _MAX_NAME:
@@ -203,18 +204,27 @@ def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) ->
                 return getattr(path, name)(value)
             except (ValueError, TypeError):
                 return Unknown(f"the path method {name} fails here", call.at)
-        case (("read_text" | "open"), _):
-            opener = functions.get("builtins.open")
-            opened = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
-            if opener is not None:
-                opened.kwargs = call.kwargs
-                opened = opener(evaluation, opened)
-            is_read = name == "read_text" and isinstance(opened, Call)
-            return Call("builtins.open.read", [], {}, call.at, opened) if is_read else opened
-        case _ if given.name in functions:
-            return functions[given.name](evaluation, given)
-        case _:
-            if name in _WRITES:
-                evaluation.calls.append(given)
-            evaluation.may_have_failed = True
-            return Unknown(f"the path method {name} is not supported", call.at)
+    return _by_function(evaluation, path, name, call)
+
+
+def _by_function(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) -> Value:
+    """Return the value of a method that asks the file system, by the function for it."""
+    given = Call(f"pathlib.Path.{name}", [path, *call.args], call.kwargs, call.at)
+    absolute, opener = (evaluation.functions.get(it) for it in ("os.path.abspath", "builtins.open"))
+    evaluate = evaluation.functions.get(given.name)
+    if name in ("resolve", "absolute") and not call.args:
+        found = absolute(evaluation, Call("", [str(path)], {}, call.at)) if absolute is not None else None
+        return PurePosixPath(found) if isinstance(found, str) else path
+    if name in ("read_text", "open"):
+        opened = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
+        if opener is not None:
+            opened.kwargs = call.kwargs
+            opened = opener(evaluation, opened)
+        is_read = name == "read_text" and isinstance(opened, Call)
+        return Call("builtins.open.read", [], {}, call.at, opened) if is_read else opened
+    if evaluate is not None:
+        return evaluate(evaluation, given)
+    if name in _WRITES:
+        evaluation.calls.append(given)
+    evaluation.may_have_failed = True
+    return Unknown(f"the path method {name} is not supported", call.at)

@@ -51,7 +51,6 @@ class WalkFolders(list[Value]):
 def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:
     """Return the value of a binary operator; an unknown operand has its own operators."""
     evaluation.step(sum(len(value) for value in (left, right) if isinstance(value, str)) // 32)
-    function, types = _OPERATORS.get(type(op), (None, ()))
     match op, left, right:
         case ast.Add(), list(), list() | Call():
             joined = list(left)
@@ -65,21 +64,26 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
             return right if isinstance(right, Unknown) else _percent_format(left, right, at)
         case ast.Div(), (str() | PurePosixPath()), (str() | PurePosixPath()) if not type(left) is type(right) is str:
             return join_path([left, right], at)
-    for kind in types:
-        if isinstance(left, kind) and isinstance(right, kind):
-            if isinstance(left, str | tuple) and len(left) + len(right) > (MAX_TEXT if kind is str else MAX_ITEMS):
-                return Unknown("a value grows too long", at)
-            try:
-                return function(left, right) if function is not None else None
-            except OverflowError:
-                return Unknown("a number is too large", at)
+    return _of_plain_values(evaluation, op, left, right, at)
+
+
+def _of_plain_values(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:
+    function, types = _OPERATORS.get(type(op), (None, ()))
+    kind = next((it for it in types if isinstance(left, it) and isinstance(right, it)), None)
+    if function is not None and kind is not None:
+        if isinstance(left, str | tuple) and len(left) + len(right) > (MAX_TEXT if kind is str else MAX_ITEMS):
+            return Unknown("a value grows too long", at)
+        try:
+            return function(left, right)
+        except OverflowError:
+            return Unknown("a number is too large", at)
     if isinstance(op, ast.Add) and isinstance(left, _NOT_ADDED) and isinstance(right, _NOT_ADDED):
         evaluation.error(f"Python cannot add {type_name(right)} to {type_name(left)}", at)
-    if function is not None and any(isinstance(value, Unknown) for value in (left, right)):
+    unknown = [value for value in (left, right) if isinstance(value, Unknown)]
+    if function is not None and unknown:
         with suppress(TypeError):
             return function(left, right)
-    unknown = Unknown("this operation is not supported", at)
-    return next((value for value in (left, right) if isinstance(value, Unknown)), unknown)
+    return unknown[0] if unknown else Unknown("this operation is not supported", at)
 
 
 def type_name(value: Value) -> str:

@@ -40,16 +40,20 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
             if name == "glob":
                 evaluation.error("glob is a module here and cannot be called: write glob.glob(...)", call.at)
             call.name = "glob.glob" if name in ("glob", "?glob") else name
+            return _call_by_name(evaluation, call)
         case BoundMethod(owner=Call() as owner, name=name):
             call.name, call.owner = f"{owner.name}.{name}", owner
             if call.name not in evaluation.functions:
                 owner.method_calls.append(call)
+            return _call_by_name(evaluation, call)
         case BoundMethod(owner=owner, name=name):
             return call_method(evaluation, owner, name, call)
-        case _:
-            if kind := type_name(function):
-                evaluation.error(f"{kind} cannot be called: is there a comma missing before it?", call.at)
-            return Unknown("this call is not supported", call.at)
+    if kind := type_name(function):
+        evaluation.error(f"{kind} cannot be called: is there a comma missing before it?", call.at)
+    return Unknown("this call is not supported", call.at)
+
+
+def _call_by_name(evaluation: Evaluation, call: Call) -> Value:
     evaluate = evaluation.functions.get(call.name)
     if evaluate is not None:
         return evaluate(evaluation, call)
@@ -75,47 +79,56 @@ class SimpleEvaluator(Evaluation):
 
     def evaluate_kind(self, node: ast.expr, scope: Scope) -> Value:
         """Return the value of an expression, without the checks of `evaluate`."""
-        at = position_of(node)
-        match node:
-            case ast.Attribute(value=owner, attr=name):
-                return attribute(self, self.evaluate(owner, scope), name, at)
-            case ast.Call():
-                return self._call(node, scope)
-            case ast.List(elts=elements):
-                return self._elements(elements, scope)
-            case ast.Tuple(elts=elements):
-                return tuple(self._elements(elements, scope))
-            case ast.Set(elts=elements):
-                return self.make_set(self._elements(elements, scope), at)
-            case ast.Dict():
-                return self._dict(node, scope)
-            case ast.JoinedStr(values=pieces):
-                return self._f_string(pieces, scope, at)
-            case ast.BinOp(left=left, op=op, right=right):
-                return operate(self, op, self.evaluate(left, scope), self.evaluate(right, scope), at)
-            case ast.BoolOp(op=op, values=operands):
-                return self._bool_op(op, operands, scope, at)
-            case ast.UnaryOp(op=ast.Not(), operand=operand):
-                condition = truth(self.evaluate(operand, scope))
+        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        return kind(node, scope) if kind else Unknown("an expression of this kind is not supported", position_of(node))
+
+    def _attribute(self, node: ast.Attribute, scope: Scope) -> Value:
+        return attribute(self, self.evaluate(node.value, scope), node.attr, position_of(node))
+
+    def _list(self, node: ast.List, scope: Scope) -> Value:
+        return self._elements(node.elts, scope)
+
+    def _tuple(self, node: ast.Tuple, scope: Scope) -> Value:
+        return tuple(self._elements(node.elts, scope))
+
+    def _set(self, node: ast.Set, scope: Scope) -> Value:
+        return self.make_set(self._elements(node.elts, scope), position_of(node))
+
+    def _binop(self, node: ast.BinOp, scope: Scope) -> Value:
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        return operate(self, node.op, left, right, position_of(node))
+
+    def _unaryop(self, node: ast.UnaryOp, scope: Scope) -> Value:
+        at, value = position_of(node), self.evaluate(node.operand, scope)
+        match node.op:
+            case ast.Not():
+                condition = truth(value)
                 return Unknown(_RUN_TIME, at) if condition is None else not condition
-            case ast.UnaryOp(op=ast.USub(), operand=operand):
-                number = self.evaluate(operand, scope)
-                return -number if isinstance(number, int | float) else Unknown("this is not a number", at)
-            case ast.Compare(left=left, ops=ops, comparators=comparators):
-                first, *others = [self.evaluate(operand, scope) for operand in (left, *comparators)]
-                return compare(self, ops[0], first, others[0], at) if len(others) == 1 else Unknown(_RUN_TIME, at)
-            case ast.IfExp(test=test, body=body, orelse=other):
-                condition = truth(self.evaluate(test, scope))
-                if condition is None:
-                    return Unknown("it depends on a condition that is known only at run time", at)
-                return self.evaluate(body if condition else other, scope)
-            case ast.Subscript(value=owner, slice=key):
-                value = self.evaluate(owner, scope)
-                return subscript(self, value, self.key(key, scope), at) if not isinstance(value, Unknown) else value
-            case ast.Starred(value=expression) | ast.Await(value=expression):
-                return self.evaluate(expression, scope)
-            case _:
-                return Unknown("an expression of this kind is not supported", at)
+            case ast.USub():
+                return -value if isinstance(value, int | float) else Unknown("this is not a number", at)
+        return Unknown("an expression of this kind is not supported", at)
+
+    def _compare(self, node: ast.Compare, scope: Scope) -> Value:
+        at = position_of(node)
+        first, *others = [self.evaluate(operand, scope) for operand in (node.left, *node.comparators)]
+        return compare(self, node.ops[0], first, others[0], at) if len(others) == 1 else Unknown(_RUN_TIME, at)
+
+    def _ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
+        condition = truth(self.evaluate(node.test, scope))
+        if condition is None:
+            return Unknown("it depends on a condition that is known only at run time", position_of(node))
+        return self.evaluate(node.body if condition else node.orelse, scope)
+
+    def _subscript(self, node: ast.Subscript, scope: Scope) -> Value:
+        owner = self.evaluate(node.value, scope)
+        if isinstance(owner, Unknown):
+            return owner
+        return subscript(self, owner, self.key(node.slice, scope), position_of(node))
+
+    def _starred(self, node: ast.Starred | ast.Await, scope: Scope) -> Value:
+        return self.evaluate(node.value, scope)
+
+    _await = _starred
 
     def key(self, key: ast.expr, scope: Scope) -> Value:
         """Return the value of a subscript's key, which may be a slice."""
@@ -154,33 +167,34 @@ class SimpleEvaluator(Evaluation):
             table[key] = value
         return table
 
-    def _f_string(self, pieces: list[ast.expr], scope: Scope, at: Position) -> Value:
+    def _joinedstr(self, node: ast.JoinedStr, scope: Scope) -> Value:
         text = ""
-        for piece in pieces:
-            if isinstance(piece, ast.Constant):
-                text += str(piece.value)
-                continue
-            if not isinstance(piece, ast.FormattedValue):
-                return Unknown("an expression of this kind is not supported", at)
-            value = self.evaluate(piece.value, scope)
+        for piece in node.values:
+            value = self.evaluate(piece, scope)
             if isinstance(value, Unknown):
                 return value
-            plain = as_text(value)
-            if plain is None or piece.format_spec is not None or piece.conversion not in (-1, ord("s")):
-                return Unknown("a format of this kind is not supported", at)
-            text += plain
+            text += str(value)
             if len(text) > MAX_TEXT:
-                return Unknown("a value grows too long", at)
+                return Unknown("a value grows too long", position_of(node))
         return text
 
-    def _bool_op(self, op: ast.boolop, operands: list[ast.expr], scope: Scope, at: Position) -> Value:
+    def _formattedvalue(self, node: ast.FormattedValue, scope: Scope) -> Value:
+        value = self.evaluate(node.value, scope)
+        plain = as_text(value)
+        if isinstance(value, Unknown):
+            return value
+        if plain is None or node.format_spec is not None or node.conversion not in (-1, ord("s")):
+            return Unknown("a format of this kind is not supported", position_of(node))
+        return plain
+
+    def _boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
         value: Value = None
-        for operand in operands:
+        for operand in node.values:
             value = self.evaluate(operand, scope)
             condition = truth(value)
             if condition is None:
-                return Unknown(_RUN_TIME, at)
-            if condition != isinstance(op, ast.And):
+                return Unknown(_RUN_TIME, position_of(node))
+            if condition != isinstance(node.op, ast.And):
                 break
         return value
 

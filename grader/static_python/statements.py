@@ -27,28 +27,28 @@ _MAX_LENGTH = 1_000  # of a text
 class ExpressionEvaluator(SimpleEvaluator):
     """Adds the expressions that bind names: comprehensions, lambdas and assignment expressions."""
 
-    def evaluate_kind(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of an expression."""
-        at = position_of(node)
-        match node:
-            case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element) | ast.SetComp(elt=element):
-                values = self._comprehension(node.generators, None, element, scope, at)
-                return (
-                    self.make_set(values, at) if isinstance(node, ast.SetComp) and isinstance(values, list) else values
-                )
-            case ast.DictComp(key=key, value=element):
-                values = self._comprehension(node.generators, key, element, scope, at)
-                return dict(values) if isinstance(values, list) else values
-            case ast.NamedExpr(target=target, value=expression):
-                result = self.evaluate(expression, scope)
-                while scope.is_loop and scope.outer is not None:
-                    scope = scope.outer
-                self.assign(target, result, scope)
-                return result
-            case ast.Lambda(args=parameters, body=body):
-                return self.function(parameters, scope, at, lambda inner, _: self.evaluate(body, inner))
-            case _:
-                return super().evaluate_kind(node, scope)
+    def _listcomp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp, scope: Scope) -> list[Value] | Unknown:
+        return self._comprehension(node.generators, None, node.elt, scope, position_of(node))
+
+    _generatorexp = _listcomp
+
+    def _setcomp(self, node: ast.SetComp, scope: Scope) -> Value:
+        values = self._listcomp(node, scope)
+        return self.make_set(values, position_of(node)) if isinstance(values, list) else values
+
+    def _dictcomp(self, node: ast.DictComp, scope: Scope) -> Value:
+        values = self._comprehension(node.generators, node.key, node.value, scope, position_of(node))
+        return dict(values) if isinstance(values, list) else values
+
+    def _namedexpr(self, node: ast.NamedExpr, scope: Scope) -> Value:
+        result = self.evaluate(node.value, scope)
+        while scope.is_loop and scope.outer is not None:
+            scope = scope.outer
+        self.assign(node.target, result, scope)
+        return result
+
+    def _lambda(self, node: ast.Lambda, scope: Scope) -> Value:
+        return self.function(node.args, scope, position_of(node), lambda inner, _: self.evaluate(node.body, inner))
 
     def assign(self, target: ast.expr, value: Value, scope: Scope) -> None:
         """Bind the names of a target to a value; a target that is not supported is bound to Unknown."""
@@ -122,42 +122,55 @@ class StatementEvaluator(ExpressionEvaluator):
     """Adds the statements without blocks to the expressions."""
 
     def statement(self, node: ast.stmt, scope: Scope) -> None:
-        """Evaluate a statement."""
-        match node:
-            case ast.Import() | ast.ImportFrom():
-                self._import(node, scope)
-            case ast.Assign(targets=targets, value=expression):
-                value = self.evaluate(expression, scope)
-                for target in targets:
-                    self.assign(target, value, scope)
-            case ast.AnnAssign(target=target, value=ast.expr() as expression):
-                self.assign(target, self.evaluate(expression, scope), scope)
-            case ast.AugAssign(target=target, op=op, value=expression):
-                before, value = self.evaluate(target, scope), self.evaluate(expression, scope)
-                if isinstance(op, ast.Add) and isinstance(before, list):
-                    extend(self, before, value, position_of(node))
-                else:
-                    self.assign(target, operate(self, op, before, value, position_of(node)), scope)
-            case ast.Expr(value=expression):
-                self.evaluate(expression, scope)
-            case ast.ClassDef(name=name):
-                scope.bind(name, Unknown("a class is not supported", position_of(node)))
-            case ast.Return(value=expression):
-                raise ReturnFlow(self.evaluate(expression, scope) if expression is not None else None)
-            case ast.Break() | ast.Continue():
-                raise LoopFlow(is_break=isinstance(node, ast.Break))
-            case ast.Delete(targets=targets):
-                for target in targets:
-                    self._delete(target, scope)
-            case ast.Global(names=names):
-                scope.declared |= dict.fromkeys(names, self.module)
-            case ast.Nonlocal(names=names):
-                scope.declared |= {name: scope.holder(name) for name in names}
-            case ast.Raise():
-                self._raise(node, scope)
-            case ast.Assert(test=test):
-                if truth(self.evaluate(test, scope)) is False:
-                    self.error("this assertion fails", position_of(node), AssertionError)
+        """Evaluate a statement, if its kind is supported."""
+        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        if kind is not None:
+            kind(node, scope)
+
+    def _assign(self, node: ast.Assign, scope: Scope) -> None:
+        value = self.evaluate(node.value, scope)
+        for target in node.targets:
+            self.assign(target, value, scope)
+
+    def _annassign(self, node: ast.AnnAssign, scope: Scope) -> None:
+        if node.value is not None:
+            self.assign(node.target, self.evaluate(node.value, scope), scope)
+
+    def _augassign(self, node: ast.AugAssign, scope: Scope) -> None:
+        before, value = self.evaluate(node.target, scope), self.evaluate(node.value, scope)
+        if isinstance(node.op, ast.Add) and isinstance(before, list):
+            extend(self, before, value, position_of(node))
+        else:
+            self.assign(node.target, operate(self, node.op, before, value, position_of(node)), scope)
+
+    def _expr(self, node: ast.Expr, scope: Scope) -> None:
+        self.evaluate(node.value, scope)
+
+    def _classdef(self, node: ast.ClassDef, scope: Scope) -> None:
+        scope.bind(node.name, Unknown("a class is not supported", position_of(node)))
+
+    def _return(self, node: ast.Return, scope: Scope) -> None:
+        raise ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
+
+    def _break(self, node: ast.Break | ast.Continue, scope: Scope) -> None:
+        del scope
+        raise LoopFlow(is_break=isinstance(node, ast.Break))
+
+    _continue = _break
+
+    def _global(self, node: ast.Global, scope: Scope) -> None:
+        scope.declared |= dict.fromkeys(node.names, self.module)
+
+    def _nonlocal(self, node: ast.Nonlocal, scope: Scope) -> None:
+        scope.declared |= {name: scope.holder(name) for name in node.names}
+
+    def _assert(self, node: ast.Assert, scope: Scope) -> None:
+        if truth(self.evaluate(node.test, scope)) is False:
+            self.error("this assertion fails", position_of(node), AssertionError)
+
+    def _delete(self, node: ast.Delete, scope: Scope) -> None:
+        for target in node.targets:
+            self._delete_target(target, scope)
 
     def _import(self, node: ast.Import | ast.ImportFrom, scope: Scope) -> None:
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
@@ -170,7 +183,9 @@ class StatementEvaluator(ExpressionEvaluator):
             for name, value in imported_names(module, alias).items():
                 scope.bind(name, value)
 
-    def _delete(self, target: ast.expr, scope: Scope) -> None:
+    _importfrom = _import
+
+    def _delete_target(self, target: ast.expr, scope: Scope) -> None:
         match target:
             case ast.Subscript(value=owner, slice=key):
                 container = self.evaluate(owner, scope)

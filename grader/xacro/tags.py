@@ -33,11 +33,7 @@ def _flag(node: Node, name: str, default: str, expander: Expander, scopes: Scope
 
 def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
-    name = texts.text(needed(node, "name"), symbols)
-    if not name.isidentifier() or iskeyword(name):
-        raise TagFails(f"the name of a property must be a Python identifier, not {name!r}")
-    if name.startswith("__"):
-        raise TagFails(f"the name of a property must not begin with two underscores: {name}")
+    name = _property_name(texts.text(needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
     if ("value" in given) + ("default" in given) + is_removed > 1:
         raise TagFails(f"the property {name} has more than one of value, default and remove")
@@ -51,19 +47,32 @@ def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     value: Value = text
     if text is None:
         name, value = f"**{name}", node
-    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes)
-    target = symbols
-    if given.get("scope") == "global":
-        target, is_lazy = symbols.top, False
-    elif given.get("scope") == "parent":
-        if symbols.parent is None:
-            raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
-        target, is_lazy = _outer(symbols), False
+    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in ("global", "parent")
+    target = _target(given.get("scope"), name, symbols)
     if is_lazy or text is None:
         definition = Definition(name, text, node.place, attribute, target) if text is not None else None
         target.bind(name, value, is_lazy=True, definition=definition)
     else:
         texts.bind(target, name, text, symbols, node.place, attribute)
+
+
+def _property_name(name: str) -> str:
+    if not name.isidentifier() or iskeyword(name):
+        raise TagFails(f"the name of a property must be a Python identifier, not {name!r}")
+    if name.startswith("__"):
+        raise TagFails(f"the name of a property must not begin with two underscores: {name}")
+    return name
+
+
+def _target(scope: str | None, name: str, symbols: Scope) -> Scope:
+    """Return the scope in which a property is defined."""
+    if scope == "global":
+        return symbols.top
+    if scope != "parent":
+        return symbols
+    if symbols.parent is None:
+        raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
+    return _outer(symbols)
 
 
 def _outer(symbols: Scope) -> Scope:

@@ -56,13 +56,7 @@ def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tu
 
     `names` are known at this place; `own` are the parameters of the macro around it.
     """
-    if _LOOSE.search(text):  # {side}, $(side) and $side
-        yield SPELLING, _LOOSE.sub(lambda found: f"${{{found[1] or found[2] or found[3]}}}", text)
-    for found in re.finditer(r"(?<=[\w)])(?=\s|\Z)", text) if text.count("${") > text.count("}") else ():
-        yield SPELLING, f"{text[: found.end()]}}}{text[found.end() :]}"
-    for found in _WORD.finditer(text) if "${" not in text else ():  # the name of a parameter, not its value
-        if found[0] in own:
-            yield SPELLING, f"{text[: found.start()]}${{{found[0]}}}{text[found.end() :]}"
+    yield from ((SPELLING, other) for other in _respelt(text, own))
     parts = [*TOKEN.finditer(text)] if "$" in text else []
     for one, other in combinations(parts[:_MAX_PARTS], 2):  # x and z exchanged
         yield SIGN, text[: one.start()] + other[0] + text[one.end() : other.start()] + one[0] + text[other.end() :]
@@ -75,6 +69,17 @@ def variants(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tu
         for sign in own:
             for magnitude in (number.lstrip("+-"), number):
                 yield FACTOR, f"${{{sign}*{magnitude}}}"
+
+
+def _respelt(text: str, own: Sequence[str]) -> Iterator[str]:
+    """Yield texts in which what may be meant as an expression is one."""
+    if _LOOSE.search(text):  # {side}, $(side) and $side
+        yield _LOOSE.sub(lambda found: f"${{{found[1] or found[2] or found[3]}}}", text)
+    for found in re.finditer(r"(?<=[\w)])(?=\s|\Z)", text) if text.count("${") > text.count("}") else ():
+        yield f"{text[: found.end()]}}}{text[found.end() :]}"
+    for found in _WORD.finditer(text) if "${" not in text else ():  # the name of a parameter, not its value
+        if found[0] in own:
+            yield f"{text[: found.start()]}${{{found[0]}}}{text[found.end() :]}"
 
 
 def _of_expression(text: str, names: Sequence[str], own: Sequence[str]) -> Iterator[tuple[int, str]]:

@@ -89,22 +89,28 @@ def _wrong_text(text: str, mark: Mark, piece: Piece, rules: Rules) -> Piece | No
 def _is_wrong(text: str, mark: Mark, piece: Piece, rules: Rules) -> bool:
     """Return whether the parser stops at a piece."""
     parent = mark.opened[-1].name if mark.opened else ""
-    is_known = rules.is_urdf and piece.name in ATTRIBUTES
     if piece.at is not None or len(mark.opened) > _MAX_DEPTH:
         return True
-    if piece.form == "end":
-        return bool(mark.opened) or not mark.is_late
-    if piece.form == "close":
-        return piece.name != parent
+    match piece.form:
+        case "end":
+            return bool(mark.opened) or not mark.is_late
+        case "close":
+            return piece.name != parent
+        case "other":
+            return _is_wrong_markup(text, piece, rules)
+    if parent:
+        return False
+    is_known = rules.is_urdf and piece.name in ATTRIBUTES
+    return (rules.is_strict or is_known) if mark.is_late else rules.is_urdf and piece.name != "robot"
+
+
+def _is_wrong_markup(text: str, piece: Piece, rules: Rules) -> bool:
+    """Return whether the parser stops at a comment, for what is in it, or at a declaration that is not the first."""
     if piece.name == "<!--":
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
         return inner in text[piece.start + 4 : piece.end - 3]
-    if piece.name == "<?":
-        before = text[: piece.start].strip("\ufeff" if rules.is_strict else " \t\r\n\ufeff")
-        return text.startswith("<?xml ", piece.start) and bool(before)
-    if piece.form == "other" or parent:
-        return False
-    return (rules.is_strict or is_known) if mark.is_late else rules.is_urdf and piece.name != "robot"
+    before = text[: piece.start].strip("\ufeff" if rules.is_strict else " \t\r\n\ufeff")
+    return piece.name == "<?" and text.startswith("<?xml ", piece.start) and bool(before)
 
 
 def _piece(text: str, position: int, rules: Rules) -> Piece:

@@ -1,8 +1,9 @@
 """Visit the actions of a launch description: the nodes, includes and arguments that they add."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from grader.package.launch.conditions import holds
 from grader.package.launch.model import Context, Findings
@@ -61,33 +62,32 @@ class ActionVisitor:
 
     def _action(self, call: Call, context: Context, when: bool | None) -> None:
         kind = call.name.rpartition(".")[2]
-        match kind:
-            case "DeclareLaunchArgument" | "DeclareBooleanLaunchArgument" | "SetLaunchConfiguration":
-                _set_argument(call, context, when, declares=kind.startswith("Declare"))
-            case "Node" | "LifecycleNode":
-                start_node(self.findings, call, context, when)
-            case "ExecuteProcess" | "ExecuteLocal":
-                start_process(self.findings, call, context, when)
-            case "IncludeLaunchDescription":
-                self._include(call, context, when)
-            case "LaunchDescription":
-                self._description(call, context, when)
-            case "GroupAction":
-                self._group(call, context, when)
-            case "TimerAction" | "RosTimer":
-                self._inner(call, call.argument(1, "actions"), context, when)
-            case "RegisterEventHandler":
-                self.visit(call.argument(0, "event_handler"), context, when)
-            case _ if kind.startswith("On") and kind[2:3].isupper():
-                self._event_handler(call, context, when if kind == "OnProcessStart" else when and None)
-            case "OpaqueFunction":
-                self._opaque_function(call, context, when)
-            case _ if kind in _CONTAINERS:
-                self.findings.add_unknown("the nodes of a container are not supported", call.at)
-            case _ if _IDLE.fullmatch(kind) and call.name.startswith(("launch.", "launch_ros.")):
-                self.findings.sets_parameters |= kind in ("SetParameter", "SetParametersFromFile")
-            case _ if not call.name.startswith("?."):
-                self.findings.add_unknown(f"what {kind} starts is known only at run time", call.at)
+        visit = self._VISITS.get(kind)
+        if visit is not None:
+            visit(self, call, context, when)
+        elif kind.startswith("On") and kind[2:3].isupper():
+            self._event_handler(call, context, when if kind == "OnProcessStart" else when and None)
+        elif kind in _CONTAINERS:
+            self.findings.add_unknown("the nodes of a container are not supported", call.at)
+        elif _IDLE.fullmatch(kind) and call.name.startswith(("launch.", "launch_ros.")):
+            self.findings.sets_parameters |= kind in ("SetParameter", "SetParametersFromFile")
+        elif not call.name.startswith("?."):
+            self.findings.add_unknown(f"what {kind} starts is known only at run time", call.at)
+
+    def _node(self, call: Call, context: Context, when: bool | None) -> None:
+        start_node(self.findings, call, context, when)
+
+    def _process(self, call: Call, context: Context, when: bool | None) -> None:
+        start_process(self.findings, call, context, when)
+
+    def _timer(self, call: Call, context: Context, when: bool | None) -> None:
+        self._inner(call, call.argument(1, "actions"), context, when)
+
+    def _registered(self, call: Call, context: Context, when: bool | None) -> None:
+        self.visit(call.argument(0, "event_handler"), context, when)
+
+    def _argument(self, call: Call, context: Context, when: bool | None) -> None:
+        _set_argument(call, context, when, declares="Declare" in call.name)
 
     def _description(self, call: Call, context: Context, when: bool | None) -> None:
         actions, *others = [call.argument(0, "initial_entities"), *call.args[1:]]
@@ -157,6 +157,24 @@ class ActionVisitor:
                 self.findings.add_unknown(reason, call.at)
             self.findings.refer("include", path, call)
         context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
+
+    # The methods that visit each kind of action.
+    _VISITS: ClassVar[Mapping[str, Callable[..., None]]] = {
+        "DeclareLaunchArgument": _argument,
+        "DeclareBooleanLaunchArgument": _argument,
+        "SetLaunchConfiguration": _argument,
+        "Node": _node,
+        "LifecycleNode": _node,
+        "ExecuteProcess": _process,
+        "ExecuteLocal": _process,
+        "IncludeLaunchDescription": _include,
+        "LaunchDescription": _description,
+        "GroupAction": _group,
+        "TimerAction": _timer,
+        "RosTimer": _timer,
+        "RegisterEventHandler": _registered,
+        "OpaqueFunction": _opaque_function,
+    }
 
 
 def _both(one: bool | None, other: bool | None) -> bool | None:

@@ -25,18 +25,19 @@ def boolean_substitution(kind: str, operands: Sequence[object], at: Position) ->
         unknown = (operand for operand in operands if isinstance(operand, Unknown))
         return next(unknown, Unknown("the content of a file is compared", at))
     values = [boolean(text) for text in texts]
+    result: bool | str | None = None
     match kind, texts:
         case (("EqualsSubstitution" | "NotEqualsSubstitution"), [left, right]):
-            return str(_are_equal(left, right) == (kind == "EqualsSubstitution")).lower()
+            result = _are_equal(left, right) == (kind == "EqualsSubstitution")
         case "NotSubstitution", [_] if values[0] is not None:
-            return str(not values[0]).lower()
+            result = not values[0]
         case "IfElseSubstitution", [_, yes, *no] if values[0] is not None:
             return yes if values[0] else "".join(no[:1])
         case (("AndSubstitution" | "AllSubstitution"), _) if None not in values:
-            return str(all(values)).lower()
+            result = all(values)
         case (("OrSubstitution" | "AnySubstitution"), _) if None not in values:
-            return str(any(values)).lower()
-    return Unknown("this condition is not supported", at)
+            result = any(values)
+    return Unknown("this condition is not supported", at) if result is None else str(result).lower()
 
 
 def boolean(value: object) -> bool | None:

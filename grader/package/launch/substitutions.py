@@ -39,15 +39,19 @@ def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
         case str() | int() | float() | PurePosixPath():
             text = as_text(value)
             return text if text is not None else Unknown("a number is too long", START)
-        case [single]:
-            return resolve(single, context, depth + 1)
         case list() | tuple():
-            parts = _texts(value, context, depth)
-            return "".join(parts) if isinstance(parts, list) else parts
+            return _joined(value, context, depth)
         case Call():
             return _Substitution(value, context, depth).value()
         case _:
             return Unknown("the text of this value is known only at run time", START)
+
+
+def _joined(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> Resolved:
+    if len(parts) == 1:
+        return resolve(parts[0], context, depth + 1)
+    texts = _texts(parts, context, depth)
+    return "".join(texts) if isinstance(texts, list) else texts
 
 
 def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> list[str] | Unknown:
@@ -63,6 +67,20 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
         if length > MAX_TEXT:
             return Unknown("a string grows too long", START)
     return texts
+
+
+def _printed(words: list[str]) -> Contents | None:
+    """Return the contents of the one file that xacro or cat prints; None for any other command."""
+    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
+    if program not in ("xacro", "cat", "type") or "-o" in words or len(files) != 1:
+        return None
+    if not files[0] or PART_UNKNOWN in files[0]:
+        return None
+    if program != "xacro":
+        return Contents(files[0], "cat")
+    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
+    return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))
 
 
 @dataclass(slots=True)
@@ -98,20 +116,23 @@ class _Substitution:
             case "process_file" | "process" if full.startswith("xacro."):
                 self.needs_texts(f"xacro.{name} takes a path, not a substitution: use Command(['xacro ', ...])", 1)
                 return self.contents("xacro", "input_file_name", arguments=self.mappings())
-            case "parse":  # xacro.parse(open(path)), or of the contents
-                opened = self.argument()
-                return Contents(opened.path, "xacro") if isinstance(opened, Contents) else opened
             case "open" if full in ("builtins.open", "io.open", "codecs.open"):
                 self.needs_texts("open takes a path, not a substitution: use Command(['cat ', ...])", 1)
                 return self.contents("open", "file")
             case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in full or name == "getenv":
                 is_home = self.argument("name") == "HOME"
                 return HOME if is_home else Unknown("the environment is known only at run time", self.call.at)
-            case "expanduser":
-                text = self.argument()
-                return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
-            case _:
-                return Unknown(f"the result of {name} is known only at run time", self.call.at)
+        return Unknown(f"the result of {name} is known only at run time", self.call.at)
+
+    def parse(self) -> Resolved:
+        """Return what xacro.parse gives, of an open file or of the contents."""
+        opened = self.argument()
+        return Contents(opened.path, "xacro") if isinstance(opened, Contents) else opened
+
+    def expanduser(self) -> Resolved:
+        """Return a path with the home folder instead of ~."""
+        text = self.argument()
+        return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
 
     def resolve(self, value: Value) -> Resolved:
         return resolve(value, self.context, self.depth + 1)
@@ -190,19 +211,8 @@ class _Substitution:
             message = "the quotes in this command are not closed"
             self.context.add_error(message, self.call.at)
             return Unknown(message, self.call.at)
-        if words[:3] == ["ros2", "run", "xacro"]:
-            words = words[3:]
-        program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
-        files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
-        is_read = program in ("xacro", "cat", "type") and "-o" not in words
-        if is_read and len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]:
-            if program != "xacro":
-                return Contents(files[0], "cat")
-            given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
-            return Contents(
-                files[0], "xacro", tuple((name, None if PART_UNKNOWN in value else value) for name, value in given)
-            )
-        return next(iter(unknown), Unknown("the output of this command is known only at run time", self.call.at))
+        unknown.append(Unknown("the output of this command is known only at run time", self.call.at))
+        return _printed(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words) or unknown[0]
 
     def expression(self) -> Resolved:
         """Return the value of a Python expression that contains plain values only."""
@@ -238,6 +248,8 @@ _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
     "PathJoinSubstitution": _Substitution.joined_path,
     "ThisLaunchFileDir": lambda substitution: substitution.context.folder,
     "Command": _Substitution.command,
+    "parse": _Substitution.parse,
+    "expanduser": _Substitution.expanduser,
     "FileContent": lambda substitution: substitution.contents("open", "path"),
     "PythonExpression": _Substitution.expression,
     "truediv": lambda substitution: substitution.path(substitution.call.args),

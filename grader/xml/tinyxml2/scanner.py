@@ -95,30 +95,34 @@ class Scanner:
         if text.startswith("<?", position):
             return self._declaration(position)
         self._only_declarations = False
-        if text.startswith("<!--", position):
-            end = self._delimited(position, "<!--", "-->", "comment")
-            if end is not None and "--" in text[position + 4 : end - 2]:
-                self._differ("comment", "-- inside a comment", position)
-            return end
-        if text.startswith("<![CDATA[", position):
-            if not self._open_tags:
-                self._differ("cdata", "a CDATA section outside the robot", position)
-            end = self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
-            self._write(text[position + 9 : end - 3] if end is not None else "")
-            return end
         if text.startswith("<!", position):
-            end = self._delimited(position, "<!", ">", "<!")
-            if end is not None and "doctype" not in self._noted:
-                self._noted.add("doctype")
-                message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
-                self._add(catalogue.DOCTYPE, message, position)
-            return end
+            return self._markup(position)
         try:
             tag, end = read_tag(text, position, self._differ)
         except MalformedTagError as error:
             self._refuse(catalogue.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset)
             return error.resume
         return self._close(tag, end) if tag.form == "close" else self._open(tag, end)
+
+    def _markup(self, position: int) -> int | None:
+        """Read a comment, a CDATA section or a DOCTYPE."""
+        text = self._text
+        if text.startswith("<!--", position):
+            end = self._delimited(position, "<!--", "-->", "comment")
+            if end is not None and "--" in text[position + 4 : end - 2]:
+                self._differ("comment", "-- inside a comment", position)
+        elif text.startswith("<![CDATA[", position):
+            if not self._open_tags:
+                self._differ("cdata", "a CDATA section outside the robot", position)
+            end = self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
+            self._write(text[position + 9 : end - 3] if end is not None else "")
+        else:
+            end = self._delimited(position, "<!", ">", "<!")
+            if end is not None and "doctype" not in self._noted:
+                self._noted.add("doctype")
+                message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
+                self._add(catalogue.DOCTYPE, message, position)
+        return end
 
     def _end(self) -> int | None:
         if not self._open_tags or self._errors:
