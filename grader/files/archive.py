@@ -61,12 +61,9 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     generated: set[str] = set()
     unseen: set[str] = set()
     for member in _bounded(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
-        if len(member.path) > MAX_NAME_LENGTH:
-            shown = f"{printable_path(member.path[:40])}..."
-            ignored.append(IgnoredFile(shown, "has a name that is too long, and was not read"))
-        elif (path := safe_path(member.path)) is None:
-            reason = "has a name that leads out of the archive, and was not read"
-            ignored.append(IgnoredFile(printable_path(member.path), reason))
+        path = _path(member)
+        if isinstance(path, IgnoredFile):
+            ignored.append(path)
         elif part := ignored_part(path):
             generated |= {path} if is_generated(path) and member.kind == "file" else set()
             unseen |= {part} - {path}
@@ -85,6 +82,18 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     members_at |= {path: member for path, member in found.items() if member.kind == "file"}
     files = [File(path, member.size, partial(_read, member, path)) for path, member in members_at.items()]
     return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
+
+
+def _path(member: ArchiveMember) -> str | IgnoredFile:
+    """Return the path of a member in the tree, or why it is not read."""
+    if len(member.path) > MAX_NAME_LENGTH:
+        shown = f"{printable_path(member.path[:40])}..."
+        return IgnoredFile(shown, "has a name that is too long, and was not read")
+    path = safe_path(member.path)
+    if path is None:
+        reason = "has a name that leads out of the archive, and was not read"
+        return IgnoredFile(printable_path(member.path), reason)
+    return path
 
 
 def _bounded(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:

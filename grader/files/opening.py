@@ -2,7 +2,7 @@
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
@@ -85,11 +85,7 @@ def with_inner(
     depth: int = 0,
 ) -> Tree:
     """Return the tree with what is in its archives; if a package and a URDF are beside them, only of those whose names are wanted."""
-    files = tree.files.values()
-    archives = [file for file in files if file.suffix in ARCHIVES]
-    has_package = any(file.name in ("package.xml", "setup.py") for file in files)
-    if has_package and any(file.suffix == ".urdf" for file in files):
-        archives = [file for file in archives if is_wanted(file.name)]
+    archives = _archives(tree, is_wanted)
     if not archives:
         return tree
     allowance = allowance or limits.Allowance()
@@ -107,8 +103,23 @@ def with_inner(
         else:
             parts.append((archive.path + "/", inner))
             count += len(inner.files)
+    return _combined(tree.name, parts, unopened)
+
+
+def _archives(tree: Tree, is_wanted: Callable[[str], bool]) -> list[File]:
+    """Return the archives that are opened."""
+    files = tree.files.values()
+    archives = [file for file in files if file.suffix in ARCHIVES]
+    has_package = any(file.name in ("package.xml", "setup.py") for file in files)
+    if has_package and any(file.suffix == ".urdf" for file in files):
+        return [file for file in archives if is_wanted(file.name)]
+    return archives
+
+
+def _combined(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
+    """Return one tree of several, each with the start of its paths."""
     return make_tree(
-        tree.name,
+        name,
         [replace(file, path=start + file.path) for start, part in parts for file in part.files.values()],
         [start + folder for start, part in parts for folder in part.folders],
         [*(file._replace(path=start + file.path) for start, part in parts for file in part.ignored), *unopened],

@@ -1,8 +1,10 @@
 """Grade a submission: the parts that are graded, the decided criteria, and the notes of the report."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
+from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.grading.deciding import decide
@@ -15,6 +17,9 @@ from grader.robot.kinematics import Configuration
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
+
+if TYPE_CHECKING:
+    from grader.robot.conventions import Convention
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
 _NOT_EXPANDED = (
@@ -76,21 +81,8 @@ def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequenc
     The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many mistakes.
     """
     lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
-    robot = robot_of(submission.urdf)
-    if (
-        len(lost) < _MIN_OF_CONVENTION
-        or robot is None
-        or rubric.solution is None
-        or not isinstance(submission.urdf, Read)
-    ):
-        return ()
-    from grader.robot.conventions import convention_of  # late: most robots lose few points
-
-    try:
-        found = convention_of(Configuration(robot), rubric.solution.robot, rubric.base)
-    except InputError:
-        return ()
-    if found is None:
+    found = _convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
+    if found is None or not isinstance(submission.urdf, Read):
         return ()
     reading = replace(submission.urdf.reading, robot=found.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
@@ -102,6 +94,18 @@ def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequenc
         return ()
     points = counted_points(sum(gained, Decimal(0)))
     return (f"everything is {found.description} relative to the handout: one decision, {points}",)
+
+
+def _convention(rubric: Rubric, submission: Submission) -> "Convention | None":
+    """Return how all frames of a robot are turned or moved, compared with the reference."""
+    robot = robot_of(submission.urdf)
+    if robot is None or rubric.solution is None:
+        return None
+    from grader.robot.conventions import convention_of  # late: most robots lose few points
+
+    with suppress(InputError):
+        return convention_of(Configuration(robot), rubric.solution.robot, rubric.base)
+    return None
 
 
 def _notes_on_xacro(submission: Submission) -> list[str]:

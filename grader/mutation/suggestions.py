@@ -41,12 +41,17 @@ def suggestion(
     others = [name for name in checks if name not in {found.check.name for found in near}][:2]
     tolerant = [found.id for found in near if found.id in tolerated]
     if tolerant:
-        return f"{enumerated(tolerant, 3)} {'measures' if len(tolerant) == 1 else 'measure'} it, within the tolerance"
-    attempt = f"try {enumerated(others, word='or')}" if others else "check the arguments" if near else ""
+        return f"{_listed(tolerant, 'measure')} it, within the tolerance"
+    attempt = f"; try {enumerated(others, word='or')}" if others else "; check the arguments" if near else ""
     if near:
-        ids = enumerated([found.id for found in near], 3)
-        return f"{ids} {'passes' if len(near) == 1 else 'pass'} nevertheless; {attempt}"
-    return f"no criterion looks at it; {attempt}" if attempt else "no criterion looks at it, and no check does"
+        return f"{_listed([found.id for found in near], 'pass')} nevertheless{attempt}"
+    return f"no criterion looks at it{attempt or ', and no check does'}"
+
+
+def _listed(ids: Sequence[str], verb: str) -> str:
+    """Return the first criteria with a verb."""
+    ending = "" if len(ids) > 1 else "es" if verb.endswith("s") else "s"
+    return f"{enumerated(ids, 3)} {verb}{ending}"
 
 
 def _checks_for(tags: Sequence[str], known: Iterable[Check]) -> list[str]:

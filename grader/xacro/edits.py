@@ -96,22 +96,27 @@ class Rewriter:
         tokens = [text.part(*found.span()) for found in TOKEN.finditer(text.text)]
         words = [(use.old.split(), use.new.split()) for use in uses]
         if len(tokens) > 1 and all(len(tokens) == len(old) == len(new) for old, new in words):
-            wrong: list[list[tuple[int, Way]]] = []
-            for index, token in enumerate(tokens):
-                own = [
-                    use._replace(old=old[index], new=new[index]) for use, (old, new) in zip(uses, words, strict=True)
-                ]
-                if not all(_same(use.old, use.new) for use in own):
-                    ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
-                    wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
-            for parts in islice(product(*wrong), 4 * _MAX_WAYS):
-                yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
+            each = [
+                [use._replace(old=old[index], new=new[index]) for use, (old, new) in zip(uses, words, strict=True)]
+                for index in range(len(tokens))
+            ]
+            yield from self._of_tokens(tokens, each)
         pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
         values = [[self._value(piece.text, use.scope) or "" for piece in pieces] for use in uses]
         for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
             middles = [_middle(use, found, index) for use, found in zip(uses, values, strict=True)]
             if None not in middles:
                 yield from ((rank + 1, way) for rank, way in self._changes(piece, [*filter(None, middles)]))
+
+    def _of_tokens(self, tokens: Sequence[Written], uses: Sequence[Sequence[Use]]) -> Iterator[tuple[int, Way]]:
+        """Yield changes of all tokens that are wrong, together."""
+        wrong: list[list[tuple[int, Way]]] = []
+        for token, own in zip(tokens, uses, strict=True):
+            if not all(_same(use.old, use.new) for use in own):
+                ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
+                wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
+        for parts in islice(product(*wrong), 4 * _MAX_WAYS):
+            yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
 
     def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
@@ -133,12 +138,8 @@ class Rewriter:
             if kind not in kinds and fits(other):
                 kinds.add(kind)
                 yield kind, other
-        for new in {use.new for use in uses} if len({use.new for use in uses}) == 1 else ():
-            is_number = isfinite(_number(text)) and text == text.strip()
-            is_quoted = site.key is not None and text != literal(text) and not is_number
-            plain = f"'{new}'" if is_quoted else merged(text, new) if is_number else new
-            if fits(plain):
-                yield _LITERAL if "$" in text else NUMBER, plain
+        if len({use.new for use in uses}) == 1 and fits(plain := _plain(site, uses[0].new)):
+            yield _LITERAL if "$" in text else NUMBER, plain
         for slot in numbers(text):
             is_plain = not any(it.start() < slot.start() < it.end() for it in EXPRESSION.finditer(text))
             solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
@@ -227,6 +228,14 @@ class Rewriter:
             own = scope.properties if scope.parent is not None else {}
             self._known[id(scope)] = scope, (found, [name for name in found if name in own])
         return self._known[id(scope)][1]
+
+
+def _plain(site: Written, new: str) -> str:
+    """Return a value as it is written at a site: a number in its place, in quotes where the site is an expression's."""
+    is_number = isfinite(_number(site.text)) and site.text == site.text.strip()
+    if site.key is not None and site.text != literal(site.text) and not is_number:
+        return f"'{new}'"
+    return merged(site.text, new) if is_number else new
 
 
 def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:

@@ -134,17 +134,17 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
             complete += [proposal.cause] if not any(left[1:]) else []
         if len(set(complete)) == _MAX_GRADED or len(complete) == _MAX_VALUES:
             break
-    best: tuple[tuple[bool, Decimal, Defects, int, int], Step] | None = None
     better.sort(key=lambda found: (found[0], found[1]))
     is_read = bool(better) and better[0][0][0] < 0
     causes = list(dict.fromkeys(proposal.cause for _, _, proposal in better))[: _MAX_GRADED if is_read else 1]
-    for left, _, proposal in [it for it in better if it[2].cause in causes][: _MAX_VALUES if is_read else 1]:
+    near = [(left, it) for left, _, it in better if it.cause in causes][: _MAX_VALUES if is_read else 1]
+    ranked = []
+    for left, proposal in near:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
             rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.way, -proposal.size)
-            if best is None or rank > best[0]:
-                best = rank, Step(proposal, state, after)
-    return best[1] if best is not None else None
+            ranked.append((rank, Step(proposal, state, after)))
+    return max(ranked, key=lambda found: found[0])[1] if ranked else None
 
 
 def _score(state: State) -> Decimal:

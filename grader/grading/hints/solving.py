@@ -1,6 +1,6 @@
 """Solve for numbers: which number of a robot, with which value, brings what a criterion measures to what it expects."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from math import hypot, isfinite, pi
 from typing import NamedTuple
@@ -43,16 +43,19 @@ class Slot(NamedTuple):
 
 def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[Slot]:
     """Yield the numbers of the joints that move links, and of what links show."""
-    joints = [joint for link in moved for joint in [draft.joint_of(link)] if joint is not None]
-    links = [own for link in shown for own in [draft.link(link)] if own is not None]
+    links = _known(map(draft.link, shown))
     parts = [part for own in links for part in own.iterchildren("visual", "inertial")]
-    colours = [draft.material(used.get("name") or "") for part in parts for used in part.iterchildren("material")]
-    for owner in (*joints, *parts, *(found for found in colours if found is not None)):
+    colours = (draft.material(used.get("name") or "") for part in parts for used in part.iterchildren("material"))
+    for owner in (*_known(map(draft.joint_of, moved)), *parts, *_known(colours)):
         tags = ("origin",) if owner.get("type") in ("fixed", "floating") else _ADDED
         for tag in (tag for tag in tags if tag in CHILDREN[str(owner.tag)]):
             yield from _slots(owner, tag)
         for element in owner.iterdescendants(*(tag for tag in TAGS if tag not in _ADDED)):
             yield from _slots(element, "")
+
+
+def _known(found: Iterable[Element | None]) -> Iterator[Element]:
+    return (element for element in found if element is not None)
 
 
 def _slots(owner: Element, tag: str) -> Iterator[Slot]:

@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.edits import Proposal
 from grader.names import closest
@@ -26,16 +26,20 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
         if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
-        spare = {posixpath.basename(it): it for it in own if posixpath.basename(it) not in names}
-        similar = closest(name, spare)
-        for other in dict.fromkeys([*filter(None, [similar]), *[*spare][:_MAX_NAMES]]):
-            new = posixpath.join(posixpath.dirname(spare[other]), name)
-            yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
+        yield from _renamed(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
         if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
             edits = task.created(path, like)
             needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
             edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
             yield change(edits, "create", WHAT.get(kind, kind if path == kind else "a file of the resource index"))
+
+
+def _renamed(task: Task, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
+    """Yield edits that give one of these files a name: the one with the most similar name first."""
+    spare = {posixpath.basename(it): it for it in files}
+    for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):
+        new = posixpath.join(posixpath.dirname(spare[other]), name)
+        yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
 
 
 def package_names(task: Task, new: str) -> Iterator[Proposal]:

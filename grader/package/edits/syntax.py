@@ -1,6 +1,6 @@
 """Syntax errors of Python: a search over edits of one token near the parser's error."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from grader.edits import Proposal, edited
@@ -37,9 +37,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     if (plain := file.text.translate(_QUOTES)) != file.text:
         changed = [index for index, char in enumerate(file.text) if char != plain[index]]
         yield source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-    ops = [token.text for token in file.tokens if token.kind == "op"]
-    odd = [char for char in "'\"" if char in ops]
-    odd += [char for pair in _BRACKETS for char in pair if ops.count(pair[0]) != ops.count(pair[1])]
+    odd = _unpaired([token.text for token in file.tokens if token.kind == "op"])
     tokens = sorted(file.tokens, key=lambda it: min(abs(it.start - at), abs(it.end - at)))
     near = [token for token in tokens if source.at(token.start).line in (last, last - 1)]
     for token in near:
@@ -51,6 +49,12 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     yield from _indents(file, (last, last - 1))
     for token in near:
         yield from (source.edit(token.end, token.end, char) for char in ",:=.([])")
+
+
+def _unpaired(ops: Sequence[str]) -> list[str]:
+    """Return the quotes that are tokens of their own, and the brackets that are not all paired."""
+    unpaired = [pair for pair in _BRACKETS if ops.count(pair[0]) != ops.count(pair[1])]
+    return [char for char in "'\"" if char in ops] + list("".join(unpaired))
 
 
 def _indents(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:

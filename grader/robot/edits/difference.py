@@ -16,6 +16,10 @@ _MAX_LINKS = 400  # of a robot: more are not compared
 _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
 
 
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
+
+
 class Difference(PieceMaker):
     """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
 
@@ -169,21 +173,25 @@ class Difference(PieceMaker):
         if defined is not None and len(defined):  # in a link
             yield from (self.of_sets([Set(own, "", "rgba", its.get("rgba") or "")]) for own, its in colours)
             return
-        if tag not in ("joint", "link"):
-            spare = (
-                it.of for it in removed if any(is_alike(it, inner) for inner in like.walk())
-            )  # what the new one has
-            away = tuple(edit for it in spare for edit in self.draft.remove(it))
-            text = self.text(element)
-            there = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
-            yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", (*away, *there))
+        if tag in ("joint", "link"):
+            yield self._added_link(like, [it.of for it in added if it.tag == "joint"])
             return
+        spare = (it.of for it in removed if any(is_alike(it, inner) for inner in like.walk()))  # what the new one has
+        away = tuple(edit for it in spare for edit in self.draft.remove(it))
+        text = self.text(element)
+        there = self.draft.insert(parent, text) if tag == "material" else self.draft.append(text)
+        yield self.piece(parent, f"<{tag}> is missing", f"add <{tag}>", (*away, *there))
+
+    def _added_link(self, like: Node, added: Sequence[Element]) -> Piece:
+        """Add a joint, or a link with the joint and the materials that it needs."""
+        element, tag = like.of, like.tag
         name = end_of(element, "child") if tag == "joint" else element.get("name") or ""
-        joints = [it.of for it in added if tag == "link" and it.tag == "joint"]
+        joints = added if tag == "link" else ()
         own = [joint for joint in joints if name in self._ends_of(joint) and self._is_connected(joint, name)]
         text = "\n\n".join([self.text(element), *map(self.text, own)])
         what = f"the link {name!r}" if tag == "link" else f"the joint of {name!r}"
-        yield Piece(f"{what} is missing", f"add {what}", name, (), (*self.draft.append(text), *self.materials(element)))
+        edits = (*self.draft.append(text), *self.materials(element))
+        return Piece(f"{what} is missing", f"add {what}", name, (), edits)
 
     def _ends_of(self, joint: Element) -> list[str]:
         return [end_of(joint, role) for role in ENDS]
@@ -268,16 +276,7 @@ def _node(element: Element, names: Mapping[str, Mapping[str, str]] | None = None
         text = normal(tag, str(name), str(value))
         if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
             continue
-        kind = (
-            "joint"
-            if (tag, name) == ("mimic", "joint")
-            else "material"
-            if tag == "material" and name == "name"
-            else "joint"
-            if tag == "joint" and name == "name"
-            else ""
-        )
-        values[str(name)] = (names or {}).get(kind, {}).get(text, text)
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
     if tag not in TAGS and not len(element) and (element.text or "").strip():
         values[""] = (element.text or "").strip()
     children = [_node(child, names) for child in element if isinstance(child.tag, str)]

@@ -31,6 +31,36 @@ class Piece(NamedTuple):
     is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
 
 
+class _Words(NamedTuple):
+    """The words of a change. `is_mistake`: it undoes a known one; `is_turned`: it sets several angles, and undoes none."""
+
+    cause: str
+    action: str
+    is_mistake: bool = False
+    is_turned: bool = False
+
+
+def _words(sets: Sequence[Set], tag: str) -> _Words:
+    """Return what is wrong with the values of one element, and what to do."""
+    names = " and ".join(one.attribute for one in sets)
+    what = "{}" if tag in ENDS else f"the {names} of {{}}"
+    if sets[0].element is None:
+        return _Words("{} is missing", f"add <{tag}>")
+    if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
+        return _Words(f"{what} is missing", f"add {what}")
+    changes = [change for one in sets for change in [_change(one, tag, is_one=len(sets) == 1)] if change]
+    if len(changes) < len(sets):
+        return _Words(what, f"set {what} to {' and '.join(one.value for one in sets)}")
+    parts = [part for change in changes for part in change[0]]
+    old = tuple(value for change in changes for value in change[1])
+    new = tuple(value for change in changes for value in change[2])
+    unit = TAGS[tag].attributes[sets[-1].attribute].unit
+    cause, action, is_mistake = named("{} of [place]", parts, unit, old, new)
+    is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
+    cause, action = (text.replace("[place]", "{}") for text in (cause, action))
+    return _Words(cause, action, is_mistake, is_turned and not is_mistake)
+
+
 class PieceMaker:
     """Makes pieces for a robot beside the reference's; `known` are names that may be told, because the reference has them."""
 
@@ -60,29 +90,13 @@ class PieceMaker:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
         tag = first.tag or str(first.owner.tag)
-        missing = [one.attribute for one in sets if one.element is None or one.attribute not in one.element.attrib]
-        changes = [_change(one, tag, is_one=len(sets) == 1) for one in sets]
-        names = " and ".join(one.attribute for one in sets)
-        what, is_mistake, is_turned = "{}" if tag in ENDS else f"the {names} of {{}}", False, False
-        if first.element is None:
-            cause, action = "{} is missing", f"add <{tag}>"
-        elif len(missing) == len(sets):
-            cause, action = f"{what} is missing", f"add {what}"
-        elif None not in changes:
-            parts = [part for change in changes if change for part in change[0]]
-            old = tuple(value for change in changes if change for value in change[1])
-            new = tuple(value for change in changes if change for value in change[2])
-            unit = TAGS[tag].attributes[sets[-1].attribute].unit
-            is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
-            cause, action, is_mistake = named("{} of [place]", parts, unit, old, new)
-            cause, action = (text.replace("[place]", "{}") for text in (cause, action))
-        else:
-            cause, action = what, f"set {what} to {' and '.join(one.value for one in sets)}"
-        is_guess = (is_turned and not is_mistake) or (first.element is None and rank == SOLVED)
-        rank, sets = STRUCTURE if tag in ENDS else FITTED if is_guess else rank, self.with_twins(sets)
-        return self.piece(first.owner, cause, action, sets=sets, rank=rank, tag=first.tag)._replace(
-            is_mistake=is_mistake
-        )
+        words = _words(sets, tag)
+        if tag in ENDS:
+            rank = STRUCTURE
+        elif words.is_turned or (first.element is None and rank == SOLVED):
+            rank = FITTED
+        piece = self.piece(first.owner, words.cause, words.action, sets=self.with_twins(sets), rank=rank, tag=first.tag)
+        return piece._replace(is_mistake=words.is_mistake)
 
     def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""

@@ -1,6 +1,6 @@
 """Edits that may undo a problem of a URDF that ROS 2 reports: by the format alone, and as in the reference."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 
 from grader.names import closest
@@ -134,7 +134,13 @@ def _missing(difference: Difference, element: Element) -> Iterator[Piece]:
         elif text is not None:
             edits = draft.insert(element, text)
             yield difference.piece(element, f"the <{child}> of {{}} is missing", f"add the <{child}> of {{}}", edits)
-    like = difference.reference.link(draft.link_of(element)) if tag == "material" else None
+    if tag == "material":
+        yield from _missing_material(difference, element)
+
+
+def _missing_material(difference: Difference, element: Element) -> Iterator[Piece]:
+    """Define the materials of the reference's link, or give an element its colour."""
+    like = difference.reference.link(difference.draft.link_of(element))
     if like is not None and (edits := difference.materials(like)):
         cause, action = "a material that is not defined", "define the material under <robot>"
         yield difference.piece(element, cause, action, edits)
@@ -192,7 +198,6 @@ def _connections(difference: Difference, owner: Element) -> Iterator[Piece]:
     links = [link.get("name") or "" for link in draft.links()]
     children = {end_of(joint, "child") for joint in draft.joints()}
     loose = [name for name in links if name and name not in children]
-    unknown = [name for name in links if not difference.reference.robot.has_link(name)]
     joints = [owner] if owner.tag == "joint" else draft.joints()
     for joint, (role, opposite) in ((joint, roles) for joint in joints for roles in (ENDS, ENDS[::-1])):
         given = end_of(joint, role)
@@ -202,12 +207,20 @@ def _connections(difference: Difference, owner: Element) -> Iterator[Piece]:
             if name not in (end_of(joint, opposite), given):
                 yield difference.of_sets([Set(joint, role, "link", name)])
         if given and given not in links:
-            for name in dict.fromkeys(filter(None, (closest(given, unknown), *loose))):
-                if name in unknown:
-                    sets = renamed(draft, name, given)
-                    cause, action = "the name of a link", "correct the name of the link"
-                    yield difference.piece(joint, cause, action, sets=sets, link=given)
-            like = difference.reference.link(given)
-            text = difference.text(like) if like is not None else f'<link name="{given}"/>'
-            cause, action = "the link of a joint is missing", "add the link that the joint names"
-            yield difference.piece(joint, cause, action, draft.append(text), link=given)
+            yield from _missing_link(difference, joint, given, links, loose)
+
+
+def _missing_link(
+    difference: Difference, joint: Element, given: str, links: Sequence[str], loose: Sequence[str]
+) -> Iterator[Piece]:
+    """Give a link that the reference does not have the name that a joint names, or add a link of that name."""
+    draft = difference.draft
+    unknown = [name for name in links if not difference.reference.robot.has_link(name)]
+    for name in dict.fromkeys(filter(None, (closest(given, unknown), *loose))):
+        if name in unknown:
+            cause, action = "the name of a link", "correct the name of the link"
+            yield difference.piece(joint, cause, action, sets=renamed(draft, name, given), link=given)
+    like = difference.reference.link(given)
+    text = difference.text(like) if like is not None else f'<link name="{given}"/>'
+    cause, action = "the link of a joint is missing", "add the link that the joint names"
+    yield difference.piece(joint, cause, action, draft.append(text), link=given)
