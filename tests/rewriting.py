@@ -151,7 +151,7 @@ def _seeded(step: seeded.Step) -> Step:
     return drawn
 
 
-_NO_NAMES = seeded.Surroundings((), lambda _: False)
+_NO_NAMES = seeded.RewritingRules((), lambda _: False)
 other_angles = _seeded(seeded.turn_fully)
 scale_axis = _seeded(seeded.scale_axes)
 shuffle = _seeded(seeded.shuffle)

@@ -22,7 +22,7 @@ MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square 
 _SEE_BELOW = "the reference does not pass it (see below)"
 
 
-class Draft(NamedTuple):
+class RubricDraft(NamedTuple):
     """A rubric that its reference passes, as bytes and as it is loaded; what it omits, and what looks odd in the reference."""
 
     data: bytes
@@ -31,7 +31,7 @@ class Draft(NamedTuple):
     oddities: tuple[str, ...]
 
 
-def draft(solution: Solution, head: Head, path: Path) -> Draft:
+def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test. Raises InputError."""
     found = _measured(solution)
     if len(found) > MAX_FACTS:
@@ -47,7 +47,7 @@ def draft(solution: Solution, head: Head, path: Path) -> Draft:
         rubric = read_rubric(data, path)
         lost = _lost(rubric)
         if not lost:
-            return Draft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
+            return RubricDraft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
         for name, outcome in lost.items():
             fact, is_odd = rows[name], rows[name].is_doubtful and outcome.status == "failed"
             if is_odd:

@@ -9,7 +9,7 @@ from grader.package.package import Package
 from grader.submission.urdf import Read
 
 
-class Ignored(NamedTuple):
+class IgnoredMutants(NamedTuple):
     """Patterns of mutants that may keep full marks, and why."""
 
     patterns: list[str]
@@ -26,33 +26,33 @@ _CONDITION = "The launch file starts this node only with other arguments than th
 _FOLDER = "ros2 launch finds a launch file in any folder of the installed package."
 
 
-def ignored_mutants(solution: Solution) -> Iterator[Ignored]:
+def ignored_mutants(solution: Solution) -> Iterator[IgnoredMutants]:
     """Yield what a rubric of all facts of a solution ignores nevertheless."""
     urdf = solution.submission.urdf
     text = urdf.source.text if isinstance(urdf, Read) else ""
     sizes = [kind for kind in _SIZED if re.search(rf"<{kind}\s[^>]*=\s*[\"']\s*[\d.]", text)]
     if sizes:
-        yield Ignored([f"number negated: *link */geometry/{kind} *" for kind in sizes], _NEGATIVE)
+        yield IgnoredMutants([f"number negated: *link */geometry/{kind} *" for kind in sizes], _NEGATIVE)
     package = solution.submission.package
     if package is not None:
         yield from _of_launch_files(package)
         yield from () if package.is_cmake else _of_setup(package)
 
 
-def _of_launch_files(package: Package) -> Iterator[Ignored]:
+def _of_launch_files(package: Package) -> Iterator[IgnoredMutants]:
     for path in package.launch_files:
         nodes = [node for node in package.launch(path).nodes if node.when is False]
         if nodes:
-            yield Ignored(
+            yield IgnoredMutants(
                 [f"* {path} *{name}*" for name in dict.fromkeys(node.executable for node in nodes)], _CONDITION
             )
 
 
-def _of_setup(package: Package) -> Iterator[Ignored]:
+def _of_setup(package: Package) -> Iterator[IgnoredMutants]:
     modules = [path for path in package.tree.files if path.endswith("/__init__.py") or path == "setup.cfg"]
     if modules:
-        yield Ignored([f"file *: {path}" for path in modules], _MODULES)
+        yield IgnoredMutants([f"file *: {path}" for path in modules], _MODULES)
     if any(path.startswith("share/ament_index/") for path in package.installed):
-        yield Ignored(["* setup.py *share/ament_index/*", "* setup.py *package.xml*"], _TEMPLATE)
+        yield IgnoredMutants(["* setup.py *share/ament_index/*", "* setup.py *package.xml*"], _TEMPLATE)
     if package.setup is not None and re.search(r"""["']launch["']""", package.setup.source.text):
-        yield Ignored(["string misspelt: setup.py launch*"], _FOLDER)
+        yield IgnoredMutants(["string misspelt: setup.py launch*"], _FOLDER)

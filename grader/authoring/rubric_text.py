@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.authoring.ignored import Ignored
+from grader.authoring.ignored import IgnoredMutants
 from grader.checks.measures.fact import Fact
 from grader.checks.registry import check_names, usable_check
 from grader.text import printable
@@ -92,7 +92,7 @@ class Head(NamedTuple):
     schema: str = ""
 
 
-def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored] = ()) -> str:
+def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[IgnoredMutants] = ()) -> str:
     """Return a rubric with a criterion for each fact, by the ids of the criteria, and the mutants that it ignores."""
     of_package = sum(fact.of_package for fact in facts.values())
     lines = [

@@ -15,7 +15,7 @@ from grader.source import LazyLocation
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines, quoted
 from grader.xml.element_values import (
-    Found,
+    FoundElement,
     attribute,
     elements_at,
     name_of,
@@ -129,7 +129,7 @@ def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome
     if (len(found) > 1 or wanted.identity == "@name") and wanted.identity in wrong:
         return _no_identity(reading, fitting[0], found, wanted)
     faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
-    first = next((text for text in texts_at(best, wrong[0]) if not wanted.has(wrong[0], text)), Found("", best))
+    first = next((text for text in texts_at(best, wrong[0]) if not wanted.has(wrong[0], text)), FoundElement("", best))
     at = _place(reading, first.element, first.attribute)
     return failed(f"{wanted.inner}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at)
 
@@ -175,7 +175,7 @@ def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wan
     )
 
 
-def _fault(key: str, found: Sequence[Found], expected: Content) -> str:
+def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     wanted = expected if isinstance(expected, list) else [expected]
     should = f"it should be {enumerated([_shown(value) for value in wanted])}"

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from grader.checks.about import About
-from grader.checks.launch_places import ENDINGS, WORDS, Place, place_of
+from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import (
@@ -123,7 +123,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Ou
     return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
 
 
-def _wrong(package: Package, wrong: Sequence[Place]) -> Outcome:
+def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(it.text for it in wrong))
     is_local = any(it.file.path is not None and is_of_one_machine(it.file.path) for it in wrong)
     if is_local:
@@ -142,7 +142,7 @@ def _no_files(package: Package, name: str, launch: "Launch") -> Outcome:
     raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
 
 
-def _missing(package: Package, place: Place) -> MissingElement:
+def _missing(package: Package, place: FilePlace) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
     setup, purpose, name = package.setup, place.file.purpose, package.folder
     kind = f"installed {purpose}"

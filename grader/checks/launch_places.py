@@ -9,24 +9,24 @@ from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is
 from grader.package.package import Package
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import Reference
+    from grader.package.launch.model import NamedFile
 
 WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
 
 
-class Place(NamedTuple):
+class FilePlace(NamedTuple):
     """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does not install it."""
 
-    file: "Reference"
+    file: "NamedFile"
     state: Literal["found", "wrong", "unknown", "missing"]
     text: str = ""
 
 
-def place_of(package: Package, file: "Reference") -> Place:
+def place_of(package: Package, file: "NamedFile") -> FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
-        return Place(file, "wrong" if file.sure else "unknown", file.reason)
+        return FilePlace(file, "wrong" if file.sure else "unknown", file.reason)
     what, path = WORDS[file.purpose], posixpath.normpath(file.path)
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
@@ -36,8 +36,8 @@ def place_of(package: Package, file: "Reference") -> Place:
         return _in_package(other, f"share/{owner}/{rest}", file)
     fault = _fault_of_path(package, path)
     if fault:
-        return Place(file, "wrong", f"the launch file looks for the {what} at {fault}")
-    return Place(file, "unknown", f"the {what} {path.removeprefix(PREFIX)} is not part of the package")
+        return FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")
+    return FilePlace(file, "unknown", f"the {what} {path.removeprefix(PREFIX)} is not part of the package")
 
 
 def _fault_of_path(package: Package, path: str) -> str:
@@ -54,7 +54,7 @@ def _fault_of_path(package: Package, path: str) -> str:
     return ""
 
 
-def _in_unknown_package(package: Package, owner: str, rest: str, file: "Reference") -> Place:
+def _in_unknown_package(package: Package, owner: str, rest: str, file: "NamedFile") -> FilePlace:
     """Return what is known of a path in the share folder of a package that is not part of the submission."""
     what = WORDS[file.purpose]
     # A path may lack a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'.
@@ -63,43 +63,43 @@ def _in_unknown_package(package: Package, owner: str, rest: str, file: "Referenc
     if owner.startswith(package.name) and is_known:
         path = posixpath.join("share", owner, rest).rstrip("/")
         fault = f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}"
-        return Place(file, "wrong", fault)
+        return FilePlace(file, "wrong", fault)
     if closest(owner, [package.name]):
         fault = f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}"
-        return Place(file, "wrong", fault)
+        return FilePlace(file, "wrong", fault)
     if file.purpose == "include":
-        return Place(file, "found")
-    return Place(file, "unknown", f"the {what} is in {owner!r}, which is not part of the submission")
+        return FilePlace(file, "found")
+    return FilePlace(file, "unknown", f"the {what} is in {owner!r}, which is not part of the submission")
 
 
-def _in_package(owner: Package, target: str, file: "Reference") -> Place:
+def _in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
     setup, what = owner.setup, WORDS[file.purpose]
     if owner.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
-        return Place(file, "unknown", f"cannot determine statically whether a build installs the {what}")
+        return FilePlace(file, "unknown", f"cannot determine statically whether a build installs the {what}")
     if setup is None or setup.fault is not None:
-        return Place(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
+        return FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
     installed = setup.installed()
     if target in installed:
-        return Place(file, "found", target)
+        return FilePlace(file, "found", target)
     if setup.unknown:
-        return Place(file, "unknown", f"cannot determine statically whether a build installs {target}")
+        return FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
     return _not_there(owner, installed, target, file)
 
 
-def _not_there(owner: Package, installed: Iterable[str], target: str, file: "Reference") -> Place:
+def _not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
     name, looks = posixpath.basename(target), f"the launch file looks for the {WORDS[file.purpose]} at {target}"
     others = [path for path in installed if posixpath.basename(path) == name]
     if others:
-        return Place(file, "wrong", f"{looks}, but a build installs it as {others[0]}")
+        return FilePlace(file, "wrong", f"{looks}, but a build installs it as {others[0]}")
     names = set(map(posixpath.basename, owner.tree.files))
     if name in names:
-        return Place(file, "missing", f"{looks}, but a build does not install {name}")
+        return FilePlace(file, "missing", f"{looks}, but a build does not install {name}")
     own, is_include = posixpath.basename(file.location.path), file.purpose == "include"
     alike = sorted(it for it in names - {own} if it.lower().endswith(ENDINGS[file.purpose]))
     message = f"{looks}, but the package has no file {name!r}"
     if not alike and not is_include:
-        return Place(file, "missing", message)
+        return FilePlace(file, "missing", message)
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and not is_include else None)
-    return Place(file, "wrong", f"{message}; there is {similar!r}" if similar else message)
+    return FilePlace(file, "wrong", f"{message}; there is {similar!r}" if similar else message)

@@ -9,7 +9,7 @@ from grader.documents.converter import PICTURE
 from grader.documents.document import Document
 from grader.documents.headings import Heading, Pattern, has_words, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
-from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal
+from grader.documents.questions import Answer, AnswerMatch, Ordinal, match_answer, read_ordinal
 from grader.source import Location
 
 _MAX_TEXT = 32_000  # characters, which no written answer has
@@ -53,14 +53,14 @@ def find_answer(
     A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a later one.
     """
     read, unread = documents.named(files)
-    search = _Search(documents, read, [read_ordinal(place) or read_label(place) for place in places], question)
+    search = _AnswerSearch(documents, read, [read_ordinal(place) or read_label(place) for place in places], question)
     found = sorted(filter(None, search.passages()), key=lambda passage: (passage.is_empty, not passage.is_certain))
     return AnswerSearch(
         found[0] if found else None, tuple(document.file.path for document in read), tuple(map(str, unread))
     )
 
 
-class _Search:
+class _AnswerSearch:
     """The search for one answer in some documents."""
 
     def __init__(
@@ -181,7 +181,7 @@ def _is_shared(pattern: Pattern, head: Heading) -> bool:
     return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
 
 
-def _joined(match: Match, passages: list[Passage]) -> Passage:
+def _joined(match: AnswerMatch, passages: list[Passage]) -> Passage:
     text = "\n\n".join(passage.text for passage in passages)[:_MAX_TEXT]
     return passages[0]._replace(
         text=text,

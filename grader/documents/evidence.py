@@ -57,7 +57,7 @@ class Proof(NamedTuple):
     loose: Label
 
 
-class Found(NamedTuple):
+class FoundEvidence(NamedTuple):
     """The files of a piece of evidence, and those that may be meant, but are not certain."""
 
     files: tuple[Exhibit, ...]
@@ -69,7 +69,9 @@ def read_proofs(tree: Tree) -> tuple[Proof, ...]:
     return tuple(_proof(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
-def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: DocumentCollection | None = None) -> Found:
+def find_evidence(
+    proofs: Sequence[Proof], names: Sequence[str], documents: DocumentCollection | None = None
+) -> FoundEvidence:
     """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
 
     Files with the label come first. Without one, files count that have a misspelt label with task and step, and headings of Word
@@ -79,22 +81,24 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: Docu
     wanted = [read_label(name) for name in names]
     exact = [proof for proof in proofs if any(matches(label, proof.label) for label in wanted)]
     if exact:
-        return Found(describe(exact))
+        return FoundEvidence(describe(exact))
     others = [proof for proof in proofs if not proof.label.is_complete]
     meant = [proof for proof in others if proof.loose.is_complete and any(matches(it, proof.loose) for it in wanted)]
     perhaps = [proof for proof in others if proof not in meant and any(_may_match(it, proof) for it in wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
     if meant or certain:
-        return Found((*describe(meant), *certain))
+        return FoundEvidence((*describe(meant), *certain))
     listed = {proof.file.path for proof in perhaps}
     whole = (file for file in _whole_documents(documents) if file.path not in listed)
-    return Found((), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole)))
+    return FoundEvidence(
+        (), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole))
+    )
 
 
 def find_all_evidence(
     proofs: Sequence[Proof], names: Sequence[Sequence[str]], documents: DocumentCollection | None
-) -> list[Found]:
+) -> list[FoundEvidence]:
     """Return the evidence for each of several lists of names.
 
     A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not be read. A
@@ -106,13 +110,13 @@ def find_all_evidence(
     for index, one in enumerate(found):
         perhaps = tuple(exhibit for exhibit in one.perhaps if exhibit.heading or exhibit.path not in claimed - unread)
         claimed |= {exhibit.path for exhibit in perhaps}
-        found[index] = Found(one.files, perhaps)
+        found[index] = FoundEvidence(one.files, perhaps)
     without = [index for index, one in enumerate(found) if not one.files]
     steps = [(label, index) for index in without for label in map(read_label, names[index]) if label.is_complete]
     for proof in (proof for proof in proofs if proof.file.path not in claimed and proof.loose.is_complete):
         near = _nearest(proof.loose, steps)
         if near is not None:
-            found[near] = Found((), (*found[near].perhaps, *describe([proof])))
+            found[near] = FoundEvidence((), (*found[near].perhaps, *describe([proof])))
     return found
 
 

@@ -56,7 +56,7 @@ _NOT_SHOWN = (
 _START = 1024  # bytes in which a format that is not shown is recognised
 
 
-class Picture(NamedTuple):
+class EmbeddedPicture(NamedTuple):
     """A picture of a submission: where it is, its type, width and height in pixels, and its bytes."""
 
     where: str
@@ -89,7 +89,7 @@ def image_type(data: bytes) -> ImageType | None:
     return kind
 
 
-def read_picture(file: File) -> Picture | NotShown:
+def read_picture(file: File) -> EmbeddedPicture | NotShown:
     """Return the picture in a file, or why it is not shown."""
     if file.size > MAX_BYTES:
         return NotShown(file.path, _too_large(file.size))
@@ -100,7 +100,7 @@ def read_picture(file: File) -> Picture | NotShown:
     return verified(data, file.path)
 
 
-def verified(data: bytes, where: str) -> Picture | NotShown:
+def verified(data: bytes, where: str) -> EmbeddedPicture | NotShown:
     """Return a picture after its format and size are verified, or why it is not shown."""
     kind = image_type(data)
     if kind is None:
@@ -115,7 +115,7 @@ def verified(data: bytes, where: str) -> Picture | NotShown:
     if size[0] * size[1] > MAX_PIXELS:
         limit = f"more than {MAX_PIXELS // 1_000_000} megapixels, the limit"
         return NotShown(where, f"it has {size[0]} x {size[1]} pixels, {limit}: open it yourself, with care")
-    return Picture(where, kind, *size, data)
+    return EmbeddedPicture(where, kind, *size, data)
 
 
 def _too_large(size: int) -> str:

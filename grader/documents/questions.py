@@ -31,7 +31,7 @@ class Answer(NamedTuple):
     is_line: bool
 
 
-class Match(NamedTuple):
+class AnswerMatch(NamedTuple):
     """The answers that belong to a question, by their index: exactly one, unless it is not certain. `how` says why."""
 
     indices: tuple[int, ...]
@@ -45,7 +45,7 @@ def read_ordinal(place: str) -> Ordinal | None:
     return Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
 
 
-def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -> Match | None:
+def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -> AnswerMatch | None:
     """Return which of the answers in one document belongs to a question of a task; None if there is none for it.
 
     In this order: the only one below the heading of the task; the one with its number; the one at its place, if there are as many
@@ -55,7 +55,7 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
         return None
     below = [index for index, answer in enumerate(answers) if answer.section == task]
     if task is not None and len(below) == 1 and all(answer.section is not None for answer in answers):
-        return Match(tuple(below), True, f"the only {_shown(answers, below)} below the heading of task {task}")
+        return AnswerMatch(tuple(below), True, f"the only {_shown(answers, below)} below the heading of task {task}")
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.number for answer in answers if answer.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
@@ -65,13 +65,15 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
         if len(indices) == wanted.total and in_order:
             index = indices[wanted.number - 1]
             how = f"in order: heading {wanted.number} of {wanted.total} like {_shown(answers, [index])}"
-            return Match((index,), True, how)
+            return AnswerMatch((index,), True, how)
     indices = written or list(range(len(answers)))
     count = f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like {_shown(answers, indices)}"
-    return Match(tuple(indices), False, f"{count} for {wanted.total} questions: it may answer another question")
+    return AnswerMatch(tuple(indices), False, f"{count} for {wanted.total} questions: it may answer another question")
 
 
-def _numbered(wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]) -> Match | None:
+def _numbered(
+    wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]
+) -> AnswerMatch | None:
     """Return the answer below the heading with the question's number; of several, such as a list of the questions, that with text."""
     hits = [index for index, answer in enumerate(answers) if answer.number == wanted.number]
     if len(hits) > 1:
@@ -79,11 +81,11 @@ def _numbered(wanted: Ordinal, task: int | None, answers: Sequence[Answer], writ
     if not hits:
         return None
     if len(hits) > 1:
-        return Match(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
+        return AnswerMatch(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
     section = answers[hits[0]].section
     is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
     where = f", but below the heading of task {section}" if is_other else ""
-    return Match(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
+    return AnswerMatch(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
 
 
 def _repeated(answers: Sequence[Answer], total: int) -> list[int]:

@@ -7,7 +7,7 @@ from grader.documents.collection import DocumentCollection
 from grader.documents.document import CONVERTED, Document
 from grader.documents.evidence import headed
 from grader.documents.headings import Heading
-from grader.documents.pictures import NotShown, Picture, read_picture, verified
+from grader.documents.pictures import EmbeddedPicture, NotShown, read_picture, verified
 from grader.errors import InputError
 from grader.files.tree import File
 from grader.grading.report import Result
@@ -16,7 +16,7 @@ from grader.submission.submission import Submission
 _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 
 
-def pictures_of(result: Result, submission: Submission) -> tuple[Picture | NotShown, ...]:
+def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures of a criterion that needs manual grading, and the files that are not shown.
 
     In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a heading all
@@ -56,7 +56,7 @@ def _files(result: Result) -> tuple[str, ...]:
     return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
 
 
-def _at(path: str, result: Result, submission: Submission) -> Iterator[Picture | NotShown]:
+def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedPicture | NotShown]:
     file = submission.everything.files.get(path) or submission.tree.files.get(path)
     if file is None:
         yield NotShown(path, "it is no longer in the submission")
@@ -68,7 +68,7 @@ def _at(path: str, result: Result, submission: Submission) -> Iterator[Picture |
         yield from _in_document(file, result, submission.readable_documents)
 
 
-def _in_document(file: File, result: Result, documents: DocumentCollection) -> Iterator[Picture | NotShown]:
+def _in_document(file: File, result: Result, documents: DocumentCollection) -> Iterator[EmbeddedPicture | NotShown]:
     document = documents.document(file)
     if not isinstance(document, Document):
         yield NotShown(file.path, document.reason if document is not None else "it has no answers")
@@ -108,11 +108,11 @@ def _last(document: Document, head: Heading) -> int:
     return end
 
 
-def _limited(found: Iterable[Picture | NotShown]) -> Iterator[Picture | NotShown]:
+def _limited(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
     for count, one in enumerate(found):
-        left -= len(one.data) if isinstance(one, Picture) else 0
+        left -= len(one.data) if isinstance(one, EmbeddedPicture) else 0
         if count >= _MAX_PICTURES or left < 0:
             yield NotShown("more pictures", f"only the first {count} are shown: open the others yourself")
             return

@@ -11,7 +11,7 @@ from grader.submission.opening import open_submission
 from grader.submission.submission import Submission
 
 
-class Reference:
+class ReferenceSolution:
     """A rubric's own solution, of which no more is read than is needed. Its properties raise InputError where it cannot be read."""
 
     def __init__(self, path: Path, urdf: str, package: str, folders: tuple[str, ...]) -> None:

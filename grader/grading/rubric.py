@@ -14,7 +14,7 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.criterion import Adjustment, Carried, Criterion
 from grader.grading.levels import Level
-from grader.grading.reference import Reference
+from grader.grading.reference import ReferenceSolution
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.toml_rows import TomlRow
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
@@ -94,7 +94,7 @@ class Rubric:
     without_package: str = ""
     hints: Level = "cause"
     ignored: tuple[Ignored, ...] = ()
-    solution: Reference | None = field(default=None, compare=False, repr=False)
+    solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()
 
     @property
@@ -209,11 +209,11 @@ def _links(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
         yield from (name for name in names if name and not is_selector(name))
 
 
-def _solution(rubric: TomlRow, path: Path) -> Reference | None:
+def _solution(rubric: TomlRow, path: Path) -> ReferenceSolution | None:
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
-    return Reference(place, rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
+    return ReferenceSolution(place, rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
 
 
 def _criterion(

@@ -16,7 +16,7 @@ TomlRow = dict[str, Any]
 _NOTHING: Mapping[str, Any] = {}
 
 
-class RowReader:
+class TomlRowReader:
     """Reads tables; `complaints` are the mistakes so far."""
 
     def __init__(self) -> None:

@@ -22,7 +22,7 @@ from grader.grading.keys import (
     KeyTable,
 )
 from grader.grading.toml_file import TomlPath
-from grader.grading.toml_rows import RowReader, TomlRow, shown
+from grader.grading.toml_rows import TomlRow, TomlRowReader, shown
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
@@ -40,7 +40,7 @@ class Validation:
     """
 
     def __init__(self, table: TomlRow) -> None:
-        self._reader = RowReader()
+        self._reader = TomlRowReader()
         self._row, self._guess, self._complain = self._reader.row, self._reader.guess, self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[BoundCarried | None] = []

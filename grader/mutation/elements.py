@@ -13,7 +13,7 @@ _ATTRIBUTE = re.compile(r"""\s([^\s="'<>/]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _NAMED_BY = ("name", "reference")
 
 
-class Attribute(NamedTuple):
+class AttributeSpan(NamedTuple):
     """An attribute of a start tag: its name, and the offsets of the attribute and its value."""
 
     name: str
@@ -33,7 +33,7 @@ class Element(NamedTuple):
     head_end: int
     end: int
     parent: int
-    attributes: tuple[Attribute, ...]
+    attributes: tuple[AttributeSpan, ...]
     label: str = ""
     tags: tuple[str, ...] = ()  # of those above it, from the root, and its own
 
@@ -80,9 +80,9 @@ def names(text: str, found: Iterable[Element], tag: str) -> list[str]:
     return list(dict.fromkeys(text[slice(*attribute.value)] for attribute in own if attribute.name == "name"))
 
 
-def _attributes(text: str, token: re.Match[str]) -> Iterator[Attribute]:
+def _attributes(text: str, token: re.Match[str]) -> Iterator[AttributeSpan]:
     for found in _ATTRIBUTE.finditer(text, token.start(), token.end()):
-        yield Attribute(found[1], found.start(1), found.span(2 if found[2] is not None else 3), found.end())
+        yield AttributeSpan(found[1], found.start(1), found.span(2 if found[2] is not None else 3), found.end())
 
 
 def _labelled(text: str, found: list[Element]) -> list[Element]:

@@ -12,7 +12,7 @@ from grader.grading.rubric import Rubric
 from grader.mutation import rewritings
 from grader.mutation.elements import Element as TextElement
 from grader.mutation.elements import elements
-from grader.mutation.rewritings import Step, Surroundings, words_of_foreign
+from grader.mutation.rewritings import RewritingRules, Step, words_of_foreign
 from grader.mutation.trees import Style, copied
 from grader.mutation.trial import names_in
 from grader.robot.model import Robot
@@ -151,8 +151,8 @@ class Equivalents:
         return Style(random, numbers=_SPELLING in families).text(tree)
 
     @property
-    def _around(self) -> Surroundings:
-        return Surroundings(self._named, self._may_move)
+    def _around(self) -> RewritingRules:
+        return RewritingRules(self._named, self._may_move)
 
     def _may_move(self, link: str) -> bool:
         """Return whether nothing refers to the frame of a link; @root, @tip and @moved:2 name links by structure."""

@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
 
-from grader.mutation.elements import Attribute, Element, elements, names, text_of
+from grader.mutation.elements import AttributeSpan, Element, elements, names, text_of
 from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
@@ -41,7 +41,7 @@ class Mutant(NamedTuple):
         return text[: self.start] + self.new + text[self.end :]
 
 
-class Change(NamedTuple):
+class MutantEdit(NamedTuple):
     """A change of a text between two offsets: its family, its place by names, and what distinguishes it from others there."""
 
     family: str
@@ -66,14 +66,14 @@ def with_visuals(text: str, path: str, links: Collection[str]) -> Iterator[Mutan
     return as_mutants(text, path, (_with_visual(text, link) for link in own))
 
 
-def _with_visual(text: str, link: Element) -> Change:
+def _with_visual(text: str, link: Element) -> MutantEdit:
     is_empty = text[link.head_end - 2] == "/"
     start = link.head_end - (2 if is_empty else 0)
     new = f">{_BOX}</link>" if is_empty else _BOX
-    return Change("visual added", link.label, start, link.head_end, new, tags=(*link.tags, "visual"))
+    return MutantEdit("visual added", link.label, start, link.head_end, new, tags=(*link.tags, "visual"))
 
 
-def as_mutants(text: str, path: str, changes: Iterable[Change]) -> Iterator[Mutant]:
+def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
     ids: dict[str, int] = {}
@@ -89,7 +89,7 @@ def as_mutants(text: str, path: str, changes: Iterable[Change]) -> Iterator[Muta
         yield Mutant(name, change.family, path, line, *key, tags=change.tags)
 
 
-def _changes(text: str) -> Iterator[Change]:
+def _changes(text: str) -> Iterator[MutantEdit]:
     found = elements(text)
     known = {tag: names(text, found, tag) for tag in ("link", "joint", "material")}
     for element in found:
@@ -102,17 +102,19 @@ def _changes(text: str) -> Iterator[Change]:
             yield from _of_element(text, element, found[element.parent])
 
 
-def _of_attribute(text: str, element: Element, attribute: Attribute, known: dict[str, list[str]]) -> Iterator[Change]:
+def _of_attribute(
+    text: str, element: Element, attribute: AttributeSpan, known: dict[str, list[str]]
+) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
     label, tags = f"{element.label} {name}", (*element.tags, f"@{name}")
-    yield Change("attribute deleted", label, attribute.start - 1, attribute.end, "", tags=tags)
+    yield MutantEdit("attribute deleted", label, attribute.start - 1, attribute.end, "", tags=tags)
     name_end = attribute.start + len(name)
-    yield Change("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags=tags)
+    yield MutantEdit("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags=tags)
     if name in _NAMES:
         kind = element.tag if element.tag in known else name if name in known else "link"
         yield from of_name(text, label, span, known[kind], tags)
     elif name == "type" and element.tag == "joint":
-        yield from (Change("type", label, *span, other, other, tags) for other in _TYPES)
+        yield from (MutantEdit("type", label, *span, other, other, tags) for other in _TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
         changes = of_value(text, element.label, span, name, tags)
         yield from (change for change in changes if name != "params" or change.family != "text misspelt")
@@ -121,18 +123,18 @@ def _of_attribute(text: str, element: Element, attribute: Attribute, known: dict
         if upper is not None:
             first, last = sorted((span, upper.value))
             swapped = text[slice(*last)] + text[first[1] : last[0]] + text[slice(*first)]
-            yield Change("limits exchanged", element.label, first[0], last[1], swapped, tags=tags)
+            yield MutantEdit("limits exchanged", element.label, first[0], last[1], swapped, tags=tags)
 
 
 def of_name(
     text: str, label: str, span: tuple[int, int], others: Iterable[str], tags: tuple[str, ...] = ()
-) -> Iterator[Change]:
+) -> Iterator[MutantEdit]:
     """Yield changes of a name: misspelt, in other case, or another name that exists."""
     name = text[slice(*span)]
-    yield Change("name misspelt", label, *span, misspelt(name), tags=tags)
-    yield Change("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags=tags)
+    yield MutantEdit("name misspelt", label, *span, misspelt(name), tags=tags)
+    yield MutantEdit("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags=tags)
     family = "material exchanged" if "material" in tags[-2:] else "name exchanged"
-    yield from (Change(family, label, *span, other, other, tags) for other in _next(name, list(others)))
+    yield from (MutantEdit(family, label, *span, other, other, tags) for other in _next(name, list(others)))
 
 
 def _next(name: str, names: list[str]) -> list[str]:
@@ -142,7 +144,9 @@ def _next(name: str, names: list[str]) -> list[str]:
     return sorted(others, key=names.index)
 
 
-def of_value(text: str, label: str, span: tuple[int, int], name: str, tags: tuple[str, ...] = ()) -> Iterator[Change]:
+def of_value(
+    text: str, label: str, span: tuple[int, int], name: str, tags: tuple[str, ...] = ()
+) -> Iterator[MutantEdit]:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     pieces = [(start + found.start(), start + found.end()) for found in _NUMBER.finditer(text[start:end])]
@@ -150,14 +154,14 @@ def of_value(text: str, label: str, span: tuple[int, int], name: str, tags: tupl
     parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
     for part, (low, high) in zip(parts, pieces, strict=True):
         for family, number in _altered(float(text[low:high])):
-            yield Change(family, part, low, high, f"{number:.6g}", tags=tags)
+            yield MutantEdit(family, part, low, high, f"{number:.6g}", tags=tags)
     for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
         swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
-        yield Change("number exchanged", part, low, high, swapped, tags=tags)
+        yield MutantEdit("number exchanged", part, low, high, swapped, tags=tags)
     if not pieces and text[start:end].strip():
-        yield Change("text misspelt", label, start, end, misspelt(text[start:end]), tags=tags)
+        yield MutantEdit("text misspelt", label, start, end, misspelt(text[start:end]), tags=tags)
         if name == "filename":
-            yield Change("text in other case", label, start, end, text[start:end].swapcase(), tags=tags)
+            yield MutantEdit("text in other case", label, start, end, text[start:end].swapcase(), tags=tags)
 
 
 def _parts(name: str, count: int) -> list[str]:
@@ -180,14 +184,14 @@ def _altered(value: float) -> Iterable[tuple[str, float]]:
     )
 
 
-def _of_element(text: str, element: Element, parent: Element) -> Iterator[Change]:
+def _of_element(text: str, element: Element, parent: Element) -> Iterator[MutantEdit]:
     own, label, tags = text[element.start : element.end], element.label, element.tags
-    yield Change("element deleted", label, element.start, element.end, "", tags=tags)
+    yield MutantEdit("element deleted", label, element.start, element.end, "", tags=tags)
     if not element.is_foreign:  # whether a simulator reads the second one depends on the simulator
-        yield Change("element duplicated", label, element.end, element.end, f"\n{own}", tags=tags)
+        yield MutantEdit("element duplicated", label, element.end, element.end, f"\n{own}", tags=tags)
     if parent.parent >= 0:
         between = text[parent.start : element.start]
-        yield Change("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags=tags)
+        yield MutantEdit("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags=tags)
 
 
 def misspelt(name: str) -> str:

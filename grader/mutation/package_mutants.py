@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 
 from grader.mutation.elements import elements, text_of
-from grader.mutation.mutants import Change, Mutant, as_mutants, misspelt, mutants
+from grader.mutation.mutants import Mutant, MutantEdit, as_mutants, misspelt, mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
 from grader.package.edits.markup_trees import line_span, scalar_span
 from grader.package.package import MANIFEST, SETUP, Package
-from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Source
 
 # Files for people: without them the package does the same.
@@ -39,7 +39,7 @@ def package_mutants(package: Package, links: Iterable[str], text: Text) -> Itera
             yield from as_mutants(content, path, changes(path, own, content))
 
 
-def _changes(package: Package, own: str, links: list[str]) -> Callable[[str, str, str], Iterator[Change]] | None:
+def _changes(package: Package, own: str, links: list[str]) -> Callable[[str, str, str], Iterator[MutantEdit]] | None:
     """Return what yields the changes of a file; None for one in which no mistakes are made here."""
     if own == MANIFEST:
         return _manifest
@@ -52,7 +52,7 @@ def _changes(package: Package, own: str, links: list[str]) -> Callable[[str, str
     return None
 
 
-def _manifest(path: str, label: str, text: str) -> Iterator[Change]:
+def _manifest(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     """Yield changes of the name and the build type; the dependencies are not read here."""
     del path
     for element in elements(text):
@@ -60,24 +60,24 @@ def _manifest(path: str, label: str, text: str) -> Iterator[Change]:
         if element.tag not in ("name", "build_type") or span is None:
             continue
         place, tags = f"{label} {element.tag}", (MANIFEST,)
-        yield Change("text misspelt", place, *span, misspelt(text[slice(*span)]), tags=tags)
-        yield Change("element deleted", place, element.start, element.end, "", tags=tags)
+        yield MutantEdit("text misspelt", place, *span, misspelt(text[slice(*span)]), tags=tags)
+        yield MutantEdit("element deleted", place, element.start, element.end, "", tags=tags)
         if element.tag == "build_type":
-            yield from (Change("build type", place, *span, other, other, tags) for other in _BUILD_TYPES)
+            yield from (MutantEdit("build type", place, *span, other, other, tags) for other in _BUILD_TYPES)
 
 
-def _launch_xml(path: str, label: str, text: str) -> Iterator[Change]:
+def _launch_xml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     for mutant in mutants(text, path):
         if mutant.family in _XML_FAMILIES:
             place = f"{label} {mutant.id.partition(': ')[2]}"
-            yield Change(mutant.family, place, mutant.start, mutant.end, mutant.new, tags=("launch",))
+            yield MutantEdit(mutant.family, place, mutant.start, mutant.end, mutant.new, tags=("launch",))
 
 
-def _launch_yaml(path: str, label: str, text: str) -> Iterator[Change]:
+def _launch_yaml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     root, source = _yaml(path, text), Source(path, text)
     actions = root.get("launch") if root else None
     for number, item in enumerate(actions.items if actions else (), 1):
-        yield Change("action removed", f"{label} {number}", *line_span(source, item), "", tags=("launch",))
+        yield MutantEdit("action removed", f"{label} {number}", *line_span(source, item), "", tags=("launch",))
         for scalar in _scalars(item):
             yield from _misspelt(source, label, scalar, ("launch",))
 
@@ -91,44 +91,46 @@ _LAUNCH = {
 }
 
 
-def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Change]:
+def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[MutantEdit]:
     """Yield changes of the fixed frame, and of each display: deleted, disabled, its class or topic misspelt."""
     root, source, tags = _yaml(path, text), Source(path, text), ("rviz",)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
         start, end = scalar_span(source, frame)
-        yield Change("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
-        yield from (Change("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text)
+        yield MutantEdit("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
+        yield from (
+            MutantEdit("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text
+        )
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         title = display.get("Name") or display.get("Class")
         place = f"{label} {title.text if title else ''}".rstrip()
-        yield Change("display deleted", place, *line_span(source, display), "", tags=tags)
+        yield MutantEdit("display deleted", place, *line_span(source, display), "", tags=tags)
         enabled = display.get("Enabled")
         if enabled is not None and enabled.text == "true":
-            yield Change("display disabled", place, *scalar_span(source, enabled), "false", tags=tags)
+            yield MutantEdit("display disabled", place, *scalar_span(source, enabled), "false", tags=tags)
         for keys in _DISPLAY_TEXTS:
             node = display.get(*keys)
             if node is not None and node.text:
                 yield from _misspelt(source, f"{place} {'/'.join(keys)}", node, tags)
 
 
-def _misspelt(source: Source, label: str, node: Node, tags: tuple[str, ...]) -> Iterator[Change]:
+def _misspelt(source: Source, label: str, node: YamlNode, tags: tuple[str, ...]) -> Iterator[MutantEdit]:
     start, end = scalar_span(source, node)
     text = source.text[start:end].strip("'\"")
     if text:
         start = source.text.index(text, start)
-        yield Change("text misspelt", f"{label} {text}", start, start + len(text), misspelt(text), tags=tags)
+        yield MutantEdit("text misspelt", f"{label} {text}", start, start + len(text), misspelt(text), tags=tags)
 
 
-def _yaml(path: str, text: str) -> Node | None:
+def _yaml(path: str, text: str) -> YamlNode | None:
     try:
         return read_yaml(text.encode("utf-8", "surrogateescape"), path)
     except YamlFault:
         return None
 
 
-def _scalars(node: Node) -> Iterator[Node]:
+def _scalars(node: YamlNode) -> Iterator[YamlNode]:
     match node.value:
         case str():
             yield node

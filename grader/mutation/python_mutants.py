@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Iterable, Iterator
 
-from grader.mutation.mutants import Change, misspelt
+from grader.mutation.mutants import MutantEdit, misspelt
 from grader.package.edits.python_file import PythonFile, keyword
 from grader.source import Source
 
@@ -24,7 +24,7 @@ _FOR_PEOPLE = (
 _MAX_LABEL = 70
 
 
-def setup_changes(path: str, label: str, text: str) -> Iterator[Change]:
+def setup_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     """Yield the changes of a setup.py: an entry of data_files or an import deleted, a string misspelt."""
     file = PythonFile(Source(path, text))
     tags = ("setup.py",)
@@ -33,11 +33,11 @@ def setup_changes(path: str, label: str, text: str) -> Iterator[Change]:
         yield from _removed(file, "data_files entry deleted", label, _items(entries.value if entries else None), tags)
     for node in file.imports:
         start, end = file.span(node)
-        yield Change("import deleted", f"{label} {file.segment(node)}", start, end, "pass", tags=tags)
+        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", start, end, "pass", tags=tags)
     yield from _strings(file, label, tags)
 
 
-def launch_changes(path: str, label: str, text: str) -> Iterator[Change]:
+def launch_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     """Yield the changes of a launch file: an action removed, a string misspelt."""
     file = PythonFile(Source(path, text))
     tags = ("launch",)
@@ -45,7 +45,7 @@ def launch_changes(path: str, label: str, text: str) -> Iterator[Change]:
         yield from _removed(file, "action removed", label, _items(call.args[0] if call.args else None), tags)
     for call in file.calls("add_action"):
         start, end = file.span(call)
-        yield Change(
+        yield MutantEdit(
             "action removed",
             f"{label} {_short(file, call.args[0] if call.args else call)}",
             start,
@@ -62,14 +62,14 @@ def _items(value: ast.expr | None) -> list[ast.expr]:
 
 def _removed(
     file: PythonFile, family: str, label: str, items: Iterable[ast.expr], tags: tuple[str, ...]
-) -> Iterator[Change]:
+) -> Iterator[MutantEdit]:
     """Yield the removal of each item of a list, with the comma after it."""
     for item in items:
         start, end = file.span(item)
         after = file.text[end:].lstrip()
         if after.startswith(","):
             end = file.text.index(",", end) + 1
-        yield Change(family, f"{label} {_short(file, item)}", start, end, "", tags=tags)
+        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "", tags=tags)
 
 
 def _short(file: PythonFile, node: ast.expr) -> str:
@@ -79,12 +79,12 @@ def _short(file: PythonFile, node: ast.expr) -> str:
     return text.strip("'\"") if len(text) <= _MAX_LABEL else text[:_MAX_LABEL]
 
 
-def _strings(file: PythonFile, label: str, tags: tuple[str, ...]) -> Iterator[Change]:
+def _strings(file: PythonFile, label: str, tags: tuple[str, ...]) -> Iterator[MutantEdit]:
     ignored = list(_for_people(file))
     for literal in file.literals:
         if literal.text.strip() and not any(start <= literal.start < end for start, end in ignored):
             text = literal.text if len(literal.text) <= _MAX_LABEL else literal.text[:_MAX_LABEL]
-            yield Change(
+            yield MutantEdit(
                 "string misspelt", f"{label} {text}", literal.start, literal.end, misspelt(literal.text), tags=tags
             )
 

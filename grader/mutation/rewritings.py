@@ -30,17 +30,17 @@ _SLIDING = "prismatic"
 _TURNING = ("revolute", "continuous")
 
 
-class Surroundings(NamedTuple):
+class RewritingRules(NamedTuple):
     """What a rewriting must leave as it is: `named` is renamed nowhere, and frames are moved only where `may_move` is true."""
 
     named: Collection[str]
     may_move: Callable[[str], bool]
 
 
-Step = Callable[[Random, Element, Surroundings], bool]
+Step = Callable[[Random, Element, RewritingRules], bool]
 
 
-def shuffle(random: Random, tree: Element, around: Surroundings) -> bool:
+def shuffle(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Change the order of elements: links, joints and materials, and those inside of each."""
     del around
     free = ("joint", "material", "collision") if _has_shared_material(tree) else _SORTED
@@ -69,7 +69,7 @@ def _stable(before: list[Element], after: list[Element], free: tuple[str, ...]) 
     return [queues[str(element.tag)].pop(0) if str(element.tag) in queues else element for element in after]
 
 
-def split_joints(random: Random, tree: Element, around: Surroundings) -> bool:
+def split_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Put an empty link into the middle of fixed joints; their names stay in the chain."""
     del around
     fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
@@ -93,7 +93,7 @@ def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bo
         parent.set("link", middle)
 
 
-def move_frames(random: Random, tree: Element, around: Surroundings) -> bool:
+def move_frames(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Move the frames of links together with what is in them, where nothing refers to the frame."""
     links = [link for link in tree.iterchildren("link") if around.may_move(link.get("name", ""))]
     moved = False
@@ -119,7 +119,7 @@ def _allowed_move(random: Random, joint: Element) -> Transform | None:
     return Transform(translation=(x * slide, y * slide, z * slide)) @ Transform(change.rotation)
 
 
-def turn_fully(random: Random, tree: Element, around: Surroundings) -> bool:
+def turn_fully(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Write rotations with additional full turns, or by their other three angles."""
     del around
     origins = list(own_elements(tree, "origin"))
@@ -136,7 +136,7 @@ def other_angles(random: Random, rpy: list[float]) -> list[float]:
     return [angle + 2 * pi * random.randint(-3, 3) for angle in (roll, pitch, yaw)]
 
 
-def scale_axes(random: Random, tree: Element, around: Surroundings) -> bool:
+def scale_axes(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Scale axes of joints."""
     del around
     axes = list(own_elements(tree, "axis"))
@@ -146,17 +146,17 @@ def scale_axes(random: Random, tree: Element, around: Surroundings) -> bool:
     return bool(axes)
 
 
-def rename_links(random: Random, tree: Element, around: Surroundings) -> bool:
+def rename_links(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename links and materials that nothing but this file refers to."""
     return _renamed(random, tree, around, ("link", "material"))
 
 
-def rename_joints(random: Random, tree: Element, around: Surroundings) -> bool:
+def rename_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
     return _renamed(random, tree, around, ("joint",))
 
 
-def _renamed(random: Random, tree: Element, around: Surroundings, tags: tuple[str, ...]) -> bool:
+def _renamed(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
     changed = False
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
     if "joint" in tags and len(set(children)) < len(children):  # of two parents, the joint that is last by name counts

@@ -16,7 +16,7 @@ from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
-    from grader.package.launch.model import Launch, Reference
+    from grader.package.launch.model import Launch, NamedFile
     from grader.package.manifest import Manifest
     from grader.package.rviz import RvizFile
     from grader.package.setup_py import Setup
@@ -189,7 +189,7 @@ class Package:
             rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
-    def robot_references(self, name: str) -> "list[Reference]":
+    def robot_references(self, name: str) -> "list[NamedFile]":
         """Return where its launch files read the robot in a file of this name."""
         launches = map(self.launch, self.launch_files[:_MAX_LAUNCHES])
         references = (reference for launch in launches for reference in launch.named("urdf"))

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.package import catalogue
-from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
 from grader.source import Location, Source
 
@@ -19,7 +19,7 @@ class Display:
     kind: str
     name: str
     group_enabled: bool
-    node: Node
+    node: YamlNode
 
     @property
     def enabled(self) -> bool:
@@ -90,14 +90,14 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     return RvizFile(source, None, frame.text if frame else None, location, displays)
 
 
-def switched_on(node: Node | None, *, default: bool) -> bool:
+def switched_on(node: YamlNode | None, *, default: bool) -> bool:
     """Return a setting as RViz reads it: everything but false, 0 and the empty text is on (QVariant::toBool)."""
     if node is None or node.text is None:
         return default
     return node.text.lower() not in ("false", "0", "")
 
 
-def _displays(listed: Node | None) -> Iterator[Display]:
+def _displays(listed: YamlNode | None) -> Iterator[Display]:
     """Yield the displays of a list and of its groups; in a disabled group they are disabled."""
     pending = [(node, True) for node in listed.items] if listed is not None else []
     for _ in range(_MAX_DISPLAYS):

@@ -21,16 +21,16 @@ class YamlFault(Exception):
 
 
 @dataclass(eq=False, slots=True)
-class Node:
+class YamlNode:
     """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
     location: Location
-    value: "str | list[Node] | dict[str, Node]"
+    value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
 
-    def get(self, *keys: str) -> "Node | None":
+    def get(self, *keys: str) -> "YamlNode | None":
         """Return the node at a path of keys, None where there is none."""
-        node: Node | None = self
+        node: YamlNode | None = self
         for key in keys:
             node = node.value.get(key) if node is not None and isinstance(node.value, dict) else None
         return node
@@ -41,12 +41,12 @@ class Node:
         return self.value if isinstance(self.value, str) else None
 
     @property
-    def items(self) -> "list[Node]":
+    def items(self) -> "list[YamlNode]":
         """The entries of a list; no entries for other values."""
         return self.value if isinstance(self.value, list) else []
 
 
-def read_yaml(data: bytes, path: str) -> Node:
+def read_yaml(data: bytes, path: str) -> YamlNode:
     """Return the first document of a YAML text; an empty text is an empty mapping. Raises YamlFault."""
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
@@ -65,9 +65,9 @@ def read_yaml(data: bytes, path: str) -> Node:
         raise YamlFault("the file is too deeply nested", Location(path, 1, 1)) from None
 
 
-def _compose(events: Iterator[yaml.Event], path: str) -> Node:
-    root = Node(Location(path, 1, 1), {})
-    open_nodes: list[tuple[Node, list[str]]] = []  # each with the key in it whose value follows
+def _compose(events: Iterator[yaml.Event], path: str) -> YamlNode:
+    root = YamlNode(Location(path, 1, 1), {})
+    open_nodes: list[tuple[YamlNode, list[str]]] = []  # each with the key in it whose value follows
     anchors = _Anchors(path)
     first = True
     for count, event in enumerate(events):
@@ -95,9 +95,9 @@ class _Anchors:
     """The nodes that aliases stand for, by the names of their anchors."""
 
     def __init__(self, path: str) -> None:
-        self._path, self._nodes, self._aliases = path, dict[str, Node](), 0
+        self._path, self._nodes, self._aliases = path, dict[str, YamlNode](), 0
 
-    def node(self, event: yaml.NodeEvent) -> Node:
+    def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
         if not isinstance(event, yaml.AliasEvent):
             node = _node(event, self._path)
@@ -113,14 +113,14 @@ class _Anchors:
         return found
 
 
-def _node(event: yaml.NodeEvent, path: str) -> Node:
+def _node(event: yaml.NodeEvent, path: str) -> YamlNode:
     location = _location(event, path)
     if isinstance(event, yaml.ScalarEvent):
-        return Node(location, event.value, quoted=event.style in ("'", '"'))
-    return Node(location, {} if isinstance(event, yaml.MappingStartEvent) else [])
+        return YamlNode(location, event.value, quoted=event.style in ("'", '"'))
+    return YamlNode(location, {} if isinstance(event, yaml.MappingStartEvent) else [])
 
 
-def _attach(parent: Node, key: list[str], node: Node) -> None:
+def _attach(parent: YamlNode, key: list[str], node: YamlNode) -> None:
     if isinstance(parent.value, list):
         parent.value.append(node)
     elif isinstance(parent.value, dict) and key:

@@ -13,7 +13,7 @@ _SELECTOR = re.compile(r"@(?:root|tip|moved:([1-9]\d{0,3}))")
 _MAX_NAMED = 5  # links in a message
 
 
-class _Place(NamedTuple):
+class _LinkPlace(NamedTuple):
     """The place of a link in its tree: the root, and how many moving joints are above it."""
 
     root: str
@@ -63,7 +63,7 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     return _only(robot, _moved(places, parents, int(found[1]), most, name), name)
 
 
-def _moved(places: dict[str, _Place], parents: Mapping[str, Joint], number: int, most: int, name: str) -> set[str]:
+def _moved(places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str) -> set[str]:
     """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"
@@ -75,23 +75,23 @@ def _moved(places: dict[str, _Place], parents: Mapping[str, Joint], number: int,
     return {link for link in on_chain if places[link].is_moved and places[link].depth == number}
 
 
-def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _Place]:
+def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkPlace]:
     """Return the places of the links that are in a tree, each after that of its parent."""
     below: dict[str, list[str]] = {}
     for link, joint in parents.items():
         below.setdefault(joint.parent, []).append(link)
-    places = {link.name: _Place(link.name, 0, is_moved=False) for link in robot.links if link.name not in parents}
+    places = {link.name: _LinkPlace(link.name, 0, is_moved=False) for link in robot.links if link.name not in parents}
     waiting = list(places)
     while waiting:
         above = waiting.pop()
         for link in below.get(above, ()):
             is_moving = parents[link].type != "fixed" and parents[link].mimic is None
-            places[link] = _Place(places[above].root, places[above].depth + is_moving, is_moving)
+            places[link] = _LinkPlace(places[above].root, places[above].depth + is_moving, is_moving)
             waiting.append(link)
     return places
 
 
-def _main_root(places: Mapping[str, _Place], name: str) -> str:
+def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
     sizes = Counter(place.root for place in places.values()).most_common()
     largest = [root for root, size in sizes if size == sizes[0][1]]
     if len(largest) == 1:

@@ -7,8 +7,8 @@ from typing import Any
 from grader.static_python.closed_values import (
     MAX_PARTS,
     Budget,
+    ClosedFunction,
     ExpressionFails,
-    Function,
     Items,
     Undetermined,
     Value,
@@ -26,7 +26,7 @@ _MAX_SMALL = 200  # arguments of factorial and its like
 def call(function: Value, args: list[Value], kwargs: dict[str, Value], budget: Budget) -> Value:
     """Return what a call of a function of the allow-list returns."""
     budget.measure([args, list(kwargs.values())])
-    if not isinstance(function, Function):
+    if not isinstance(function, ClosedFunction):
         return run(function, *args, **kwargs) if not callable(function) else _refuse("this call")
     if function is BUILTINS["map"] and args and not kwargs:
         mapped, *lists = args
@@ -107,11 +107,11 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
                      "repr", "reversed", "set", "slice", "tuple", "type", "vars", "zip")
     },
 }  # fmt: skip
-BUILTINS: Mapping[str, Function] = {name: Function(name, function) for name, function in _FUNCTIONS.items()}
+BUILTINS: Mapping[str, ClosedFunction] = {name: ClosedFunction(name, function) for name, function in _FUNCTIONS.items()}
 MATH: Mapping[str, Value] = {
     **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
     **{
-        name: Function(name, _small(value) if name in ("factorial", "comb", "perm", "prod", "lcm") else value)
+        name: ClosedFunction(name, _small(value) if name in ("factorial", "comb", "perm", "prod", "lcm") else value)
         for name, value in vars(math).items()
         if callable(value) and not name.startswith("_")
     },

@@ -12,9 +12,9 @@ from grader.static_python.closed_values import (
     MAX_TEXT,
     PLAIN,
     Budget,
+    ClosedFunction,
     DottedDict,
     ExpressionFails,
-    Function,
     Items,
     Namespace,
     Undetermined,
@@ -38,7 +38,7 @@ def attribute(owner: Value, name: str, budget: Budget) -> Value:
         return owner.find(name)
     methods = next((methods for kind, methods in _METHODS.items() if isinstance(owner, kind)), {})
     if name in methods:
-        return Function(name, lambda *args, **kwargs: _call(methods[name], owner, args, kwargs, budget))
+        return ClosedFunction(name, lambda *args, **kwargs: _call(methods[name], owner, args, kwargs, budget))
     if isinstance(owner, PLAIN) and hasattr(owner, name):
         raise Undetermined(f"the attribute {name} is not supported")
     if isinstance(owner, DottedDict) and name in owner:

@@ -15,16 +15,16 @@ CHARACTERS, _BITS = 16, 256  # that count as one part
 PLAIN: tuple[Any, ...] = (str, int, float, type(None), range, list, tuple, dict)
 
 
-class _Failure(Exception):
+class _ExpressionFailure(Exception):
     def __init__(self, message: str) -> None:
         super().__init__(message[:_MAX_MESSAGE])
 
 
-class ExpressionFails(_Failure):
+class ExpressionFails(_ExpressionFailure):
     """Python certainly raises an error for this expression; the text is a sentence without its end."""
 
 
-class Undetermined(_Failure):
+class Undetermined(_ExpressionFailure):
     """The value of an expression cannot be determined statically; the text says why."""
 
 
@@ -98,12 +98,12 @@ def _parts(part: Value) -> Collection[Value]:
             return [*part.keys(), *part.values()]
         case Items():
             return part.values
-        case str() | int() | float() | None | Function() | Namespace():
+        case str() | int() | float() | None | ClosedFunction() | Namespace():
             return ()
     raise Undetermined(f"values of the type {type(part).__name__} are not supported")
 
 
-class Function:
+class ClosedFunction:
     """A function that an expression may call."""
 
     __slots__ = ("name", "run")
@@ -192,7 +192,7 @@ def _has_text(value: Value) -> bool:
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
         return all(map(_has_text, value))
-    return not isinstance(value, Function | Namespace | Items)
+    return not isinstance(value, ClosedFunction | Namespace | Items)
 
 
 def too_large(what: str) -> NoReturn:

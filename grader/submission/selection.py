@@ -9,7 +9,7 @@ from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.packages import best_named, package_around, read_packages, why_none, why_not
 from grader.submission.robots import RobotFile, find_robots
 from grader.submission.search import find_urdf, is_wanted
-from grader.submission.students import Work, students_beside, students_in
+from grader.submission.students import StudentWork, students_beside, students_in
 from grader.submission.urdf import OtherCandidate
 from grader.text import enumerated, was_not_committed
 
@@ -48,7 +48,7 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists, only for the robot that the
     rubric names. `limit` is in bytes of a URDF.
     """
-    scope = _Scope(tree, wanted, folders, limit)
+    scope = _LabScope(tree, wanted, folders, limit)
     packages = scope.packages(package, wanted)
     named = best_named(packages, package)
     preferred = named or next(iter(packages), None)
@@ -73,12 +73,12 @@ def _students(
     robots: Sequence[RobotFile], names: Mapping[str, str], lab: set[str], wanted: str, package: str
 ) -> tuple[str, ...]:
     """Return the folders of the students if the robots and packages are of several; `names` are those of packages."""
-    works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in robots[:_MAX_WORKS] if it.size]
-    works += [Work(folder, is_wanted=True) for folder, name in names.items() if name == package]
+    works = [StudentWork(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in robots[:_MAX_WORKS] if it.size]
+    works += [StudentWork(folder, is_wanted=True) for folder, name in names.items() if name == package]
     return students_in(works, names, lab, package) if len(works) > 1 else ()
 
 
-class _Scope:
+class _LabScope:
     """The part of a submission in which its lab is searched: `tree`, and `documents` without what is outside of the lab's folder.
 
     `robots` are the candidates in it, `elsewhere` are other robots and packages.

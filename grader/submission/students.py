@@ -60,7 +60,7 @@ _VERSIONS = frozenset(
 _NUMBERED = frozenset({"student", "team", "group", "member", "gruppe"})  # team 1 and team 2 are two
 
 
-class Work(NamedTuple):
+class StudentWork(NamedTuple):
     """A robot or package, the folder it is in, and whether it surely is what the lab asks for."""
 
     folder: str
@@ -68,7 +68,7 @@ class Work(NamedTuple):
 
 
 def students_in(
-    works: Collection[Work], packages: Mapping[str, str], lab: Collection[str], wanted: str
+    works: Collection[StudentWork], packages: Mapping[str, str], lab: Collection[str], wanted: str
 ) -> tuple[str, ...]:
     """Return the folders of students, in order, if the works are those of several students; else none.
 

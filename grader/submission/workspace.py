@@ -13,7 +13,7 @@ from grader.package.package import Package
 from grader.static_python.closed_values import Budget
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import Reference
+    from grader.package.launch.model import NamedFile
     from grader.xacro.files import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -34,7 +34,7 @@ class Surroundings:
     budget: Budget = field(default_factory=Budget, repr=False)
     is_single: bool = False
 
-    def robot_references(self, path: str) -> list[Reference]:
+    def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF."""
         return self.graded.robot_references(path.rpartition("/")[2]) if self.graded is not None else []
 

@@ -14,7 +14,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError, read_points
 from grader.classroom.review import ReviewSession
-from grader.documents.pictures import NotShown, Picture
+from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
@@ -23,7 +23,7 @@ from grader.usecases.local_server import LocalServer, Request, Response
 from grader.usecases.review import NOTHING, summary
 from grader.usecases.review_pictures import item_pictures
 
-Album = tuple[Picture | NotShown, ...]
+Album = tuple[EmbeddedPicture | NotShown, ...]
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
@@ -80,7 +80,7 @@ class ReviewPage:
     def _picture(self, which: str) -> Response:
         pictures = self._album(self.session.position, self.session.current_item()).result()
         found = dict(enumerate(pictures, 1)).get(int(which) if _is_number(which) else 0)
-        if not isinstance(found, Picture):
+        if not isinstance(found, EmbeddedPicture):
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
         return Response(found.data, found.kind.media_type)
 

@@ -8,7 +8,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
 from grader.classroom.gradebook.student_grade import SubmissionSources
 from grader.classroom.review import ReviewSession
-from grader.documents.pictures import NotShown, Picture
+from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.rubric import Rubric
@@ -22,7 +22,7 @@ _CHANGED = "the files have changed or moved since they were graded: run `grader 
 _HIDDEN = "not shown here: the review without --anonymous says why"
 
 
-def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShown, ...]:
+def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures of an item, and files that are not shown. The submission is opened again and must be unchanged."""
     if not may_have_pictures(item.result):
         return ()
@@ -31,9 +31,9 @@ def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[Picture | NotShow
     return found if item.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
 
 
-def _anonymous(number: int, found: Picture | NotShown) -> Picture | NotShown:
+def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
     """Return a picture without the name of its file, which students choose."""
-    if isinstance(found, Picture):
+    if isinstance(found, EmbeddedPicture):
         return found._replace(where=f"picture {number}")
     return NotShown(f"picture {number}", _CHANGED if found.reason == _CHANGED else _HIDDEN)
 
@@ -81,7 +81,7 @@ def write_all_pictures(
     return found
 
 
-def _written(found: Picture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
+def _written(found: EmbeddedPicture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
     """Write a picture, unless it is not shown, and return the line about it."""
     if isinstance(found, NotShown):
         return printable(str(found))

@@ -8,7 +8,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.authoring.draft import Draft, draft
+from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
 from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
@@ -113,7 +113,7 @@ def _relative(reference: Path, folder: Path) -> str:
     return path.replace(os.sep, "/")
 
 
-def _lines(file: Path, made: Draft) -> Iterator[str]:
+def _lines(file: Path, made: RubricDraft) -> Iterator[str]:
     yield f"wrote {printable_path(file)}: {summary(made.rubric)}; its reference gets full marks"
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"

@@ -10,8 +10,8 @@ from grader import markup
 from grader.edits import text_of, with_attribute, with_child, with_sibling
 from grader.names import closest
 from grader.source import Correction, Edit, Source
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import Place, UnknownName, XacroFails
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import ScopePlace, UnknownName, XacroFails
 
 _MAX_NAMES = 8
 _MAX_VALUES = 40
@@ -20,21 +20,23 @@ _UNKNOWN = "a name that xacro does not know"
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 Edits = tuple[Edit, ...]
-Calls = Mapping[tuple[str, int], tuple[str, Place, Mapping[tuple[str, int], Place]]]
+Calls = Mapping[tuple[str, int], tuple[str, ScopePlace, Mapping[tuple[str, int], ScopePlace]]]
 
 
 class Refusal(NamedTuple):
     """What xacro refuses, and where: in an attribute, or without one in the tag itself."""
 
     error: XacroFails
-    place: Place
+    place: ScopePlace
     attribute: str | None
 
 
 class Corrector:
     """The documents of an expansion, and what was refused in them. `others` are xacro files that are not included."""
 
-    def __init__(self, documents: Mapping[str, Node], calls: Calls, others: Callable[[], Mapping[str, str]]) -> None:
+    def __init__(
+        self, documents: Mapping[str, XacroNode], calls: Calls, others: Callable[[], Mapping[str, str]]
+    ) -> None:
         self._documents, self._calls, self._others = documents, calls, others
 
     def corrections(
@@ -58,7 +60,7 @@ class Corrector:
                 yield Correction(edits, f"this call gives no value for {what}", f"give {what} a value")
         yield from self._calls_of_macros(names)
 
-    def _respelled(self, place: Place, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
+    def _respelled(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
         """Yield the edits that correct an unknown name where it is used, or where a similar one is defined; declare a parameter."""
         near = closest(unknown.name, unknown.known)
         is_few = attribute is None and len(unknown.known) <= _MAX_NAMES
@@ -96,7 +98,7 @@ class Corrector:
                 return f"{folder}{slash}{posixpath.basename(other)}"
         return posixpath.relpath(other, posixpath.dirname(path) or ".")
 
-    def _values(self, place: Place, lacking: Sequence[str], known: Sequence[str]) -> Iterator[Mapping[str, str]]:
+    def _values(self, place: ScopePlace, lacking: Sequence[str], known: Sequence[str]) -> Iterator[Mapping[str, str]]:
         """Yield values for what a call lacks: those of other calls, and known ones."""
         for other in self._other_calls(place):
             if set(lacking) <= other.keys():
@@ -106,7 +108,7 @@ class Corrector:
         elif len(lacking) == 1:
             yield from ({lacking[0]: value} for value in ("0", "1", "-1", *known[:_MAX_VALUES]))
 
-    def _other_calls(self, place: Place) -> Iterator[dict[str, str]]:
+    def _other_calls(self, place: ScopePlace) -> Iterator[dict[str, str]]:
         """Yield what the other calls of a macro give, blocks by the names of the parameters."""
         tag = next((node.tag for node in self._nodes() if node.place[:2] == place[:2]), "")
         macros = (it for it in self._nodes("xacro:macro") if f"xacro:{_name_of(it)}" == tag)
@@ -117,7 +119,7 @@ class Corrector:
                 names = [name for name in parameters if name.startswith("*")]
                 yield {**node.attributes, **dict(zip(names, blocks, strict=False))}
 
-    def _given(self, place: Place, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
+    def _given(self, place: ScopePlace, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
         source, start = place.source.element(place.tag)
         blocks = [values[name] for name in lacking if name.startswith("*")]
         if blocks:
@@ -143,22 +145,22 @@ class Corrector:
                 edit = with_sibling(*last.place.source.element(last.place.tag), f"<xacro:{name}{given}/>")
                 yield Correction((edit,), f"the macro {name} is never called", f"call the macro {name}")
 
-    def _nodes(self, tag: str = "") -> Iterator[Node]:
+    def _nodes(self, tag: str = "") -> Iterator[XacroNode]:
         for document in self._documents.values():
             yield from (node for node in islice(_walk(document), 2000) if tag in ("", node.tag))
 
 
-def _walk(node: Node) -> Iterator[Node]:
+def _walk(node: XacroNode) -> Iterator[XacroNode]:
     for child in node.elements:
         yield child
         yield from _walk(child)
 
 
-def _name_of(macro: Node) -> str:
+def _name_of(macro: XacroNode) -> str:
     return macro.attributes.get("name", "").removeprefix("xacro:")
 
 
-def _renamed(place: Place, attribute: str | None, old: str, new: str) -> Edits:
+def _renamed(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
     """Return the edit of an attribute's value; without an attribute, of the name of one, of the tag, or of any value."""
     source, start = place.source.element(place.tag)
     tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()
@@ -170,7 +172,7 @@ def _renamed(place: Place, attribute: str | None, old: str, new: str) -> Edits:
     return tags
 
 
-def _tags(place: Place, old: str, new: str) -> Iterator[Edit]:
+def _tags(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
     """Yield the edits of a call's start tag, and of its end tag if it has one."""
     source, start = place.source.element(place.tag)
     if source.text[start : markup.name_end(source.text, start)] == f"<{old}":

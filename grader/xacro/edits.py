@@ -16,7 +16,7 @@ from grader import markup
 from grader.edits import merged, with_attribute
 from grader.source import Edit
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
-from grader.xacro.scopes import Definition, Key, Place, Scope, literal
+from grader.xacro.scopes import Definition, Key, ScopePlace, XacroScope, literal
 from grader.xacro.texts import PIECE, Texts
 from grader.xacro.variants import (
     ARGUMENT,
@@ -29,7 +29,7 @@ from grader.xacro.variants import (
     variants,
     with_number,
 )
-from grader.xacro.written import Change, Written, defined, edits_of, written
+from grader.xacro.written import TextChange, Written, defined, edits_of, written
 
 _WORK = 300_000  # parts that all evaluations for one document may look at
 _MAX_WAYS = 8
@@ -42,16 +42,16 @@ _NICE_DIGITS = 3  # more are no number that a student would write into an expres
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 _LITERAL = 20  # the rank of a text in place of an expression
 
-Way = tuple[Change, ...]
+Way = tuple[TextChange, ...]
 
 
 class Use(NamedTuple):
     """A use of a text: the scope in which it is evaluated, what it is, what it should be, and the calls of macros around it."""
 
-    scope: Scope
+    scope: XacroScope
     old: str
     new: str
-    calls: tuple[tuple[str, Place], ...] = ()
+    calls: tuple[tuple[str, ScopePlace], ...] = ()
 
 
 class Rewriter:
@@ -60,9 +60,9 @@ class Rewriter:
     def __init__(self, texts: Texts) -> None:
         self._texts = texts
         self._budget = Budget(_WORK)
-        self._known: dict[int, tuple[Scope, tuple[list[str], list[str]]]] = {}
+        self._known: dict[int, tuple[XacroScope, tuple[list[str], list[str]]]] = {}
 
-    def ways(self, place: Place, attribute: str, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
         """Return the ways to change an attribute (or, without a name, the text) at a place for its uses, the most plausible first.
 
         Those with which all uses get what they should be come first, then those for the changed ones.
@@ -124,7 +124,7 @@ class Rewriter:
         sites = {site.key: (rank, site) for scope in changed for rank, site in self._sites(root, scope)}
         for first, site in sites.values():
             for rank, other in self._candidates(site, root, uses):
-                yield rank + first, (Change(site, other),)
+                yield rank + first, (TextChange(site, other),)
 
     def _candidates(self, site: Written, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
         """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
@@ -186,7 +186,7 @@ class Rewriter:
                             break
         return [tuple(dict.fromkeys(edits))] if edits else []
 
-    def _sites(self, root: Written, scope: Scope) -> list[tuple[int, Written]]:
+    def _sites(self, root: Written, scope: XacroScope) -> list[tuple[int, Written]]:
         """Return the texts that a text is computed from, itself the first, each with its rank."""
         sites = {root.key: (0, root._replace(scope=scope))}
         pending = [root._replace(scope=scope)]
@@ -199,7 +199,7 @@ class Rewriter:
                     pending.append(text)
         return list(sites.values())
 
-    def _definitions(self, text: Written, scope: Scope) -> Iterator[Definition]:
+    def _definitions(self, text: Written, scope: XacroScope) -> Iterator[Definition]:
         """Yield where the names in the expressions of a text are defined."""
         for expression in EXPRESSION.findall(text.text):
             for name in NAME.findall(expression):
@@ -213,14 +213,14 @@ class Rewriter:
     def _with(self, site: Written, root: Written, text: str, use: Use) -> str | None:
         return self._value(text, use.scope) if site.key is None else self._value(root.text, use.scope, {site.key: text})
 
-    def _value(self, text: str, scope: Scope, supposed: dict[Key, str] | None = None) -> str | None:
+    def _value(self, text: str, scope: XacroScope, supposed: dict[Key, str] | None = None) -> str | None:
         """Return what a text is in the expanded file; None if it has no value, or the budget is spent."""
         try:
             return self._texts.supposing(supposed or {}, self._budget).text(text, scope)
         except (ExpressionFails, Undetermined, OutOfBudget, RecursionError):
             return None
 
-    def _names(self, scope: Scope) -> tuple[list[str], list[str]]:
+    def _names(self, scope: XacroScope) -> tuple[list[str], list[str]]:
         """Return the names that have values in a scope, and those of the innermost macro."""
         if id(scope) not in self._known:
             names = dict.fromkeys(scope.names()[:_MAX_NAMES])

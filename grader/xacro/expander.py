@@ -10,8 +10,8 @@ from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
 from grader.xacro.macros import MacroError
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import Place, Reported, Scope, XacroFails
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
@@ -37,12 +37,12 @@ class Open(NamedTuple):
 class Scopes(NamedTuple):
     """The macros and properties that are known at a place."""
 
-    macros: Scope
-    symbols: Scope
+    macros: XacroScope
+    symbols: XacroScope
 
 
 # Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
-Handler = Callable[["Expander", Node, Node, Scopes], None]
+Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
 _KINDS: Mapping[type[ExpressionFails], Kind] = {
     MacroError: catalogue.XACRO_MACRO,
     FileFails: catalogue.XACRO_FILE,
@@ -69,20 +69,22 @@ class Expander:
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
-        self.refused: list[tuple[XacroFails, Place, str | None]] = []  # what may be corrected, and where
-        self.calls: tuple[tuple[str, Place], ...] = ()
-        self.uses: dict[tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]] = {}  # of macros, with calls
+        self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
+        self.calls: tuple[tuple[str, ScopePlace], ...] = ()
+        self.uses: dict[
+            tuple[str, int], tuple[str, ScopePlace, dict[tuple[str, int], ScopePlace]]
+        ] = {}  # of macros, with calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
-        self._stopped: Place | None = None  # where the budget was spent
+        self._stopped: ScopePlace | None = None  # where the budget was spent
         self._handlers = handlers
         self._other = other
 
-    def root(self, source: Node) -> Node:
+    def root(self, source: XacroNode) -> XacroNode:
         """Return the expanded root element of a document."""
-        scopes = Scopes(Scope(), Scope())
-        out = Node(source.tag, source.place)
+        scopes = Scopes(XacroScope(), XacroScope())
+        out = XacroNode(source.tag, source.place)
         try:
             out = self.start(source, scopes)
             self.content(source, out, scopes)
@@ -91,13 +93,13 @@ class Expander:
         self._is_expanded = True
         return out
 
-    def content(self, source: Node, out: Node, scopes: Scopes) -> None:
+    def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         """Expand the children of an element into another. Omit what is refused or cannot be determined."""
         out.open = out.open or source.open
         for child in source.children:
-            place = child.place if isinstance(child, Node) else source.place
+            place = child.place if isinstance(child, XacroNode) else source.place
             try:
-                if isinstance(child, Node):
+                if isinstance(child, XacroNode):
                     self._element(child, out, scopes)
                 else:
                     text = self.texts.text(child, scopes.symbols)
@@ -111,18 +113,18 @@ class Expander:
                 reason = self.report(error, place)
                 out.open = out.open or reason
 
-    def insert(self, source: Node, out: Node, scopes: Scopes) -> None:
+    def insert(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         """Expand the children of an element, but not the element itself, such as <xacro:if>; attributes set on it are lost."""
-        inside = Node(source.tag, source.place)
+        inside = XacroNode(source.tag, source.place)
         try:
             self.content(source, inside, scopes)
         finally:
             out.children += inside.children
             out.open = out.open or inside.open
 
-    def start(self, source: Node, scopes: Scopes) -> Node:
+    def start(self, source: XacroNode, scopes: Scopes) -> XacroNode:
         """Return an element with its attributes expanded, without its children."""
-        out = Node(source.tag, self._placed(source.place, scopes.symbols))
+        out = XacroNode(source.tag, self._placed(source.place, scopes.symbols))
         out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
@@ -131,7 +133,7 @@ class Expander:
                 self.set(out, name, value)
         return out
 
-    def set(self, out: Node, name: str, value: str) -> None:
+    def set(self, out: XacroNode, name: str, value: str) -> None:
         """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all others."""
         self.budget.charge(len(out.attributes) // _COMPARED, len(name))
         self._grow(value)
@@ -145,7 +147,7 @@ class Expander:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
     def report(
-        self, error: ExpressionFails | Undetermined | OutOfBudget, place: Place, attribute: str | None = None
+        self, error: ExpressionFails | Undetermined | OutOfBudget, place: ScopePlace, attribute: str | None = None
     ) -> str:
         """List a problem at a place, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
         message = str(error)
@@ -162,23 +164,23 @@ class Expander:
             self.refused.append((error, place, attribute))
         return ""
 
-    def use(self, name: str, body: Place, call: Place) -> None:
+    def use(self, name: str, body: ScopePlace, call: ScopePlace) -> None:
         """Note that a macro is called."""
         self.budget.charge(len(self.calls))
         _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
         calls[call.source.path, call.tag] = call
 
-    def _is_new(self, message: str, place: Place, attribute: str | None) -> bool:
+    def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
         """Return whether something is to be listed: once for each place in the source, however often a macro is called."""
         known = len(self._listed)
         if known < _MAX_LISTED:
             self._listed.add((message, place.source.path, place.tag, attribute))
         return len(self._listed) > known
 
-    def _placed(self, place: Place, scope: Scope | None = None) -> Place:
-        return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
+    def _placed(self, place: ScopePlace, scope: XacroScope | None = None) -> ScopePlace:
+        return place if place.calls is not None else ScopePlace(place.source, place.tag, self.calls, scope)
 
-    def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
+    def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         self.budget.charge(_OF_ELEMENT, len(node.tag))
         if node.tag.startswith("xacro:"):
             self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
@@ -188,7 +190,7 @@ class Expander:
             out.children.append(new)
             self.content(node, new, scopes)
 
-    def _attribute(self, out: Node, name: str, text: str, scopes: Scopes) -> str:
+    def _attribute(self, out: XacroNode, name: str, text: str, scopes: Scopes) -> str:
         """Return the value of an attribute; its text as it is written where it has none."""
         try:
             return self.texts.text(text, scopes.symbols)
@@ -200,4 +202,4 @@ class Expander:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
         data = self.files.read(self.files.path(self.texts.written(name)))
-        return read_yaml_values(data, lambda name: self.texts.find(name, Scope()), self.budget)
+        return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)

@@ -17,7 +17,7 @@ from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBud
 from grader.xacro import catalogue
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
-from grader.xacro.nodes import Node, read_nodes, recovered_nodes
+from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
@@ -58,7 +58,7 @@ _READING_OF_SHORT = 1_500  # parts
 class ExpandedSource(Source):
     """The text of a xacro file, whose start tags are those of the expanded elements. Edits are imported late: grading needs none."""
 
-    def __init__(self, source: Source, nodes: list[Node], expander: Expander, work: int) -> None:
+    def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
         super().__init__(source.path, source.text)
         self._nodes, self._expander, self._work = nodes, expander, work
 
@@ -74,7 +74,7 @@ class ExpandedSource(Source):
         return next((other for other in others if self._nodes[other].tag == name), index)
 
     @property
-    def documents(self) -> Mapping[str, Node]:
+    def documents(self) -> Mapping[str, XacroNode]:
         """The files that it was expanded from, as they are written, by their paths: this one first."""
         return self._expander.files.documents
 
@@ -103,17 +103,17 @@ class ExpandedSource(Source):
         first = self._nodes[next(iter(wanted))]
         moved = first.moved.get(attribute)
         from grader.xacro.edits import Use
-        from grader.xacro.scopes import Scope
+        from grader.xacro.scopes import XacroScope
 
         if moved is not None:
             old, new = next(iter(wanted.values()))
-            return self._rewriter.ways(moved, "value", [Use(moved.scope or Scope(), old, new)])
+            return self._rewriter.ways(moved, "value", [Use(moved.scope or XacroScope(), old, new)])
         uses = []
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
             old, new = wanted.get(tag, (text, text))
-            uses.append(Use(node.place.scope or Scope(), old, new, node.place.calls or ()))
+            uses.append(Use(node.place.scope or XacroScope(), old, new, node.place.calls or ()))
         return self._rewriter.ways(first.place, attribute, uses)
 
     def siblings(self, tag: int) -> list[int]:
@@ -179,7 +179,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     files.documents[path] = source
     expander = Expander(files, arguments, budget, HANDLERS, CALL)
     root = expander.root(source)
-    nodes: list[Node] = []
+    nodes: list[XacroNode] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
     return Expansion(
@@ -192,7 +192,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     )
 
 
-def _read(data: bytes, path: str, budget: Budget) -> tuple[Node | None, tuple[Problem, ...], bool]:
+def _read(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
     """Return the elements of a file, what xacro refuses in it, and whether they are only what broken tags leave."""
     try:
         return read_nodes(data, path, budget), (), False
@@ -210,19 +210,19 @@ def _not_xml(error: XMLSyntaxError, path: str) -> Problem:
     return Problem(catalogue.XACRO_NOT_XML, f"xacro needs well-formed XML: {error.msg}; {STOPS}", location)
 
 
-def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved]) -> Element:
+def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]) -> Element:
     """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
     made = make_element(_name(root.tag), _named(root.attributes))
-    pending: list[tuple[Node, Element]] = [(root, made)]
+    pending: list[tuple[XacroNode, Element]] = [(root, made)]
     while pending:
         node, element = pending.pop()
         nodes.append(node)
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
-        children: list[tuple[Node, Element]] = []
+        children: list[tuple[XacroNode, Element]] = []
         for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
             if not is_text:
-                inside = (child for child in found if isinstance(child, Node))
+                inside = (child for child in found if isinstance(child, XacroNode))
                 children += [(it, make_element(_name(it.tag), _named(it.attributes), element)) for it in inside]
             elif children:
                 children[-1][1].tail = "".join(map(str, found))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
-from grader.xacro.nodes import Node, read_nodes
+from grader.xacro.nodes import XacroNode, read_nodes
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
@@ -53,7 +53,7 @@ class Files:
     def __init__(self, workspace: Workspace, path: str) -> None:
         self._workspace, self._budget = workspace, workspace.budget
         self.open = [path]
-        self.documents: dict[str, Node] = {}  # every file that was read, as it is written
+        self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
         self.followed: dict[tuple[str, int], list[str]] = {}  # the tags that include files, and the paths of these
 
     def has_package(self, name: str) -> bool:
@@ -112,7 +112,7 @@ class Files:
         except NotDecided as error:
             raise Undetermined(str(error)) from None
 
-    def nodes(self, path: str) -> Node:
+    def nodes(self, path: str) -> XacroNode:
         """Return the root element of an included file."""
         if self.open.count(path) and len(self.open) > _MAX_OPEN:
             raise FileFails(f"{path} includes itself again and again")

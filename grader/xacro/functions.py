@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 
 from grader.static_python.closed_functions import BUILTINS, MATH, make_dict
 from grader.static_python.closed_values import (
+    ClosedFunction,
     DottedDict,
     ExpressionFails,
-    Function,
     Namespace,
     Undetermined,
     Value,
@@ -42,8 +42,8 @@ def _dotted(value: Value) -> Value:
 
 def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:
     """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it."""
-    load = Function("load_yaml", load_yaml)
-    own = {**_XACRO, "load_yaml": load, "arg": Function("arg", argument)}
+    load = ClosedFunction("load_yaml", load_yaml)
+    own = {**_XACRO, "load_yaml": load, "arg": ClosedFunction("arg", argument)}
     return {"xacro": namespace("xacro", own), "load_yaml": load}
 
 
@@ -63,11 +63,11 @@ def _no_path(*_: Value) -> Value:
 
 
 _XACRO: dict[str, Value] = {
-    **{name: Function(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
-    "fatal": Function("fatal", _fatal),
-    "tokenize": Function("tokenize", _tokenize),
-    "dotify": Function("dotify", _dotify),
-    "abs_filename": Function("abs_filename", _no_path),
+    **{name: ClosedFunction(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
+    "fatal": ClosedFunction("fatal", _fatal),
+    "tokenize": ClosedFunction("tokenize", _tokenize),
+    "dotify": ClosedFunction("dotify", _dotify),
+    "abs_filename": ClosedFunction("abs_filename", _no_path),
 }
 GLOBALS: Mapping[str, Value] = {
     **MATH,

@@ -6,15 +6,15 @@ from dataclasses import dataclass, field
 
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
 from grader.xacro.macros import read_parameters
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import Place
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import ScopePlace
 from grader.xacro.tags import HANDLERS
 from grader.xacro.texts import PIECE
 
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
 
-Definitions = dict[str, list[Place]]
+Definitions = dict[str, list[ScopePlace]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +25,10 @@ class Inventory:
     macros: Definitions = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
     called: set[str] = field(default_factory=set)
-    includes: list[Place] = field(default_factory=list)
-    dynamic: list[Place] = field(default_factory=list)
+    includes: list[ScopePlace] = field(default_factory=list)
+    dynamic: list[ScopePlace] = field(default_factory=list)
 
-    def define(self, definitions: Definitions, name: str, place: Place) -> None:
+    def define(self, definitions: Definitions, name: str, place: ScopePlace) -> None:
         """Note a definition, or that its name is evaluated."""
         if "$" in name:
             self.dynamic.append(place)
@@ -36,7 +36,7 @@ class Inventory:
             definitions.setdefault(name, []).append(place)
 
 
-def take_inventory(documents: Iterable[Node], budget: Budget) -> Inventory:
+def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use. A parameter of a macro is no use of a property of its name. Raises OutOfBudget."""
     found, roots = Inventory(), [*documents]
     spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
@@ -53,7 +53,7 @@ def take_inventory(documents: Iterable[Node], budget: Budget) -> Inventory:
     return found
 
 
-def _every(root: Node) -> Iterator[Node]:
+def _every(root: XacroNode) -> Iterator[XacroNode]:
     waiting = [root]
     while waiting:
         node = waiting.pop()
@@ -61,7 +61,7 @@ def _every(root: Node) -> Iterator[Node]:
         waiting += node.elements
 
 
-def _note_tag(node: Node, found: Inventory) -> str:
+def _note_tag(node: XacroNode, found: Inventory) -> str:
     """Note what a tag of xacro defines or calls; return the name of a property, whose own text is no use of it."""
     name = node.attributes.get("name", "")
     match node.tag:
@@ -85,7 +85,7 @@ def _note_tag(node: Node, found: Inventory) -> str:
     return ""
 
 
-def _parameters(node: Node, found: Inventory, budget: Budget) -> frozenset[str]:
+def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
     """Return the names of a macro's parameters; a forwarded one is a use of the caller's property. Raises OutOfBudget."""
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)

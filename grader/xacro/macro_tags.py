@@ -3,27 +3,27 @@
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
 from grader.xacro.macros import Macro, MacroError, bind_blocks, bind_defaults, bind_values, find_macro, read_parameters
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import Definition, Scope, UnknownName
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import Definition, UnknownName, XacroScope
 
 _MAX_CALLS = 100  # macros that call each other
 
 
-def needed(node: Node, name: str) -> str:
+def needed(node: XacroNode, name: str) -> str:
     """Return an attribute that xacro requires."""
     if name not in node.attributes:
         raise TagFails(f"<{node.tag}> has no attribute {name}")
     return node.attributes[name]
 
 
-def renamed(node: Node, tag: str, without: str) -> Node:
+def renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
     """Return an element with another tag and without an attribute."""
-    other = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
+    other = XacroNode(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
     other.children, other.unresolved = node.children, node.unresolved
     return other
 
 
-def define_macro(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     """Bind a macro to its name; <xacro:macro> itself writes nothing."""
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
@@ -32,19 +32,19 @@ def define_macro(expander: Expander, node: Node, _: Node, scopes: Scopes) -> Non
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
 
-def call_macro(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def call_macro(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
     _call_named(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
 
 
-def call_dynamically(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro whose name is a value: <xacro:call macro="${name}"/>."""
     name = expander.texts.text(needed(node, "macro"), scopes.symbols)
     call = renamed(node, f"xacro:{name}", "macro")
     _call_named(expander, name, call, out, scopes)
 
 
-def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Scopes) -> None:
+def _call_named(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     found = find_macro(name, *scopes)
     if found is None:
         if expander.texts.names_open is not None:
@@ -54,9 +54,9 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
     expander.budget.charge(len(macro.parameters))
-    inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
+    inner = Scopes(XacroScope(outer_macros), XacroScope(outer_symbols))
     left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
-    given = Node(node.tag, node.place)
+    given = XacroNode(node.tag, node.place)
     expander.content(node, given, scopes)
     if given.open and not given.elements:
         raise Undetermined(given.open)
@@ -72,7 +72,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
         expander.calls = before
 
 
-def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Insert an element that a macro call gives, or the children of a property."""
     name = needed(node, "name")
     for key in (f"**{name}", f"*{name}"):

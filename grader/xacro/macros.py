@@ -4,8 +4,8 @@ import re
 from typing import NamedTuple
 
 from grader.static_python.closed_values import Budget, Undetermined
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import Definition, Scope, UnknownName, XacroFails
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
@@ -20,7 +20,7 @@ class MacroError(XacroFails):
     """A macro that is not defined, or a call that does not fit its parameters."""
 
 
-class Parameter(NamedTuple):
+class MacroParameter(NamedTuple):
     """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name comes before it."""
 
     name: str
@@ -37,16 +37,16 @@ class Macro(NamedTuple):
     """A macro: its element, whose children a call inserts."""
 
     name: str
-    body: Node
-    parameters: tuple[Parameter, ...]
+    body: XacroNode
+    parameters: tuple[MacroParameter, ...]
 
 
-def read_parameters(text: str, budget: Budget) -> tuple[Parameter, ...]:
+def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
     """Return the parameters in the attribute params of a macro. Raises Undetermined."""
     if re.search("['\"]", _QUOTED.sub("", text)):
         raise Undetermined("a quote in the parameters of a macro is not closed")
-    parameters: list[Parameter] = []
-    defaults: dict[str, Parameter] = {}  # the last of several counts
+    parameters: list[MacroParameter] = []
+    defaults: dict[str, MacroParameter] = {}  # the last of several counts
     while text:
         budget.charge(1, len(text))
         found = _WITH_DEFAULT.match(text)
@@ -54,16 +54,16 @@ def read_parameters(text: str, budget: Budget) -> tuple[Parameter, ...]:
             words = text.lstrip().split(None, 1)
             if not words:
                 raise MacroError("the parameters of this macro end with a space")
-            parameters.append(Parameter(words[0]))
+            parameters.append(MacroParameter(words[0]))
             text = words[1] if len(words) > 1 else ""
         else:
             name, forward, default, text = found.groups()
-            defaults[name] = Parameter(name, default or None, is_forwarded=bool(forward))
+            defaults[name] = MacroParameter(name, default or None, is_forwarded=bool(forward))
             parameters.append(defaults[name])
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
-def find_macro(name: str, macros: Scope, symbols: Scope) -> tuple[Macro, Scope, Scope] | None:
+def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macro, XacroScope, XacroScope] | None:
     """Return the macro of a name, which may begin with namespaces, and the scopes in which it is defined."""
     holder = macros.holder(name)
     if holder is None and "." in name:
@@ -78,13 +78,15 @@ def find_macro(name: str, macros: Scope, symbols: Scope) -> tuple[Macro, Scope, 
     return (macro, macros, symbols) if isinstance(macro, Macro) else None
 
 
-def _namespace(name: str, scope: Scope) -> Scope | None:
+def _namespace(name: str, scope: XacroScope) -> XacroScope | None:
     holder = scope.holder(f"{name}.")
     value = holder.properties[f"{name}."].value if holder is not None else None
-    return value if isinstance(value, Scope) else None
+    return value if isinstance(value, XacroScope) else None
 
 
-def bind_values(macro: Macro, call: Node, caller: Scope, inner: Scope, texts: Texts) -> list[Parameter]:
+def bind_values(
+    macro: Macro, call: XacroNode, caller: XacroScope, inner: XacroScope, texts: Texts
+) -> list[MacroParameter]:
     """Bind the parameters that a call gives values in attributes; return the others."""
     left = dict(enumerate(macro.parameters))
     first = {parameter.name: index for index, parameter in reversed(left.items())}
@@ -98,7 +100,7 @@ def bind_values(macro: Macro, call: Node, caller: Scope, inner: Scope, texts: Te
     return list(left.values())
 
 
-def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: Scope) -> None:
+def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[MacroParameter], inner: XacroScope) -> None:
     """Bind the parameters that are elements to the children of a call."""
     waiting = list(blocks)
     for parameter in left:
@@ -114,7 +116,9 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
         raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")
 
 
-def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Scope, texts: Texts) -> None:
+def bind_defaults(
+    macro: Macro, left: list[MacroParameter], caller: XacroScope, inner: XacroScope, texts: Texts
+) -> None:
     """Bind the parameters that the call does not give."""
     missing: list[str] = []
     for parameter in left:

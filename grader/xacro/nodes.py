@@ -5,11 +5,11 @@ import re
 from grader.problems import Problem
 from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
-from grader.xacro.scopes import Place
+from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
 
-Children = list["Node | str"]
+Children = list["XacroNode | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
 _COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
 
@@ -23,27 +23,27 @@ _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that loo
 _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
-class Node:
+class XacroNode:
     """An element. `unresolved` holds why attributes are left as written: they are refused, or cannot be determined."""
 
     __slots__ = ("attributes", "children", "moved", "open", "place", "tag", "unresolved")
 
-    def __init__(self, tag: str, place: Place, attributes: dict[str, str] | None = None) -> None:
+    def __init__(self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None) -> None:
         self.tag = tag
         self.place = place
         self.attributes: dict[str, str] = attributes if attributes is not None else {}
         self.children: Children = []
         self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
         self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
-        self.moved: dict[str, Place] = {}  # the places of attributes that <xacro:attribute> sets
+        self.moved: dict[str, ScopePlace] = {}  # the places of attributes that <xacro:attribute> sets
 
     @property
-    def elements(self) -> "list[Node]":
+    def elements(self) -> "list[XacroNode]":
         """The children that are elements."""
-        return [child for child in self.children if isinstance(child, Node)]
+        return [child for child in self.children if isinstance(child, XacroNode)]
 
 
-def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> Node:
+def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> XacroNode:
     """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
@@ -62,7 +62,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
     return _nodes(root, Source(path, text), budget)
 
 
-def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[Node | None, list[Problem]]:
+def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
     text = _decoded(data, budget)
     recovered = Recovery(text).run()
@@ -71,11 +71,11 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[Node | None
     return _nodes(parse_xml(recovered.xml), source, budget) if recovered.xml else None, assumed
 
 
-def _nodes(root: Element, source: Source, budget: Budget) -> Node:
-    nodes: dict[Element, Node] = {}
+def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
+    nodes: dict[Element, XacroNode] = {}
     for index, element in enumerate(root.iter()):
         budget.charge(len(element.attrib) ** 2 // _COMPARED)
-        node = nodes[element] = Node(_tag(element), Place(source, index), _attributes(element))
+        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), _attributes(element))
         _add_text(node.children, element.text)
         parent = element.getparent()
         if parent is not None:

@@ -9,21 +9,21 @@ from grader.source import Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
-Evaluate = Callable[[str, "Scope"], Value]
-Report = Callable[[ExpressionFails | Undetermined, "Place", str], object]
+Evaluate = Callable[[str, "XacroScope"], Value]
+Report = Callable[[ExpressionFails | Undetermined, "ScopePlace", str], object]
 
 
 _MAX_CALLS = 20  # that a location names
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
-class Place(NamedTuple):
+class ScopePlace(NamedTuple):
     """A start tag in a source file; once it is expanded, with the macro calls that led to it, outermost first, and the scope."""
 
     source: Source
     tag: int
-    calls: "tuple[tuple[str, Place], ...] | None" = None
-    scope: "Scope | None" = None
+    calls: "tuple[tuple[str, ScopePlace], ...] | None" = None
+    scope: "XacroScope | None" = None
 
     def at(self, attribute: str | None = None) -> Location:
         """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
@@ -43,9 +43,9 @@ class Definition(NamedTuple):
 
     name: str
     text: str
-    place: Place
+    place: ScopePlace
     attribute: str
-    scope: "Scope"
+    scope: "XacroScope"
 
     @property
     def key(self) -> Key:
@@ -54,7 +54,7 @@ class Definition(NamedTuple):
 
 
 # Names that are defined, each with the tag and attribute that define it where they are known.
-Known = Mapping[str, tuple[Place, str] | None]
+Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
 class UnknownName(NamedTuple):
@@ -90,25 +90,25 @@ class Property:
         self.failure: ExpressionFails | Undetermined | None = None
 
 
-class Scope:
+class XacroScope:
     """The names of one macro call, one namespace or the whole document."""
 
-    def __init__(self, parent: "Scope | None" = None, *, is_namespace: bool = False) -> None:
+    def __init__(self, parent: "XacroScope | None" = None, *, is_namespace: bool = False) -> None:
         self.parent = parent
         self.is_namespace = is_namespace
         self.properties: dict[str, Property] = {}
 
     @property
-    def top(self) -> "Scope":
+    def top(self) -> "XacroScope":
         """The scope of the whole document."""
         scope = self
         while scope.parent is not None:
             scope = scope.parent
         return scope
 
-    def holder(self, name: str) -> "Scope | None":
+    def holder(self, name: str) -> "XacroScope | None":
         """Return the nearest scope that binds a name."""
-        scope: Scope | None = self
+        scope: XacroScope | None = self
         while scope is not None and name not in scope.properties:
             scope = scope.parent
         return scope
@@ -118,7 +118,7 @@ class Scope:
         own = [name for name in self.properties if _is_compared(name)]
         return own + (self.parent.names() if self.parent is not None else [])
 
-    def definitions(self) -> dict[str, tuple[Place, str] | None]:
+    def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names that are known here, each with the tag and attribute that define it where there is one."""
         found = self.parent.definitions() if self.parent is not None else {}
         for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
@@ -127,7 +127,7 @@ class Scope:
                 found[name] = (definition.place, attribute) if definition is not None and attribute else None
         return found
 
-    def blocks(self) -> dict[str, tuple[Place, str] | None]:
+    def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names of the blocks of this macro, with its own tag."""
         bound = {name.lstrip("*"): it.definition for name, it in self.properties.items() if name.startswith("*")}
         return {name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()}
@@ -138,7 +138,7 @@ class Scope:
 
     def remove(self, name: str) -> None:
         """Remove a name from this scope and those around it."""
-        scope: Scope | None = self
+        scope: XacroScope | None = self
         while scope is not None:
             scope.properties.pop(name, None)
             scope = scope.parent

@@ -8,8 +8,8 @@ from grader.static_python.closed_values import Namespace, Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
-from grader.xacro.nodes import Node
-from grader.xacro.scopes import BOOLEANS, Definition, Reported, Scope
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import BOOLEANS, Definition, Reported, XacroScope
 from grader.xacro.texts import for_xml
 
 _PATTERN = re.compile(r"[*\[?]")
@@ -26,12 +26,12 @@ def _boolean(value: Value, text: str) -> bool:
         raise TagFails(f'the condition "{text}" gives "{value}", which is neither true nor false') from None
 
 
-def _flag(node: Node, name: str, default: str, expander: Expander, scopes: Scopes) -> bool:
+def _flag(node: XacroNode, name: str, default: str, expander: Expander, scopes: Scopes) -> bool:
     text = node.attributes.get(name) or default
     return _boolean(expander.texts.evaluate(text, scopes.symbols), text)
 
 
-def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
     name = _property_name(texts.text(needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
@@ -64,7 +64,7 @@ def _property_name(name: str) -> str:
     return name
 
 
-def _target(scope: str | None, name: str, symbols: Scope) -> Scope:
+def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
     """Return the scope in which a property is defined."""
     if scope == "global":
         return symbols.top
@@ -75,7 +75,7 @@ def _target(scope: str | None, name: str, symbols: Scope) -> Scope:
     return _outer(symbols)
 
 
-def _outer(symbols: Scope) -> Scope:
+def _outer(symbols: XacroScope) -> XacroScope:
     """Return the scope around a macro's: that of its caller, not a namespace."""
     outer = symbols.parent or symbols
     while not symbols.is_namespace and outer.is_namespace and outer.parent is not None:
@@ -83,29 +83,29 @@ def _outer(symbols: Scope) -> Scope:
     return outer
 
 
-def _if(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     text = needed(node, "value")
     keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
     if keep == (node.tag == "xacro:if"):
         expander.insert(node, out, scopes)
 
 
-def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     name, default = needed(node, "name"), needed(node, "default")
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
         expander.texts.defaults[name] = Definition(name, default, node.place, "default", scopes.symbols)
 
 
-def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def _element(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
     _check_name(name, node, expander)
-    holder = Node("", node.place)
+    holder = XacroNode("", node.place)
     holder.children.append(renamed(node, name, "xacro:name"))
     expander.content(holder, out, scopes)
 
 
-def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def _attribute(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
     _check_name(name, node, expander)
     if value and not isinstance(value, str):
@@ -115,18 +115,18 @@ def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
     out.moved[name] = node.place._replace(scope=scopes.symbols)
 
 
-def _check_name(name: Value, node: Node, expander: Expander) -> None:
+def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise TagFails(f"<{node.tag}> needs a name that XML allows, not {expander.texts.written(name)[:60]!r}")
 
 
-def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     texts = expander.texts
     space = node.attributes.get("ns")
     inner = scopes
     if space:
         space = texts.text(space, scopes.symbols)
-        inner = Scopes(Scope(is_namespace=True), Scope(scopes.symbols, is_namespace=True))
+        inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
         scopes.macros.bind(f"{space}.", inner.macros)
         scopes.symbols.bind(f"{space}.", inner.symbols)
         scopes.symbols.bind(space, Namespace(space, lambda wanted: texts.find(wanted, inner.symbols)))
@@ -147,7 +147,7 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
         raise
 
 
-def _insert_file(expander: Expander, path: str, out: Node, scopes: Scopes) -> None:
+def _insert_file(expander: Expander, path: str, out: XacroNode, scopes: Scopes) -> None:
     if _PATTERN.search(path):
         raise Undetermined("a pattern that names several files is not supported")
     root = expander.files.nodes(path)

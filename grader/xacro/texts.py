@@ -9,7 +9,18 @@ from grader.names import did_you_mean
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, text_of
 from grader.xacro.functions import GLOBALS
-from grader.xacro.scopes import Definition, Key, Known, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
+from grader.xacro.scopes import (
+    Definition,
+    Key,
+    Known,
+    Report,
+    Reported,
+    ScopePlace,
+    UnknownName,
+    XacroFails,
+    XacroScope,
+    literal,
+)
 
 PIECE = re.compile(
     r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
@@ -49,7 +60,7 @@ class Texts:
         vars(other).update(_supposed=texts, _budget=budget, _report=lambda *_: None)
         return other
 
-    def evaluate(self, text: str, scope: Scope) -> Value:
+    def evaluate(self, text: str, scope: XacroScope) -> Value:
         """Return the value of a text: that of its expression, if it is a single one, else a text."""
         if "$" not in text:
             return text
@@ -74,13 +85,13 @@ class Texts:
         """Return the text of a value. Raises Undetermined, OutOfBudget."""
         return value if isinstance(value, str) else text_of(self._budget.checked(value))
 
-    def text(self, text: str, scope: Scope) -> str:
+    def text(self, text: str, scope: XacroScope) -> str:
         """Return the value of a text as it is written into the expanded file."""
         if "$" not in text:
             return text
         return for_xml(self.written(self.evaluate(text, scope)))
 
-    def find(self, name: str, scope: Scope) -> Value:
+    def find(self, name: str, scope: XacroScope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
         if holder is not None:
@@ -93,7 +104,7 @@ class Texts:
             raise self.names_open.with_traceback(None)
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
-    def unknown(self, kind: str, name: str, scope: Scope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
+    def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
         """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
         known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
@@ -110,11 +121,13 @@ class Texts:
         self._budget.charge(1, len(text))
         return literal(self.evaluate(text, definition.scope)) if "$" in text else literal(text)
 
-    def is_bound(self, name: str, scope: Scope) -> bool:
+    def is_bound(self, name: str, scope: XacroScope) -> bool:
         """Return whether a name has a value in a scope."""
         return scope.holder(name) is not None or name in self._globals
 
-    def bind(self, target: Scope, name: str, text: str, scope: Scope, place: Place, attribute: str) -> None:
+    def bind(
+        self, target: XacroScope, name: str, text: str, scope: XacroScope, place: ScopePlace, attribute: str
+    ) -> None:
         """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
         failure: ExpressionFails | Undetermined | None = None
         value: Value = ""
@@ -132,7 +145,7 @@ class Texts:
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
-    def _piece(self, piece: re.Match[str], scope: Scope) -> Value:
+    def _piece(self, piece: re.Match[str], scope: XacroScope) -> Value:
         if piece["text"] is not None:
             return piece["text"]
         if piece["escape"] is not None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader import markup
 from grader.source import Edit, Source
-from grader.xacro.scopes import Definition, Key, Place, Scope
+from grader.xacro.scopes import Definition, Key, ScopePlace, XacroScope
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _VALUE = re.compile(r'("[^"$]*")')
@@ -18,7 +18,7 @@ class Written(NamedTuple):
     source: Source
     start: int
     text: str
-    scope: Scope
+    scope: XacroScope
     attribute: tuple[int, int]  # its offsets, with name and quotes
     key: Key | None = None  # of what is defined with it
 
@@ -32,16 +32,16 @@ class Written(NamedTuple):
         return self._replace(start=self.start + start, text=self.text[start:end])
 
 
-class Change(NamedTuple):
+class TextChange(NamedTuple):
     """A text that becomes another one."""
 
     written: Written
     new: str
 
 
-def edits_of(changes: Iterable[Change]) -> tuple[Edit, ...] | None:
+def edits_of(changes: Iterable[TextChange]) -> tuple[Edit, ...] | None:
     """Return the edits that make changes, one for each attribute; None where two of them overlap."""
-    attributes: dict[tuple[str, int], list[Change]] = {}
+    attributes: dict[tuple[str, int], list[TextChange]] = {}
     for change in dict.fromkeys(changes):
         attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(change)
     edits: list[Edit] = []
@@ -57,7 +57,7 @@ def edits_of(changes: Iterable[Change]) -> tuple[Edit, ...] | None:
     return tuple(edits)
 
 
-def written(place: Place, attribute: str, scope: Scope) -> Written | None:
+def written(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | None:
     """Return the value of an attribute, or without a name the text of an element without children.
 
     None where it is missing, too long, or has entities, so that it is not what is read.
@@ -77,7 +77,7 @@ def written(place: Place, attribute: str, scope: Scope) -> Written | None:
     return Written(source, start, text, scope, span) if span is not None and is_read else None
 
 
-def with_parameters(xml: str, scope: Scope) -> str:
+def with_parameters(xml: str, scope: XacroScope) -> str:
     """Return elements in whose attributes the texts that a macro's parameters have are the parameters: ${side}_wheel."""
     for name, bound in scope.properties.items() if scope.parent is not None else ():
         if isinstance(bound.value, str) and bound.value.isidentifier() and name.isidentifier():

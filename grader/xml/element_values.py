@@ -14,7 +14,7 @@ _SLACK = 1e-12  # a tolerance includes its end
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-class Found(NamedTuple):
+class FoundElement(NamedTuple):
     """A text in an element: that of an attribute, or the element's own."""
 
     text: str
@@ -48,13 +48,13 @@ def elements_at(element: Element, steps: Sequence[str]) -> list[Element]:
     return found
 
 
-def texts_at(element: Element, path: str) -> list[Found]:
+def texts_at(element: Element, path: str) -> list[FoundElement]:
     """Return the texts at a path in an element: of attributes where it ends with @name, else of elements."""
     *steps, last = steps_of(path) or ["."]
     if not last.startswith("@"):
-        return [Found(_text(found), found) for found in elements_at(element, steps_of(path))]
+        return [FoundElement(_text(found), found) for found in elements_at(element, steps_of(path))]
     values = ((found, attribute(found, last[1:])) for found in elements_at(element, steps))
-    return [Found(value, found, last[1:]) for found, value in values if value is not None]
+    return [FoundElement(value, found, last[1:]) for found, value in values if value is not None]
 
 
 def attribute(element: Element, name: str) -> str | None:

@@ -16,7 +16,7 @@ _VALUE = r"""\s+[\w:.\-]+\s*=\s*(?:"[^"<>]*"|'[^'<>]*')\s*"""
 _LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")  # a tag without its <
 
 
-class Piece(NamedTuple):
+class TextPiece(NamedTuple):
     """What is between two offsets: open, close, empty (tags), other, text, end (of the text). `at` is where the parser stops in it."""
 
     start: int
@@ -34,31 +34,31 @@ class Rules(NamedTuple):
     is_urdf: bool = False
 
 
-class Mark(NamedTuple):
+class ParserMark(NamedTuple):
     """A place after a piece: the tags that are open there, and whether a tag was before."""
 
     position: int = 0
-    opened: tuple[Piece, ...] = ()
+    opened: tuple[TextPiece, ...] = ()
     is_late: bool = False
-    piece: Piece | None = None
+    piece: TextPiece | None = None
 
 
-class Scan(NamedTuple):
+class PieceScan(NamedTuple):
     """How far a text is read: the places after its pieces, what is wrong there, if anything, and where the parser stops.
 
     The `faults` are what urdfdom does not know.
     """
 
-    marks: list[Mark]
-    wrong: Piece | None
+    marks: list[ParserMark]
+    wrong: TextPiece | None
     at: int
     faults: int
 
 
-def scan(text: str, rules: Rules, mark: Mark | None = None, limit: int | None = None) -> Scan:
+def scan(text: str, rules: Rules, mark: ParserMark | None = None, limit: int | None = None) -> PieceScan:
     """Read a text from a mark to its first error, or until a limit."""
     limit = len(text) + 1 if limit is None else limit
-    marks = [mark or Mark()]
+    marks = [mark or ParserMark()]
     faults = 0
     while (mark := marks[-1]).position < limit:
         piece = _piece(text, mark.position, rules)
@@ -66,14 +66,14 @@ def scan(text: str, rules: Rules, mark: Mark | None = None, limit: int | None = 
         if rules.is_urdf and mark.opened and wrong in (None, piece):
             faults += _faults(piece, mark.opened[-1].name) + bool(text[mark.position : piece.start].strip())
         if wrong:
-            return Scan(marks, wrong, min(wrong.start if wrong.at is None else wrong.at, limit), faults)
+            return PieceScan(marks, wrong, min(wrong.start if wrong.at is None else wrong.at, limit), faults)
         opened = mark.opened[:-1] if piece.form == "close" else mark.opened
         inside = (*opened, piece) if piece.form == "open" else opened
-        marks.append(Mark(piece.end, inside, mark.is_late or piece.form != "other", piece))
-    return Scan(marks, None, limit, faults)
+        marks.append(ParserMark(piece.end, inside, mark.is_late or piece.form != "other", piece))
+    return PieceScan(marks, None, limit, faults)
 
 
-def _wrong_text(text: str, mark: Mark, piece: Piece, rules: Rules) -> Piece | None:
+def _wrong_text(text: str, mark: ParserMark, piece: TextPiece, rules: Rules) -> TextPiece | None:
     """Return the text before a piece from where the parser stops in it; None if it does not."""
     start = piece.start - len(text[mark.position : piece.start].lstrip(" \t\r\n\ufeff"))
     parent = mark.opened[-1].name if mark.opened else ""
@@ -83,10 +83,10 @@ def _wrong_text(text: str, mark: Mark, piece: Piece, rules: Rules) -> Piece | No
     is_end = piece.form == "end"
     if not parent and ((rules.is_strict and not is_end) or (mark.is_late and (rules.is_strict or is_end))):
         at = start
-    return Piece(at, piece.start, "", "text") if at < piece.start else None
+    return TextPiece(at, piece.start, "", "text") if at < piece.start else None
 
 
-def _is_wrong(text: str, mark: Mark, piece: Piece, rules: Rules) -> bool:
+def _is_wrong(text: str, mark: ParserMark, piece: TextPiece, rules: Rules) -> bool:
     """Return whether the parser stops at a piece."""
     parent = mark.opened[-1].name if mark.opened else ""
     if piece.at is not None or len(mark.opened) > _MAX_DEPTH:
@@ -104,7 +104,7 @@ def _is_wrong(text: str, mark: Mark, piece: Piece, rules: Rules) -> bool:
     return (rules.is_strict or is_known) if mark.is_late else rules.is_urdf and piece.name != "robot"
 
 
-def _is_wrong_markup(text: str, piece: Piece, rules: Rules) -> bool:
+def _is_wrong_markup(text: str, piece: TextPiece, rules: Rules) -> bool:
     """Return whether the parser stops at a comment, for what is in it, or at a declaration that is not the first."""
     if piece.name == "<!--":
         inner = "--" if rules.is_strict else "<!--" if rules.is_urdf else "\0"
@@ -113,26 +113,26 @@ def _is_wrong_markup(text: str, piece: Piece, rules: Rules) -> bool:
     return piece.name == "<?" and text.startswith("<?xml ", piece.start) and bool(before)
 
 
-def _piece(text: str, position: int, rules: Rules) -> Piece:
+def _piece(text: str, position: int, rules: Rules) -> TextPiece:
     """Return the next tag, comment or declaration, or the end; a malformed tag ends at its >, or before the next tag."""
     start = text.find("<", position)
     if start < 0:
-        return Piece(len(text), len(text) + 1, "", "end")
+        return TextPiece(len(text), len(text) + 1, "", "end")
     if opening := next((opening for opening in _ENDS if text.startswith(opening, start)), ""):
         end = text.find(_ENDS[opening], start + len(opening))
         is_whole = end >= 0 and (opening != "<?" or "<" not in text[start + 1 : end])
         at, end = (None, end + len(_ENDS[opening])) if is_whole else (start, len(text))
-        return Piece(start, end, opening, "other", at)
+        return TextPiece(start, end, opening, "other", at)
     notes: list[int] = []
     try:
         tag, end = read_tag(text, start, lambda _kind, _what, offset: notes.append(offset))
     except MalformedTagError as error:
         body = _EXTENT.match(text, start, start + _MAX_TAG)
-        return Piece(start, start + len(body[0].rstrip() if body else "<"), "", "open", error.offset)
-    return Piece(start, end, tag.name, tag.form, notes[0] if notes and rules.is_strict else None, tag.attributes)
+        return TextPiece(start, start + len(body[0].rstrip() if body else "<"), "", "open", error.offset)
+    return TextPiece(start, end, tag.name, tag.form, notes[0] if notes and rules.is_strict else None, tag.attributes)
 
 
-def _faults(piece: Piece, parent: str) -> int:
+def _faults(piece: TextPiece, parent: str) -> int:
     """Return what urdfdom does not know of a tag in an element."""
     if parent not in ATTRIBUTES or piece.form not in ("open", "empty"):
         return 0

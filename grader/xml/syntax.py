@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader import markup
 from grader.edits import Proposal, composed
 from grader.source import Edit, Source
-from grader.xml.pieces import Mark, Piece, Rules, Scan, scan
+from grader.xml.pieces import ParserMark, PieceScan, Rules, TextPiece, scan
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN
 
 _MAX_ERRORS = 40  # of one text
@@ -77,7 +77,7 @@ class Way(NamedTuple):
 
 def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
     """Yield edits after which a text can be read, the most plausible first; nothing where none brings the parser further."""
-    search = _Search(Rules(is_strict, is_urdf))
+    search = _SyntaxSearch(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))
     if first:
         yield _joined(source, [ways[0] for ways in first])
@@ -98,7 +98,7 @@ def _joined(source: Source, ways: list[Way]) -> Proposal:
     return Proposal(edits, " and ".join(causes), " and ".join(dict.fromkeys(actions)))
 
 
-class _Search:
+class _SyntaxSearch:
     """A search, whose work is bounded."""
 
     def __init__(self, rules: Rules) -> None:
@@ -123,13 +123,17 @@ class _Search:
                 break
         return list({way.after: way for _, way in reversed(found)}.values())[::-1][:_MAX_WAYS]
 
-    def _ranked(self, text: str, stop: Scan, operations: Iterator[Operation]) -> Iterator[tuple[tuple[int, int], Way]]:
+    def _ranked(
+        self, text: str, stop: PieceScan, operations: Iterator[Operation]
+    ) -> Iterator[tuple[tuple[int, int], Way]]:
         """Yield the ways that bring the parser further, each with how far it is from the end, and the faults for urdfdom."""
         for name, *changes in islice(operations, _MAX_TRIES):
             after = text
             for start, end, new in reversed(changes):
                 after = after[:start] + new + after[end:]
-            mark = next((mark for mark in reversed(stop.marks) if changes and mark.position <= changes[0][0]), Mark())
+            mark = next(
+                (mark for mark in reversed(stop.marks) if changes and mark.position <= changes[0][0]), ParserMark()
+            )
             limit = min(stop.at + _WINDOW + max(len(after) - len(text), 0), len(after) + 1)
             self.left -= limit - mark.position
             if self.left < 0:
@@ -142,7 +146,7 @@ class _Search:
 class _Operations:
     """The operations at one error: each a name and changes."""
 
-    def __init__(self, text: str, stop: Scan, wrong: Piece, is_urdf: bool) -> None:
+    def __init__(self, text: str, stop: PieceScan, wrong: TextPiece, is_urdf: bool) -> None:
         self.text, self.wrong, self.is_urdf = text, wrong, is_urdf
         self.body = text[wrong.start : wrong.end]
         self.tags = [mark.piece for mark in stop.marks if mark.piece and mark.piece.form != "other"]
@@ -192,7 +196,7 @@ class _Operations:
             for name in free if old in "=\"'" else ():
                 yield from (("name", at, at, new) for new in (name, f" {name}", f"{name}="))
 
-    def _tag(self, piece: Piece, form: str, name: str = "") -> Operation:
+    def _tag(self, piece: TextPiece, form: str, name: str = "") -> Operation:
         """Return a tag in another form, without one removed, or with another name."""
         end = markup.name_end(self.text, piece.start)
         head = f"<{name or piece.name}{self.text[end : piece.end].rstrip('/> ')}"
@@ -226,7 +230,7 @@ class _Operations:
 
     def _closings(self) -> Iterator[Change]:
         """Yield the closing of tags before the first tags that may not be in them, and of those in the one that is closed."""
-        places: dict[int, list[Piece]] = {}
+        places: dict[int, list[TextPiece]] = {}
         names = [piece.name for piece in self.open]
         inner = self.open[: names.index(self.wrong.name) if self.wrong.name in names else None]
         at = end = self.wrong.start
@@ -244,7 +248,7 @@ class _Operations:
                 new += f"{self.line}{markup.indentation(self.text, piece.start)}" * is_line + f"</{piece.name}>"
             yield end, end, new
 
-    def _fits(self, piece: Piece, outer: Piece) -> bool:
+    def _fits(self, piece: TextPiece, outer: TextPiece) -> bool:
         """Return whether a tag may be in another one, as the format or the indentation tells."""
         if piece.form == "close" or outer is self.open[-1]:
             return True

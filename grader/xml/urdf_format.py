@@ -7,7 +7,7 @@ JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", 
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 
 
-class Attribute(NamedTuple):
+class AttributeFormat(NamedTuple):
     """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is not given.
 
     An attribute without a default is required; `usual` is what a person would write, where nothing else is known.
@@ -19,72 +19,72 @@ class Attribute(NamedTuple):
     usual: str = ""
 
 
-class Tag(NamedTuple):
+class TagFormat(NamedTuple):
     """An element: its attributes in their usual order, its children (which are needed, which may repeat), wrong names of attributes."""
 
-    attributes: Mapping[str, Attribute] = {}
+    attributes: Mapping[str, AttributeFormat] = {}
     children: tuple[str, ...] = ()
     needed: tuple[str, ...] = ()  # of geometry one is needed, and of a joint that is revolute or prismatic also limit
     repeated: tuple[str, ...] = ()
     aliases: Mapping[str, str] = {}
 
 
-_REQUIRED, _OPTIONAL = Attribute(), Attribute(default="")
+_REQUIRED, _OPTIONAL = AttributeFormat(), AttributeFormat(default="")
 _XYZ, _ONE = ("x", "y", "z"), ("",)
-_LINK = Tag({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
-_POSITIVE, _MIXED = Attribute("kg m2", _ONE, usual="0.001"), Attribute("kg m2", _ONE, usual="0")
-_END = Attribute("rad or m", _ONE, "0")
+_LINK = TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
+_POSITIVE, _MIXED = AttributeFormat("kg m2", _ONE, usual="0.001"), AttributeFormat("kg m2", _ONE, usual="0")
+_END = AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
-TAGS: dict[str, Tag] = {
-    "robot": Tag({"name": _REQUIRED, "version": Attribute(default="1.0")}, ("link", "joint", "material"), ("link",), ("link", "joint", "material")),
-    "link": Tag({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
-    "joint": Tag(
+TAGS: dict[str, TagFormat] = {
+    "robot": TagFormat({"name": _REQUIRED, "version": AttributeFormat(default="1.0")}, ("link", "joint", "material"), ("link",), ("link", "joint", "material")),
+    "link": TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
+    "joint": TagFormat(
         {"name": _REQUIRED, "type": _REQUIRED},
         ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
         ("parent", "child"),
     ),
-    "material": Tag({"name": _REQUIRED}, ("color", "texture")),
-    "visual": Tag({"name": _OPTIONAL}, ("origin", "geometry", "material"), ("geometry",)),
-    "collision": Tag({"name": _OPTIONAL}, ("origin", "geometry"), ("geometry",)),
-    "inertial": Tag({}, ("origin", "mass", "inertia"), ("mass", "inertia")),
-    "geometry": Tag({}, _SHAPES),
+    "material": TagFormat({"name": _REQUIRED}, ("color", "texture")),
+    "visual": TagFormat({"name": _OPTIONAL}, ("origin", "geometry", "material"), ("geometry",)),
+    "collision": TagFormat({"name": _OPTIONAL}, ("origin", "geometry"), ("geometry",)),
+    "inertial": TagFormat({}, ("origin", "mass", "inertia"), ("mass", "inertia")),
+    "geometry": TagFormat({}, _SHAPES),
     "parent": _LINK,
     "child": _LINK,
-    "origin": Tag(
-        {"xyz": Attribute("m", _XYZ, "0 0 0"), "rpy": Attribute("rad", ("roll", "pitch", "yaw"), "0 0 0")},
+    "origin": TagFormat(
+        {"xyz": AttributeFormat("m", _XYZ, "0 0 0"), "rpy": AttributeFormat("rad", ("roll", "pitch", "yaw"), "0 0 0")},
         aliases={"pos": "xyz"},
     ),
-    "box": Tag({"size": Attribute("m", _XYZ)}),
-    "cylinder": Tag({"radius": Attribute("m", _ONE), "length": Attribute("m", _ONE)}, aliases={"height": "length"}),
-    "sphere": Tag({"radius": Attribute("m", _ONE)}),
-    "mesh": Tag({"filename": _REQUIRED, "scale": Attribute("1", _XYZ, "1 1 1")}),
-    "color": Tag({"rgba": Attribute("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
-    "texture": Tag({"filename": _REQUIRED}),
-    "mass": Tag({"value": Attribute("kg", _ONE, usual="1")}),
-    "inertia": Tag(
+    "box": TagFormat({"size": AttributeFormat("m", _XYZ)}),
+    "cylinder": TagFormat({"radius": AttributeFormat("m", _ONE), "length": AttributeFormat("m", _ONE)}, aliases={"height": "length"}),
+    "sphere": TagFormat({"radius": AttributeFormat("m", _ONE)}),
+    "mesh": TagFormat({"filename": _REQUIRED, "scale": AttributeFormat("1", _XYZ, "1 1 1")}),
+    "color": TagFormat({"rgba": AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
+    "texture": TagFormat({"filename": _REQUIRED}),
+    "mass": TagFormat({"value": AttributeFormat("kg", _ONE, usual="1")}),
+    "inertia": TagFormat(
         {"ixx": _POSITIVE, "ixy": _MIXED, "ixz": _MIXED, "iyy": _POSITIVE, "iyz": _MIXED, "izz": _POSITIVE}
     ),
-    "axis": Tag({"xyz": Attribute("1", _XYZ, "0 0 0", "0 0 1")}),  # a joint without <axis> has 1 0 0
-    "limit": Tag(
+    "axis": TagFormat({"xyz": AttributeFormat("1", _XYZ, "0 0 0", "0 0 1")}),  # a joint without <axis> has 1 0 0
+    "limit": TagFormat(
         {
             "lower": _END._replace(usual="-1.57"),
             "upper": _END._replace(usual="1.57"),
-            "effort": Attribute("N m or N", _ONE, usual="10"),
-            "velocity": Attribute("rad/s or m/s", _ONE, usual="1"),
+            "effort": AttributeFormat("N m or N", _ONE, usual="10"),
+            "velocity": AttributeFormat("rad/s or m/s", _ONE, usual="1"),
         }
     ),
-    "dynamics": Tag({"damping": Attribute("N m s/rad or N s/m", _ONE, "0"), "friction": Attribute("N m or N", _ONE, "0")}),
-    "mimic": Tag({"joint": _REQUIRED, "multiplier": Attribute("1", _ONE, "1"), "offset": _END}),
-    "safety_controller": Tag(
+    "dynamics": TagFormat({"damping": AttributeFormat("N m s/rad or N s/m", _ONE, "0"), "friction": AttributeFormat("N m or N", _ONE, "0")}),
+    "mimic": TagFormat({"joint": _REQUIRED, "multiplier": AttributeFormat("1", _ONE, "1"), "offset": _END}),
+    "safety_controller": TagFormat(
         {
             "soft_lower_limit": _END,
             "soft_upper_limit": _END,
-            "k_position": Attribute("1", _ONE, "0"),
-            "k_velocity": Attribute("1", _ONE, usual="1"),
+            "k_position": AttributeFormat("1", _ONE, "0"),
+            "k_velocity": AttributeFormat("1", _ONE, usual="1"),
         }
     ),
-    "calibration": Tag({"rising": Attribute("rad or m", _ONE, ""), "falling": Attribute("rad or m", _ONE, "")}),
+    "calibration": TagFormat({"rising": AttributeFormat("rad or m", _ONE, ""), "falling": AttributeFormat("rad or m", _ONE, "")}),
 }  # fmt: skip
 
 # Views of the table.

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from grader.xml.element_values import Found, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
+from grader.xml.element_values import FoundElement, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
 from grader.xml.parsing import Element, Unresolved
 
 Value = Scalar | list[Scalar]
@@ -60,7 +60,7 @@ class WantedElement(NamedTuple):
         wrong = {element: self.wrong(element) for element in elements}
         return min(elements, key=lambda element: (self.identity in wrong[element], len(wrong[element])))
 
-    def has(self, key: str, found: Found) -> bool:
+    def has(self, key: str, found: FoundElement) -> bool:
         """Return whether a text is the value at a path, or one of several."""
         value = self.values[key]
         wanted = value if isinstance(value, list) else [value]

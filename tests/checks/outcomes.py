@@ -14,7 +14,7 @@ from grader.checks.registry import Subject, describe
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion
 from grader.grading.grade import grade
-from grader.grading.reference import Reference
+from grader.grading.reference import ReferenceSolution
 from grader.grading.rubric import Part, Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
@@ -66,7 +66,7 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
     return grade(replace(rubric, solution=_Solution()), submission).results[0].outcome
 
 
-class _Solution(Reference):
+class _Solution(ReferenceSolution):
     """A reference solution without a file: the arm."""
 
     def __init__(self) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grader.grading.hints.search import Search
+from grader.grading.hints.search import HintSearch
 from grader.grading.levels import LEVELS
 from grader.report.comparison import applied_hints, hinted_texts
 from tests.command_line import run
@@ -213,7 +213,7 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
 
 def test_a_search_that_failed_has_its_own_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`--fix` does not say that there is nothing to fix."""
-    monkeypatch.setattr(Search, "run", lambda self: self.nothing)
+    monkeypatch.setattr(HintSearch, "run", lambda self: self.nothing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 
@@ -250,10 +250,10 @@ def test_a_rubric_that_shows_no_edits_writes_no_fix(tmp_path: Path) -> None:
 def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """The report has no hints then, and standard error says so."""
 
-    def fail(self: Search) -> Search:
+    def fail(self: HintSearch) -> HintSearch:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(Search, "run", fail)
+    monkeypatch.setattr(HintSearch, "run", fail)
     done = run(("grade", MISTAKES, "--format", "json"))
     assert done.returncode == 1
     assert json.loads(done.stdout)["score"] == 42
@@ -291,8 +291,8 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     [
         ("grader.package.edits.candidates.package_names", ()),
         ("grader.grading.hints.look.targets_of", ("base-green",)),
-        ("grader.grading.hints.search.Search._load", ()),
-        ("grader.grading.hints.search.Search._combine", ()),
+        ("grader.grading.hints.search.HintSearch._load", ()),
+        ("grader.grading.hints.search.HintSearch._combine", ()),
     ],
 )
 def test_a_fault_of_one_family_costs_no_other_hint(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from grader.documents.evidence import Found, find_all_evidence, find_evidence
+from grader.documents.evidence import FoundEvidence, find_all_evidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
 
@@ -13,7 +13,7 @@ WEBCAM = ["task 3 step 3", "task 3", "webcam", "camera"]
 Files = Mapping[str, str | bytes]
 
 
-def find(files: Files, names: list[str]) -> Found:
+def find(files: Files, names: list[str]) -> FoundEvidence:
     """Return the evidence with one of these names in a submission of some files."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
     return find_evidence(submission.proofs, names, submission.readable_documents)

@@ -5,7 +5,7 @@ import struct
 import pytest
 
 from grader.documents import pictures
-from grader.documents.pictures import NotShown, Picture, image_type, read_picture, verified
+from grader.documents.pictures import EmbeddedPicture, NotShown, image_type, read_picture, verified
 from grader.errors import FileError
 from grader.files.tree import File
 from tests.documents.test_image_size import HEADERS
@@ -58,7 +58,7 @@ def file_of(data: bytes, size: int | None = None) -> File:
 def test_pictures_are_shown(name: str) -> None:
     """Every format of browsers has its own media type, and its bytes unchanged."""
     found = read_picture(file_of(SHOWN[name]))
-    assert isinstance(found, Picture)
+    assert isinstance(found, EmbeddedPicture)
     assert found.kind.name in name
     assert found.kind.media_type == f"image/{found.kind.name.lower()}"
     assert {found.width, found.height} == {640, 480}
@@ -89,7 +89,7 @@ def test_hostile_markup_is_read_in_linear_time(part: bytes) -> None:
 def test_a_decompression_bomb_is_not_shown(size: tuple[int, int], is_shown: bool) -> None:
     """A picture of more than 100 megapixels needs too much memory, however small its file is."""
     found = verified(png(*size), "screen.png")
-    assert isinstance(found, Picture) == is_shown
+    assert isinstance(found, EmbeddedPicture) == is_shown
     assert is_shown or "megapixels, the limit: open it yourself, with care" in str(found)
 
 
@@ -99,7 +99,7 @@ def test_large_files_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     why = "larger than 1024 bytes"
     assert "larger than 0 MiB, the limit for a picture" in str(read_picture(file_of(b"", 1025)))
     assert str(read_picture(file_of(png(1, 1) + bytes(1024), 1))) == f"screen.png: is {why}"
-    assert isinstance(read_picture(file_of(png(1, 1))), Picture)
+    assert isinstance(read_picture(file_of(png(1, 1))), EmbeddedPicture)
     assert "the limit for a picture" in str(verified(png(1, 1) + bytes(1024), "picture 1 in a.docx"))
 
 

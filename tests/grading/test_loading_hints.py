@@ -7,7 +7,7 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.grading.hints.loading import repaired
-from grader.grading.hints.search import Found, Search
+from grader.grading.hints.search import FoundHint, HintSearch
 from grader.grading.hints.trials import Trials
 from grader.grading.report import Result
 from grader.robot.edits.draft import Draft
@@ -45,9 +45,9 @@ def results_of(submission: Submission) -> dict[str, Result]:
     return {result.criterion.id: result for result in grade(LAB6, submission).results}
 
 
-def searched(submission: Submission) -> Search:
+def searched(submission: Submission) -> HintSearch:
     """Return the finished search for a submission."""
-    return Search(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT).run()
+    return HintSearch(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT).run()
 
 
 def written(folder: Path, text: str | bytes) -> Submission:
@@ -69,7 +69,7 @@ def model(reading: Reading) -> object:
     return repr(normal_form(reading.robot))
 
 
-def repaired_text(submission: Submission, found: Found) -> bytes:
+def repaired_text(submission: Submission, found: FoundHint) -> bytes:
     """Return the file after the edits of a hint."""
     files = edited_files(submission, found.edits)
     assert files is not None

@@ -10,7 +10,7 @@ import pytest
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
-from grader.documents.pictures import Picture
+from grader.documents.pictures import EmbeddedPicture
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
@@ -26,7 +26,7 @@ def shown(files: dict[str, bytes], names: list[str]) -> list[str]:
     submission = Submitted(files).submission
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": names})
     found = pictures_of(Result(criterion, evidence_shown(submission, names=names)), submission)
-    return [one.words if isinstance(one, Picture) else str(one) for one in found]
+    return [one.words if isinstance(one, EmbeddedPicture) else str(one) for one in found]
 
 
 def in_answer(files: dict[str, bytes], place: str) -> list[str]:
@@ -36,7 +36,7 @@ def in_answer(files: dict[str, bytes], place: str) -> list[str]:
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[answered], arguments)
     outcome = answered(submission, question="Why?", places=[place])
     found = pictures_of(Result(criterion, outcome), submission)
-    return [one.words if isinstance(one, Picture) else str(one) for one in found]
+    return [one.words if isinstance(one, EmbeddedPicture) else str(one) for one in found]
 
 
 def word(*paragraphs: str | bytes) -> bytes:

@@ -6,7 +6,7 @@ import pytest
 
 from grader.edits import edited
 from grader.grading.grade import grade
-from grader.grading.hints.search import Search
+from grader.grading.hints.search import HintSearch
 from grader.grading.hints.trials import Trials
 from grader.robot.edits.draft import Draft
 from grader.source import Edit
@@ -23,11 +23,11 @@ WHEEL = "my_robot/urdf/wheel.xacro"
 URDF = "my_robot/urdf/my_robot.urdf"
 
 
-def search(submission: Submission) -> Search:
+def search(submission: Submission) -> HintSearch:
     """Return the finished search for edits of a submission."""
     results = {result.criterion.id: result for result in grade(LAB6, submission).results}
     assert isinstance(REFERENCE.urdf, Read)
-    return Search(Trials(LAB6, submission, results), Draft.of(REFERENCE.urdf.reading)).run()
+    return HintSearch(Trials(LAB6, submission, results), Draft.of(REFERENCE.urdf.reading)).run()
 
 
 def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:

@@ -6,7 +6,7 @@ from functools import cache
 from typing import NamedTuple
 
 from grader.grading.grade import grade
-from grader.grading.hints.search import Found, Search
+from grader.grading.hints.search import FoundHint, HintSearch
 from grader.grading.hints.trials import Trials
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
@@ -27,7 +27,7 @@ class Hints(NamedTuple):
 
     submission: Submission
     lost: tuple[str, ...]
-    found: list[Found]
+    found: list[FoundHint]
     fixed: Submission
     left: tuple[str, ...]
     steps: int
@@ -57,9 +57,11 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     )
 
 
-def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> Search:
+def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> HintSearch:
     """Return the search for a submission with these results."""
-    search = Search(Trials(rubric, submission, results), reference_draft(rubric.id), lambda: reference(rubric).package)
+    search = HintSearch(
+        Trials(rubric, submission, results), reference_draft(rubric.id), lambda: reference(rubric).package
+    )
     return search.run() if _lost(results) else search
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.package.launch.model import Launch, LaunchFault, Reference
+from grader.package.launch.model import Launch, LaunchFault, NamedFile
 from grader.package.launch.places import PREFIX
 from grader.package.launch.reader import read_launch
 
@@ -89,7 +89,7 @@ def _fault(fault: LaunchFault) -> str:
     return f"{fault.location.line}: {message}"
 
 
-def _reference(named: Reference) -> str:
+def _reference(named: NamedFile) -> str:
     line = f"{named.location.line}: "
     if named.path is not None and not named.reason:
         return line + named.path.removeprefix(f"{PREFIX}/share/")

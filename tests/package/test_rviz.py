@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
-from grader.package.yaml_nodes import Node, read_yaml
+from grader.package.yaml_nodes import YamlNode, read_yaml
 from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
@@ -178,7 +178,7 @@ def test_switched_on() -> None:
     ]
 
 
-def node(text: str) -> Node:
+def node(text: str) -> YamlNode:
     """Return a value of YAML."""
     return read_yaml(text.encode(), "a")
 

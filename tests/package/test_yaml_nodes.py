@@ -9,7 +9,7 @@ import yaml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from tests.work import limited_work
 
 TEXTS = st.text(st.characters(blacklist_categories=["Cs"]), max_size=12) | st.sampled_from(
@@ -41,7 +41,7 @@ VALUES = st.recursive(
 )
 
 
-def plain(node: Node) -> Any:
+def plain(node: YamlNode) -> Any:
     """Return a node's values without their locations."""
     if isinstance(node.value, dict):
         return {key: plain(item) for key, item in node.value.items()}
@@ -140,7 +140,7 @@ def test_quoted_strings_are_distinguished() -> None:
     assert {key: item.quoted for key, item in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
 
 
-def plain_items(node: Node) -> list[tuple[str, Node]]:
+def plain_items(node: YamlNode) -> list[tuple[str, YamlNode]]:
     """Return the entries of a mapping."""
     return list(node.value.items()) if isinstance(node.value, dict) else []
 

@@ -14,7 +14,7 @@ _Z = (0.0, 0.0, 1.0)
 _CLEARLY_SMALLER = 0.95  # of the largest volume: more could be the largest in an equivalent robot
 
 
-class _Group(NamedTuple):
+class _ShapeGroup(NamedTuple):
     """The visuals of a link that have shapes of one kind; `selected` are the arguments that choose the kind."""
 
     link: str
@@ -35,7 +35,7 @@ class _Group(NamedTuple):
         return largest if is_clear else None
 
 
-def _groups(link: Link) -> Iterator[_Group]:
+def _groups(link: Link) -> Iterator[_ShapeGroup]:
     """Yield what a link shows, by the kind of shape; nothing where it shows too much."""
     if len(link.visuals) > MAX_SHAPES:
         return
@@ -45,7 +45,7 @@ def _groups(link: Link) -> Iterator[_Group]:
         by_kind.setdefault(type(visual.geometry), []).append(visual)
     for kind, same in by_kind.items():
         selected = {"shape": kind.__name__.lower()} if len(visuals) > 1 and kind is not Mesh else {}
-        yield _Group(link.name, kind, same, selected)
+        yield _ShapeGroup(link.name, kind, same, selected)
 
 
 def _places(link: Link) -> Iterator[Fact | Omission]:

@@ -12,7 +12,7 @@ from grader.grading.hints.look import Look
 from grader.grading.hints.solving import Solver, slots
 from grader.grading.hints.trials import Edits, Results, State, Trials, joined, together
 from grader.robot.edits.conventions import conventions, other_frames
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
 
@@ -110,7 +110,7 @@ class Choice:
             yield from islice(look.proposals(piece), 3)
 
     def _of_whole(
-        self, look: Look, criterion: Criterion, make: Callable[[Difference], Iterable[Piece]], lost: Sequence[str]
+        self, look: Look, criterion: Criterion, make: Callable[[RobotDifference], Iterable[Piece]], lost: Sequence[str]
     ) -> Iterator[Proposal]:
         if look.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(look, make(look.difference), criterion.id, lost)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.hints.record import INCOMPLETE
-from grader.grading.hints.search import Found, Search
+from grader.grading.hints.search import FoundHint, HintSearch
 from grader.grading.hints.trials import Edits, Trials, costs_of
 from grader.grading.hints.words import message
 from grader.grading.levels import Level
-from grader.grading.reference import Reference
+from grader.grading.reference import ReferenceSolution
 from grader.grading.report import Fix, Hint, Report, Result
 from grader.robot.edits.draft import Draft
 from grader.source import Location
@@ -41,7 +41,7 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
-    search = Search(trials, _draft(solution), lambda: _package(solution)).run()
+    search = HintSearch(trials, _draft(solution), lambda: _package(solution)).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     hints: dict[str, Hint] = {}
@@ -83,7 +83,7 @@ def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]
 
 
 def _entry(
-    found: Found, shown: Mapping[str, Found], results: Mapping[str, Result], costs: Mapping[str, Decimal]
+    found: FoundHint, shown: Mapping[str, FoundHint], results: Mapping[str, Result], costs: Mapping[str, Decimal]
 ) -> str:
     """Return the criterion under which a report shows a hint: the one at the line that is edited, else the costliest."""
 
@@ -96,13 +96,13 @@ def _entry(
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
 
 
-def _hint(found: Found, text: str, *, keeps_edits: bool) -> Hint:
+def _hint(found: FoundHint, text: str, *, keeps_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
     return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action)
 
 
-def _draft(reference: Reference | None) -> Draft | None:
+def _draft(reference: ReferenceSolution | None) -> Draft | None:
     """Return the robot of the reference solution."""
     try:
         return Draft.of(reference.reading) if reference is not None else None
@@ -110,7 +110,7 @@ def _draft(reference: Reference | None) -> Draft | None:
         return None
 
 
-def _package(reference: Reference | None) -> "Package | None":
+def _package(reference: ReferenceSolution | None) -> "Package | None":
     """Return the package of the reference solution."""
     try:
         return reference.submission.package if reference is not None else None

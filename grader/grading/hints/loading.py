@@ -8,7 +8,7 @@ from typing import NamedTuple
 from grader.edits import Proposal
 from grader.grading.hints.trials import Edits, State, Trials, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import STRUCTURE
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
@@ -29,7 +29,7 @@ _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads t
 Defects = tuple[int, ...]
 
 
-class Step(NamedTuple):
+class LoadingStep(NamedTuple):
     """An edit of a state that brings ROS 2 further, and the state after it."""
 
     proposal: Proposal
@@ -67,7 +67,7 @@ def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], S
     return _grouped(taken), final
 
 
-def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
+def _steps(trials: Trials, reference: Draft | None) -> Iterator[LoadingStep]:
     """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises NoTrialsLeft."""
     state, reserve = trials.start, trials.left // 2
     for _ in range(_MAX_STEPS):
@@ -102,7 +102,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
     yield from syntax_proposals(reading.source, is_urdf=True, is_strict=is_strict)
     draft = Draft.of(reading)
     if draft is not None:
-        difference = Difference(draft, reference or draft)
+        difference = RobotDifference(draft, reference or draft)
         yield from (
             Proposal(*correction) for correction in draft.source.corrections(difference.names, difference.numbers)
         )
@@ -120,7 +120,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
                 yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
 
-def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> Step | None:
+def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> LoadingStep | None:
     """Return the edit that brings ROS 2 furthest; of several that make it load the file, the one with the best score."""
     now = defects(reading)
     better: list[tuple[Defects, int, Proposal]] = []
@@ -143,7 +143,7 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
             rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.way, -proposal.size)
-            ranked.append((rank, Step(proposal, state, after)))
+            ranked.append((rank, LoadingStep(proposal, state, after)))
     return max(ranked, key=lambda found: found[0])[1] if ranked else None
 
 

@@ -13,7 +13,7 @@ from grader.grading.hints.model import Model
 from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import State, Trials
 from grader.grading.subjects import named_links
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft, Set
 from grader.robot.edits.numbers import values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
@@ -45,10 +45,10 @@ class Look:
         return Model(self.trials, self.state, self.draft)
 
     @cached_property
-    def difference(self) -> Difference:
+    def difference(self) -> RobotDifference:
         """The robot beside the reference's."""
         assert self.draft is not None
-        return Difference(self.draft, self.reference or self.draft)
+        return RobotDifference(self.draft, self.reference or self.draft)
 
     @cached_property
     def pieces(self) -> list[Piece]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _UNION = Proposal((), "", "")  # of edits that are proposed already
 
 
-class Found(NamedTuple):
+class FoundHint(NamedTuple):
     """A proven edit of the submission as it is, and the points of the criteria that pass with it.
 
     `after` are earlier edits that it includes, because it needs them.
@@ -30,10 +30,10 @@ class Found(NamedTuple):
     proposal: Proposal
     edits: Edits
     gains: Mapping[str, Decimal]
-    after: "tuple[Found, ...]" = ()
+    after: "tuple[FoundHint, ...]" = ()
 
 
-class Search:
+class HintSearch:
     """The search for one submission; `found` are proven edits, `final` the submission with those that fit together."""
 
     def __init__(
@@ -49,12 +49,12 @@ class Search:
         is_small = robot is not None and 2 * len(robot.links) < len(rubric.links)
         self._is_another_robot = is_small and is_another_robot(rubric, robot)
         self.causes = self._choice.causes
-        self.found: list[Found] = []
+        self.found: list[FoundHint] = []
         self.final = trials.start
         self.is_complete = True  # whether all was searched that may help
         self._given_up: set[tuple[Edits, str, bool]] = set()
 
-    def run(self) -> "Search":
+    def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
         self.is_complete = False
         with suppress(NoTrialsLeft):
@@ -130,7 +130,7 @@ class Search:
                     return True
         return self._add(proposal, all_edits, name, tuple(self.found))
 
-    def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[Found, ...] = ()) -> bool:
+    def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:
         """Add edits if they are proven, graded from scratch, and gain the points of a criterion; return whether they are."""
         start = self.trials.start
         state = self.trials.applied(start, edits, whole=True)
@@ -140,7 +140,7 @@ class Search:
         edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed or creates(start.submission, edit))
         is_proven = bool(gains) and name in (*gains, "")
         if is_proven:
-            self.found.append(Found(proposal, edits, gains, after))
+            self.found.append(FoundHint(proposal, edits, gains, after))
         return is_proven
 
     def _combine(self) -> None:

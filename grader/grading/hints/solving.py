@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.grading.hints.model import Model
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
@@ -77,7 +77,7 @@ def _slots(owner: Element, tag: str) -> Iterator[Slot]:
 class Solver:
     """Searches the values with which one criterion measures what it expects."""
 
-    def __init__(self, model: Model, difference: Difference, name: str, outcome: Outcome) -> None:
+    def __init__(self, model: Model, difference: RobotDifference, name: str, outcome: Outcome) -> None:
         self._model, self._difference, self._name = model, difference, name
         self._outcome = outcome
         measured, expected = _vector(outcome.measured), _vector(outcome.expected)

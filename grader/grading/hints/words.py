@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from grader.grading.hints.search import Found
+from grader.grading.hints.search import FoundHint
 from grader.grading.levels import Level
 from grader.source import Edit, Location, Source
 from grader.submission.editing import content, creates
@@ -15,7 +15,7 @@ _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: Found, level: Level, submission: Submission, entry: Callable[[Found], str]) -> str:
+def message(found: FoundHint, level: Level, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
     """Return the hint in a sentence; the name of the URDF needs no mention. `entry` is the criterion that shows an earlier hint."""
     own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
     earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
@@ -69,7 +69,7 @@ def _at(place: Location | Edit, main: str | None) -> str:
     return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
 
 
-def _own_edits(found: Found) -> list[Edit]:
+def _own_edits(found: FoundHint) -> list[Edit]:
     """Return the edits that are not those of an earlier hint."""
     if not found.proposal.edits:
         return []

@@ -13,7 +13,7 @@ from grader.package.edits.paths import in_xml, launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.syntax import repaired
-from grader.package.edits.task import Task
+from grader.package.edits.task import PackageTask
 from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import defined, respelt, reworded
 from grader.package.launch.model import Launch
@@ -46,7 +46,7 @@ def package_proposals(
         for it in arguments.values()
         for value in (it if isinstance(it, list) else [it])
     ]
-    task = Task(package, reference, frozenset(value for value in values if isinstance(value, str)))
+    task = PackageTask(package, reference, frozenset(value for value in values if isinstance(value, str)))
     found: dict[tuple[Edit, ...], Proposal] = {}
     for kind in ("", *kinds):
         with isolated():
@@ -57,7 +57,7 @@ def package_proposals(
     return list(found.values())
 
 
-def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
+def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield the edits of the file of a kind, and those that rename or create files of the kind; without a kind, of its name."""
     if not kind:
         yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
@@ -75,7 +75,7 @@ def _of_kind(task: Task, kind: str) -> Iterator[Proposal]:
 
 
 def _further(
-    task: Task, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
+    task: PackageTask, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
 ) -> Iterator[Proposal]:
     """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
     reference = task.reference.launch(like) if task.reference is not None and like is not None else None
@@ -101,7 +101,7 @@ def _started(launch: Launch) -> set[tuple[str, str]]:
     return {(it.package, it.executable) for it in launch.nodes}
 
 
-def _of_text(task: Task, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
+def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
     """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
     own = PythonFile(source)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from grader.edits import Proposal
 from grader.names import closest
-from grader.package.edits.task import Task, change, kind_of
+from grader.package.edits.task import PackageTask, change, kind_of
 from grader.package.launch.places import is_launch_named
 from grader.package.package import MANIFEST, SETUP
 from grader.source import Edit
@@ -16,7 +16,7 @@ _MAX_NAMES = 2  # of files that may be the one that is meant
 _MAX_LAUNCH_FILES = 3
 
 
-def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
+def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits that give a file the name that it has in the reference, or create it."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
@@ -34,7 +34,7 @@ def file_proposals(task: Task, kind: str) -> Iterator[Proposal]:
             yield change(edits, "create", WHAT.get(kind, kind if path == kind else "a file of the resource index"))
 
 
-def _renamed(task: Task, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
+def _renamed(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits that give one of these files a name: the one with the most similar name first."""
     spare = {posixpath.basename(it): it for it in files}
     for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):
@@ -42,7 +42,7 @@ def _renamed(task: Task, kind: str, name: str, files: Sequence[str]) -> Iterator
         yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
 
 
-def package_names(task: Task, new: str) -> Iterator[Proposal]:
+def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     """Yield edits that give the package one name in all its files, for a package that has another or several."""
     manifest, setup = task.package.manifest, task.package.setup
     if manifest is None or manifest.name is None:

@@ -6,10 +6,9 @@ from functools import partial
 from grader.difference import Node
 from grader.edits import text_of, with_attribute, with_child
 from grader.markup import attributes, head_end
-from grader.package.edits.trees import Place
+from grader.package.edits.trees import TreePlace
 from grader.package.xml_file import XmlFault, XmlFile
-from grader.package.yaml_nodes import Node as YamlNode
-from grader.package.yaml_nodes import YamlFault, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Edit, Source
 from grader.xml.parsing import Element
 
@@ -38,7 +37,7 @@ def _element(source: Source, file: XmlFile, element: Element, depth: int) -> Nod
     children = [_element(source, file, child, depth - 1) for child in element.iterchildren("*") if depth]
     start = source.offset(place.line, place.column)
 
-    def of() -> Place:
+    def of() -> TreePlace:
         end, _ = head_end(source.text, start)
         whole, at = text_of(source, start), source.text.find(text, end)
         names = {it.name: (it.start, it.start + len(it.name)) for it in attributes(source.text, start)}
@@ -48,7 +47,9 @@ def _element(source: Source, file: XmlFile, element: Element, depth: int) -> Nod
             return source.edit(start, start + len(whole), renamed)
 
         adding = partial(with_attribute, source, start), partial(with_child, source, start)
-        return Place(f"<{tag}>", whole, values, {"": (at, at + len(text))} if text else {}, names, *adding, with_tag)
+        return TreePlace(
+            f"<{tag}>", whole, values, {"": (at, at + len(text))} if text else {}, names, *adding, with_tag
+        )
 
     return Node(tag, (key, values.get("pkg", "")), values, children[:_MAX_CHILDREN], of)
 
@@ -69,13 +70,13 @@ def _yaml(source: Source, tag: str, node: YamlNode, seen: list[YamlNode], depth:
         newline = "\r\n" if "\r\n" in source.text else "\n"
         return source.edit(start, start, f"{dash}{code}\n".replace("\n", newline + indent))
 
-    def of() -> Place:
+    def of() -> TreePlace:
         spans = {name: scalar_span(source, item) for name, item in texts.items()}
         codes = {name: source.text[slice(*span)] for name, span in spans.items()}
         lines = source.text[slice(*line_span(source, node))].split("\n")  # the first one without its indentation
         block = "\n  ".join(line[node.location.column - 1 :].rstrip() for line in lines).rstrip()
         code = f"{tag}:\n  {block}".removeprefix("-:\n  ")
-        return Place(kind, code, codes, spans, {}, lambda name, code: added(f"{name}: {code}"), added)
+        return TreePlace(kind, code, codes, spans, {}, lambda name, code: added(f"{name}: {code}"), added)
 
     children = [_yaml(source, name, item, seen, depth - 1) for name, item in inner]
     return Node(kind, (tag, values.get("Name", "")), values, children, of)

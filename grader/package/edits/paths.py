@@ -9,8 +9,8 @@ from itertools import islice
 
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
-from grader.package.edits.task import Task, change
-from grader.package.launch.model import STATE_PUBLISHER, Launch, Reference
+from grader.package.edits.task import PackageTask, change
+from grader.package.launch.model import STATE_PUBLISHER, Launch, NamedFile
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.package.package import SETUP
 from grader.source import Edit, Source
@@ -28,7 +28,7 @@ _MAX_FILES = 200
 _LAUNCH = "the launch file"
 
 
-def setup_paths(task: Task) -> Iterator[Proposal]:
+def setup_paths(task: PackageTask) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     source, setup = task.source(SETUP), task.package.setup
     if source is None or setup is None:
@@ -50,7 +50,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     return sorted(dict.fromkeys(known), key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio())
 
 
-def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposal]:
+def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
     """Yield edits with which a launch file finds its files: of all together, then of one path each."""
     installed = task.package.installed
     named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
@@ -62,7 +62,7 @@ def launch_paths(task: Task, launch: Launch, source: Source) -> Iterator[Proposa
         yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
 
 
-def in_xml(task: Task, like: str | None) -> str:
+def in_xml(task: PackageTask, like: str | None) -> str:
     """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
     if task.reference is None or like is None:
         return ""
@@ -78,14 +78,14 @@ def in_xml(task: Task, like: str | None) -> str:
     return "\n".join(("<launch>", *nodes, "</launch>"))
 
 
-def _targets(task: Task, purpose: str) -> list[str]:
+def _targets(task: PackageTask, purpose: str) -> list[str]:
     """Return the paths in the package's share folder of the files that it installs for a purpose."""
     share = f"share/{task.package.name}/"
     own = (it.removeprefix(share) for it in task.package.installed if it.startswith(share))
     return [it for it in own if it.lower().endswith(_ENDINGS[purpose])]
 
 
-def _found_at(task: Task, source: Source, named: Reference) -> list[list[Edit]]:
+def _found_at(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
     """Return the edits with which a path becomes the one that the file is installed at."""
     actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
     for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:

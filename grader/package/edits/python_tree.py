@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from grader.difference import Node
 from grader.markup import indentation, indented
 from grader.package.edits.python_file import PythonFile, called
-from grader.package.edits.trees import Place
+from grader.package.edits.trees import TreePlace
 from grader.source import Edit
 
 _ROOTS = ("setup", "LaunchDescription")
@@ -38,9 +38,9 @@ def _function(file: PythonFile, code: ast.FunctionDef) -> Node:
         new = f"{file.newline}{' ' * last.col_offset}{name} {''.join(found[:1])}"
         return file.source.edit(end, end, new) if found else None
 
-    def of() -> Place:
+    def of() -> TreePlace:
         start = file.text.index(code.name, file.span(code)[0])
-        return Place(
+        return TreePlace(
             "the function", "", values, {"name": (start, start + len(code.name))}, {}, returning, lambda _: None
         )
 
@@ -71,7 +71,7 @@ def _expression(
             own = file.meant(own.args[0]) if own.args else own
         return _added(file, own.elts, own, new) if isinstance(own, ast.List) else None
 
-    def of() -> Place:
+    def of() -> TreePlace:
         whole = {**parts, **({"": code} if "" in values else {})}
         spans = {name: file.span(file.meant(part)) for name, part in whole.items()}
         codes = {name: file.written(file.meant(part), into.bound) for name, part in whole.items()}
@@ -80,7 +80,7 @@ def _expression(
         calls = [name for name, value in into.values.items() if _tag(value) == _tag(code) != ""]
         own = [name for name in calls if _keys(into, into.values[name])[1] == keys[1]]  # that is not used
         text = own[0] if own else file.written(code, into.bound)
-        return Place(label, text, codes, spans, names, with_value, with_child)
+        return TreePlace(label, text, codes, spans, names, with_value, with_child)
 
     children = [
         _expression(file, into, it, name if name and not name.isdigit() else _tag(it) or label, name, depth - 1)

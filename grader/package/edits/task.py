@@ -27,7 +27,7 @@ _RVIZ_LIMIT = 512 * 1024
 
 
 @dataclass(frozen=True)
-class Task:
+class PackageTask:
     """A package, the one of the reference solution, if there is one, and the texts that are given to checks."""
 
     package: Package

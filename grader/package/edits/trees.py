@@ -14,7 +14,7 @@ _VERBS: Mapping[str, Verb] = {"set": "set", "add": "add", "move": "add"}  # othe
 Span = tuple[int, int]
 
 
-class Place(NamedTuple):
+class TreePlace(NamedTuple):
     """Where a node is in its text, and the edits that add a value or a node to it; `code` is how it is written elsewhere.
 
     `codes` and `spans` are those of its values, and `names` the offsets of their names.
@@ -82,10 +82,10 @@ def _words(step: Step) -> str:
 def _edit(source: Source, step: Step) -> tuple[str, Edit | None]:
     """Return the text that a step writes, and its edit; None where it has none."""
     own, like, name = step.own, step.like, step.name
-    mine: Place = (step.parent or own).of()
+    mine: TreePlace = (step.parent or own).of()
     if like is None:
         return "", None
-    its: Place = like.of()
+    its: TreePlace = like.of()
     if step.verb in ("add", "move"):
         return its.code, mine.with_child(its.code)
     if step.verb == "retag":

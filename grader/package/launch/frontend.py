@@ -6,7 +6,7 @@ import yaml
 
 from grader.package.launch.model import Findings, LaunchFault
 from grader.package.xml_file import XmlFault, XmlFile
-from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Location, Source
 from grader.static_python.parse import START, Position
 from grader.xml.parsing import Element
@@ -74,7 +74,7 @@ class _YamlReader:
         listed = node if node.items else node.get("children") or node
         return Entity("launch", _position(node), {}, self.entries(listed, 0))
 
-    def entries(self, listed: Node, depth: int) -> list[Entity]:
+    def entries(self, listed: YamlNode, depth: int) -> list[Entity]:
         """Return the actions of a list, each below its own key."""
         found: list[Entity] = []
         for item in listed.items:
@@ -86,7 +86,7 @@ class _YamlReader:
             found += [self.entity(kind, value, depth + 1) for kind, value in list(table.items())[:1]]
         return found
 
-    def entity(self, kind: str, node: Node, depth: int) -> Entity:
+    def entity(self, kind: str, node: YamlNode, depth: int) -> Entity:
         """Return one action or element."""
         entity = Entity(kind, _position(node))
         self.count += 1
@@ -106,7 +106,7 @@ class _YamlReader:
                 entity.children += [self.entity(key, item, depth + 1) for item in value.items or [value]]
         return entity
 
-    def check_string(self, kind: str, key: str, value: Node) -> None:
+    def check_string(self, kind: str, key: str, value: YamlNode) -> None:
         """Add an error for a number, boolean or null where launch takes strings only."""
         if value.quoted or key not in _STRINGS.get(kind, ()):
             return
@@ -118,17 +118,17 @@ class _YamlReader:
             self.findings.add_fault(message, _position(value))
 
 
-def merged(node: Node) -> dict[str, Node]:
+def merged(node: YamlNode) -> dict[str, YamlNode]:
     """Return a mapping with what `<<` merges into it."""
     table = node.value if isinstance(node.value, dict) else {}
     given = table.get("<<")
     if given is None:
         return table
-    found: dict[str, Node] = {}
+    found: dict[str, YamlNode] = {}
     for other in reversed(given.items or [given]):
         found |= other.value if isinstance(other.value, dict) else {}
     return {key: value for key, value in {**found, **table}.items() if key != "<<"}
 
 
-def _position(node: Node) -> Position:
+def _position(node: YamlNode) -> Position:
     return Position(node.location.line, node.location.column)

@@ -55,7 +55,7 @@ class StartedNode:
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class NamedFile:
     """A file that the launch file names. `path` begins with a stand-in where a folder depends on the machine."""
 
     purpose: Purpose
@@ -82,13 +82,13 @@ class Launch:
     source: Source
     syntax: LaunchFault | None = None  # set where the file itself cannot be read
     nodes: tuple[StartedNode, ...] = ()
-    references: tuple[Reference, ...] = ()
+    references: tuple[NamedFile, ...] = ()
     faults: tuple[LaunchFault, ...] = ()
     unknown: tuple[LaunchFault, ...] = ()  # what cannot be determined
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
 
-    def named(self, *purposes: Purpose) -> tuple[Reference, ...]:
+    def named(self, *purposes: Purpose) -> tuple[NamedFile, ...]:
         """Return the files that are named for one of these purposes."""
         return tuple(reference for reference in self.references if reference.purpose in purposes)
 
@@ -108,7 +108,7 @@ class Findings:
 
     locate: Callable[[Position], Location]
     nodes: list[StartedNode] = field(default_factory=list)
-    references: list[Reference] = field(default_factory=list)
+    references: list[NamedFile] = field(default_factory=list)
     faults: list[LaunchFault] = field(default_factory=list)
     unknown: list[LaunchFault] = field(default_factory=list)
     sets_parameters: bool = False
@@ -134,11 +134,11 @@ class Findings:
         location = self.locate(_position(value, call))
         match path:
             case Unknown(reason=reason):
-                self.references.append(Reference(purpose, None, location, reason, sure=False))
+                self.references.append(NamedFile(purpose, None, location, reason, sure=False))
             case Contents():
-                self.references.append(Reference(purpose, path.path, location, by=path.by, arguments=path.arguments))
+                self.references.append(NamedFile(purpose, path.path, location, by=path.by, arguments=path.arguments))
             case _:
-                self.references.append(Reference(purpose, path, location, wrong))
+                self.references.append(NamedFile(purpose, path, location, wrong))
 
 
 def _position(value: Value, call: Call) -> Position:

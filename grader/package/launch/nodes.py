@@ -4,7 +4,7 @@ import re
 import shlex
 
 from grader.names import did_you_mean
-from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, Reference, StartedNode
+from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, StartedNode
 from grader.package.launch.places import SHARE
 from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
@@ -123,7 +123,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
             name = path.rpartition("/")[2]
             message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
-            findings.references.append(Reference("urdf", path, findings.locate(call.at), message, sure=False, by=by))
+            findings.references.append(NamedFile("urdf", path, findings.locate(call.at), message, sure=False, by=by))
         case str() if "<robot" not in description:
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
             findings.refer("urdf", None, call, value, wrong=message)

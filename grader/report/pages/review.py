@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from grader import __version__
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.documents.pictures import NotShown, Picture
+from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
 from grader.report.pages.shell import render_page
@@ -28,7 +28,7 @@ class Place(NamedTuple):
 
 
 def item_page(
-    item: QueuedResult, place: Place, found: Sequence[Picture | NotShown], comments: Sequence[str], notice: str
+    item: QueuedResult, place: Place, found: Sequence[EmbeddedPicture | NotShown], comments: Sequence[str], notice: str
 ) -> str:
     """Return the page of an item. The addresses of its pictures are NUMBER/picture/1 and so on."""
     criterion, outcome = item.result.criterion, item.result.outcome
@@ -102,10 +102,10 @@ def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
     return render_page(template, shared, data, "review.css", "review.js", _SOURCES)
 
 
-def _pictures(found: Sequence[Picture | NotShown], number: int) -> Iterator[tuple[str, str, int, int]]:
+def _pictures(found: Sequence[EmbeddedPicture | NotShown], number: int) -> Iterator[tuple[str, str, int, int]]:
     """Yield the address, the words, the width and the height of each picture."""
     for index, one in enumerate(found, 1):
-        if isinstance(one, Picture):
+        if isinstance(one, EmbeddedPicture):
             yield f"{number}/picture/{index}", one.words, one.width, one.height
 
 

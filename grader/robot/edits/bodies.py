@@ -6,7 +6,7 @@ The checks of bodies suggest them, because no number that they measure leads the
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Edits, Set, child_of, empty_element
 from grader.robot.edits.numbers import number
 from grader.robot.edits.pieces import KNOWN, Piece
@@ -20,7 +20,7 @@ from grader.xml.parsing import Element
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
-def body_pieces(difference: Difference, arguments: Mapping[str, Any]) -> Iterator[Piece]:
+def body_pieces(difference: RobotDifference, arguments: Mapping[str, Any]) -> Iterator[Piece]:
     """Yield edits of what a link weighs and what it collides with; the arguments may give the expected mass in kg."""
     name = arguments["link"]
     own = difference.draft.link(name)
@@ -30,7 +30,7 @@ def body_pieces(difference: Difference, arguments: Mapping[str, Any]) -> Iterato
         yield from _collisions(difference, own, link)
 
 
-def _inertial(difference: Difference, own: Element, link: Link, mass: float | None) -> Iterator[Piece]:
+def _inertial(difference: RobotDifference, own: Element, link: Link, mass: float | None) -> Iterator[Piece]:
     """Correct the inertia, the centre of mass or both: an inertia for another shape, an <inertial> without origin."""
     element, inertial = child_of(own, "inertial"), link.inertial
     weighs = mass if mass is not None else inertial.mass if inertial is not None else None
@@ -72,7 +72,7 @@ def _solid(link: Link, mass: float) -> MassProperties | None:
         return None
 
 
-def _collisions(difference: Difference, own: Element, link: Link) -> Iterator[Piece]:
+def _collisions(difference: RobotDifference, own: Element, link: Link) -> Iterator[Piece]:
     """Make the collision shapes those that are shown: forgotten, in another place, of another size, or too many."""
     draft = difference.draft
     visuals, collisions = list(own.iterchildren("visual")), list(own.iterchildren("collision"))
@@ -97,7 +97,7 @@ def _collisions(difference: Difference, own: Element, link: Link) -> Iterator[Pi
         yield difference.piece(own, cause, "remove a collision of {}", draft.remove(extra), rank=KNOWN)
 
 
-def _like(difference: Difference, collision: Element, visual: Element, tag: str) -> Edits:
+def _like(difference: RobotDifference, collision: Element, visual: Element, tag: str) -> Edits:
     """Return the edit that gives a collision a child as the visual has it."""
     draft, mine, other = difference.draft, child_of(collision, tag), child_of(visual, tag)
     if other is None:
@@ -106,7 +106,7 @@ def _like(difference: Difference, collision: Element, visual: Element, tag: str)
     return draft.replace(mine, text) if mine is not None else draft.insert(collision, text)
 
 
-def _as_collision(difference: Difference, visual: Element) -> str:
+def _as_collision(difference: RobotDifference, visual: Element) -> str:
     parts = (child_of(visual, tag) for tag in ("origin", "geometry"))
     inside = "\n".join(f"  {difference.draft.text(part)}" for part in parts if part is not None)
     return f"<collision>\n{inside}\n</collision>"

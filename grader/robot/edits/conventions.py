@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from math import pi
 
-from grader.robot.edits.difference import Difference
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft, Set, child_of, end_of
 from grader.robot.edits.numbers import Values, rounded, values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
@@ -15,7 +15,7 @@ from grader.xml.urdf_format import TAGS
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
-def conventions(difference: Difference) -> Iterator[Piece]:
+def conventions(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the pieces that change a convention everywhere."""
     yield from _other_units(difference)
     draft = difference.draft
@@ -37,7 +37,7 @@ def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
     return Piece(cause, f"correct {cause}", "", (*before, *_moved(draft, link, T_new_old)), (), CONVENTION)
 
 
-def other_frames(difference: Difference) -> Iterator[Piece]:
+def other_frames(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the pieces with which the frame of a link is where the reference has it, and all that is in it stays where it is."""
     draft = difference.draft
     for link in draft.robot.links:
@@ -93,7 +93,7 @@ def _values(element: Element | None, name: str) -> tuple[float, float, float]:
     return (values[0], values[1], values[2]) if len(values) == 3 else (0.0, 0.0, 0.0)
 
 
-def _other_units(difference: Difference) -> Iterator[Piece]:
+def _other_units(difference: RobotDifference) -> Iterator[Piece]:
     """Convert all lengths to metres: a robot in centimetres or millimetres."""
     found: list[tuple[Element, str, Values]] = []
     for element in difference.draft.root.iter():

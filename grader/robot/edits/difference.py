@@ -20,7 +20,7 @@ _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
 _NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 
 
-class Difference(PieceMaker):
+class RobotDifference(PieceMaker):
     """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:

@@ -6,7 +6,7 @@ from itertools import islice
 from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
-from grader.robot.edits.difference import Difference, renamed
+from grader.robot.edits.difference import RobotDifference, renamed
 from grader.robot.edits.draft import Draft, Set, child_of, end_of
 from grader.robot.edits.pieces import ENDS, Piece, unique
 from grader.robot.edits.readable import is_readable, readable
@@ -30,12 +30,12 @@ def repairable(problems: tuple[Problem, ...]) -> list[Problem]:
     return sorted(found, key=lambda it: (it.kind is not catalogue.MISSPELT, it.kind.is_consequence))[:_MAX_PROBLEMS]
 
 
-def misplaced(difference: Difference) -> Iterator[Piece]:
+def misplaced(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the moves of elements which ROS 2 ignores where they are: a joint in a link, an origin beside the visual."""
     return islice(_misplaced(difference), _MAX_MOVED)
 
 
-def _misplaced(difference: Difference) -> Iterator[Piece]:
+def _misplaced(difference: RobotDifference) -> Iterator[Piece]:
     draft = difference.draft
     for element in islice(draft.root.iter(), 1, _MAX_ELEMENTS):
         tag, parent = str(element.tag), element.getparent()
@@ -49,13 +49,13 @@ def _misplaced(difference: Difference) -> Iterator[Piece]:
                 yield difference.moved(element, near)
 
 
-def pieces_for(difference: Difference, problem: Problem) -> list[Piece]:
+def pieces_for(difference: RobotDifference, problem: Problem) -> list[Piece]:
     """Return the edits that may undo a problem, the most plausible first."""
     found = difference.draft.places().get(problem.location)
     return unique(_pieces(difference, *found))[:_MAX_PIECES] if found is not None else []
 
 
-def _pieces(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
+def _pieces(difference: RobotDifference, element: Element, attribute: str | None) -> Iterator[Piece]:
     if attribute is not None:
         yield from _of_value(difference, element, attribute)
     yield from _respelt(difference, element, attribute)
@@ -72,7 +72,7 @@ def _pieces(difference: Difference, element: Element, attribute: str | None) -> 
             yield difference.piece(around, f"an error in <{around.tag}>", f"remove the <{around.tag}>", edits)
 
 
-def _of_value(difference: Difference, element: Element, attribute: str) -> Iterator[Piece]:
+def _of_value(difference: RobotDifference, element: Element, attribute: str) -> Iterator[Piece]:
     """Write numbers as ROS 2 reads them, here and wherever the mistake is the same; a type as it is called."""
     text = element.get(attribute) or ""
     if not is_readable(attribute, text):
@@ -96,7 +96,7 @@ def _same_mistake(draft: Draft, cause: str) -> Iterator[Set]:
                 yield Set(element, "", attribute, found[0])
 
 
-def _respelt(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
+def _respelt(difference: RobotDifference, element: Element, attribute: str | None) -> Iterator[Piece]:
     """Rename a tag or an attribute that ROS 2 does not know where it is."""
     tag, parent = str(element.tag), element.getparent()
     allowed = CHILDREN.get(str(parent.tag), ()) if parent is not None else (tag,)
@@ -114,7 +114,7 @@ def _respelt(difference: Difference, element: Element, attribute: str | None) ->
                 yield difference.piece(element, f"the name of the attribute {new}", f"rename {old} to {new}", edits)
 
 
-def _missing(difference: Difference, element: Element) -> Iterator[Piece]:
+def _missing(difference: RobotDifference, element: Element) -> Iterator[Piece]:
     """Add the attributes and children that an element needs, with usual values; put shapes into <geometry>."""
     draft, tag = difference.draft, str(element.tag)
     missing = {name: TAGS[tag].attributes[name].usual for name in REQUIRED.get(tag, ()) if element.get(name) is None}
@@ -138,7 +138,7 @@ def _missing(difference: Difference, element: Element) -> Iterator[Piece]:
         yield from _missing_material(difference, element)
 
 
-def _missing_material(difference: Difference, element: Element) -> Iterator[Piece]:
+def _missing_material(difference: RobotDifference, element: Element) -> Iterator[Piece]:
     """Define the materials of the reference's link, or give an element its colour."""
     like = difference.reference.link(difference.draft.link_of(element))
     if like is not None and (edits := difference.materials(like)):
@@ -150,7 +150,7 @@ def _missing_material(difference: Difference, element: Element) -> Iterator[Piec
             yield difference.of_sets([Set(element, "color", "rgba", colour.get("rgba") or "")])
 
 
-def _names(difference: Difference, element: Element, attribute: str | None) -> Iterator[Piece]:
+def _names(difference: RobotDifference, element: Element, attribute: str | None) -> Iterator[Piece]:
     """Give an element a name, or another name where it has that of another one; remove a copy."""
     draft, tag = difference.draft, str(element.tag)
     if "name" not in REQUIRED.get(tag, ()) or attribute not in (None, "name"):
@@ -172,7 +172,7 @@ def _names(difference: Difference, element: Element, attribute: str | None) -> I
         yield from (difference.of_sets([Set(it, "", "name", name)]) for it in defined)
 
 
-def _free_names(difference: Difference, element: Element) -> list[str]:
+def _free_names(difference: RobotDifference, element: Element) -> list[str]:
     """Return names that an element may get: those that are used and not defined, and those of the reference."""
     draft, tag = difference.draft, str(element.tag)
     taken = {other.get("name") for other in draft.root.iterchildren(tag)}
@@ -192,7 +192,7 @@ def _free_names(difference: Difference, element: Element) -> list[str]:
     return [name for name in dict.fromkeys(likes) if name and name not in taken][:_MAX_NAMES]
 
 
-def _connections(difference: Difference, owner: Element) -> Iterator[Piece]:
+def _connections(difference: RobotDifference, owner: Element) -> Iterator[Piece]:
     """Connect links: name the end of a joint, rename or add the link that it names."""
     draft = difference.draft
     links = [link.get("name") or "" for link in draft.links()]
@@ -211,7 +211,7 @@ def _connections(difference: Difference, owner: Element) -> Iterator[Piece]:
 
 
 def _missing_link(
-    difference: Difference, joint: Element, given: str, links: Sequence[str], loose: Sequence[str]
+    difference: RobotDifference, joint: Element, given: str, links: Sequence[str], loose: Sequence[str]
 ) -> Iterator[Piece]:
     """Give a link that the reference does not have the name that a joint names, or add a link of that name."""
     draft = difference.draft

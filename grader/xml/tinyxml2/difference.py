@@ -5,7 +5,7 @@ from typing import NamedTuple
 from grader.problems import Kind
 
 
-class Difference(NamedTuple):
+class NoteDifference(NamedTuple):
     """A difference from XML, an error, or what was assumed about one, at a character offset."""
 
     kind: Kind

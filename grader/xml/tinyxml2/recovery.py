@@ -5,8 +5,8 @@ from typing import Literal, NamedTuple
 
 from grader.text import enumerated
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import Difference
-from grader.xml.tinyxml2.tags import MalformedTagError, Tag, read_tag, short
+from grader.xml.tinyxml2.difference import NoteDifference
+from grader.xml.tinyxml2.tags import MalformedTagError, ReadTag, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import CHILDREN
 
@@ -31,7 +31,7 @@ class Recovered(NamedTuple):
 
     xml: bytes
     offsets: list[int]
-    assumed: list[Difference]
+    assumed: list[NoteDifference]
 
 
 class Recovery:
@@ -41,8 +41,8 @@ class Recovery:
         self._text = text
         self._xml: list[str] = []
         self._offsets: list[int] = []
-        self._assumed: list[Difference] = []
-        self._open: list[Tag] = []
+        self._assumed: list[NoteDifference] = []
+        self._open: list[ReadTag] = []
 
     def run(self) -> Recovered:
         """Read the first robot."""
@@ -71,7 +71,7 @@ class Recovery:
             return Recovered(b"", [], [])
         return Recovered("".join(self._xml).encode(), self._offsets, self._assumed)
 
-    def _tag(self, start: int) -> tuple[Tag | None, int]:
+    def _tag(self, start: int) -> tuple[ReadTag | None, int]:
         """Return the tag at an offset, and the offset after it; a broken one with the attributes that can be read."""
         try:
             tag, end = read_tag(self._text, start, lambda *_: None)
@@ -87,7 +87,7 @@ class Recovery:
             form: Literal["open", "close", "empty"] = (
                 "close" if found["close"] else "empty" if rest.endswith("/") else "open"
             )
-            tag, end = Tag(found["name"], form, attributes, start), found.end()
+            tag, end = ReadTag(found["name"], form, attributes, start), found.end()
             if tag.form != "close":
                 what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
                 self._assume(f"<{short(tag.name)}> is read {what}", start)
@@ -97,11 +97,11 @@ class Recovery:
             return tag._replace(form="close"), end
         return tag, end
 
-    def _is_before_child(self, tag: Tag, end: int) -> bool:
+    def _is_before_child(self, tag: ReadTag, end: int) -> bool:
         found = _NEXT_NAME.search(self._text, end)
         return found is not None and found[1] in CHILDREN.get(tag.name, ())
 
-    def _start(self, tag: Tag) -> None:
+    def _start(self, tag: ReadTag) -> None:
         parents = {"robot"} if tag.name in _TOP else {name for name, tags in CHILDREN.items() if tag.name in tags}
         around = [opened.name for opened in self._open]
         if around and around[-1] not in parents and parents.intersection(around) and _TAGS.issuperset(around):
@@ -111,7 +111,7 @@ class Recovery:
         if tag.form == "open":
             self._open.append(tag)
 
-    def _close(self, tag: Tag) -> None:
+    def _close(self, tag: ReadTag) -> None:
         found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
         if not found:
             self._assume(f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open", tag.offset)
@@ -135,4 +135,4 @@ class Recovery:
             self._xml.append(escape(decode(text)).replace(">", "&gt;"))
 
     def _assume(self, message: str, offset: int) -> None:
-        self._assumed.append(Difference(catalogue.RECOVERED, f"assumed for grading: {message}", offset))
+        self._assumed.append(NoteDifference(catalogue.RECOVERED, f"assumed for grading: {message}", offset))

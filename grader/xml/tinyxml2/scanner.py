@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from grader.problems import Kind
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import Difference
+from grader.xml.tinyxml2.difference import NoteDifference
 from grader.xml.tinyxml2.recovery import Recovery
-from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
+from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, ReadTag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
 _DECLARATION = re.compile(
@@ -31,7 +31,7 @@ class Scan(NamedTuple):
     xml: bytes
     offsets: list[int]
     first_tag: int
-    differences: list[Difference]
+    differences: list[NoteDifference]
     recovered: bytes = b""
 
 
@@ -42,9 +42,9 @@ class Scanner:
         self._text = text
         self._xml: list[str] = []
         self._offsets: list[int] = []  # of the start tags that were written
-        self._differences: list[Difference] = []
-        self._open_tags: list[tuple[Tag, bool]] = []  # each with whether it was written
-        self._top_level: list[Tag] = []
+        self._differences: list[NoteDifference] = []
+        self._open_tags: list[tuple[ReadTag, bool]] = []  # each with whether it was written
+        self._top_level: list[ReadTag] = []
         self._noted: set[str] = set()
         self._errors = 0
         self._only_declarations = True
@@ -173,7 +173,7 @@ class Scanner:
             return self._refuse(catalogue.UNTERMINATED, message, position)
         return end + len(closing)
 
-    def _open(self, tag: Tag, end: int) -> int | None:
+    def _open(self, tag: ReadTag, end: int) -> int | None:
         prefix, colon, _ = tag.name.partition(":")
         if colon and "prefix" not in self._noted and prefix not in self._prefixes:
             self._differ("prefix", f"the prefix of <{short(tag.name)}> is not declared with xmlns", tag.offset)
@@ -192,7 +192,7 @@ class Scanner:
                 return self._refuse(catalogue.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset)
         return end
 
-    def _close(self, tag: Tag, end: int) -> int | None:
+    def _close(self, tag: ReadTag, end: int) -> int | None:
         if not self._open_tags:
             if self._errors:
                 return end
@@ -215,7 +215,7 @@ class Scanner:
         return set(_NAMESPACE.findall(self._text))
 
     def _add(self, kind: Kind, message: str, offset: int) -> None:
-        self._differences.append(Difference(kind, message, offset))
+        self._differences.append(NoteDifference(kind, message, offset))
 
     def _refuse(self, kind: Kind, message: str, offset: int) -> int | None:
         """Add an error; return None, for callers that cannot go on."""

@@ -18,7 +18,7 @@ _MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
-class Tag(NamedTuple):
+class ReadTag(NamedTuple):
     """One tag; attribute values are decoded. Names that XML or lxml may refuse mean nothing to urdfdom: `_` replaces them."""
 
     name: str
@@ -59,7 +59,7 @@ def skip_blank(text: str, position: int) -> int:
     return match.end() if match else position
 
 
-def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
+def read_tag(text: str, start: int, note: Note) -> tuple[ReadTag, int]:
     """Return the tag whose < is at `start`, and the offset after it; raises MalformedTagError."""
     position = skip_blank(text, start + 1)
     closing = text.startswith("/", position)
@@ -75,7 +75,7 @@ def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
         form, position = "empty", position + 1
     if closing and (attributes or form == "empty"):
         note("closing", "a closing tag with more than its name", start)
-    return Tag(name, form, attributes, start), position + 1
+    return ReadTag(name, form, attributes, start), position + 1
 
 
 def resume_after(text: str, position: int) -> int:
