@@ -6,18 +6,23 @@ written out, full turns, turns of a shape within its symmetry, shapes without si
 axes and limits that ROS 2 does not use for a type of joint.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from math import dist
+from typing import Any, NamedTuple
 
-from grader.mutation.comparison import Shown, Turn, is_same, is_same_set, is_same_shape
 from grader.mutation.elements import FOREIGN
 from grader.robot.frames import placed_by
-from grader.robot.model import Collision, Joint, Link, Robot, Visual
+from grader.robot.likeness import turn_between, ways
+from grader.robot.model import Collision, Geometry, Joint, Link, Mesh, Robot, Visual
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import IDENTITY, Transform, unit
 from grader.submission.urdf import Read, Urdf
 from grader.xml.parsing import Element
 
+_NUMBER, _TINY = 1e-6, 1e-12  # relative, absolute
+_LENGTH = 1e-6  # metres
+_TURN = 4e-3  # of a rotation matrix: half a turn that is written 3.14 is the same in both directions
+_ANGLE = 0.25  # degrees: the same turn
 _TURNING = ("continuous", "revolute", "prismatic", "planar")
 _LIMITED = ("revolute", "prismatic")
 _UNLIMITED = ("fixed", "floating")
@@ -27,6 +32,20 @@ _EXTRAS: Mapping[str, Mapping[str, str]] = {
     "safety_controller": {"soft_lower_limit": "0", "soft_upper_limit": "0", "k_position": "0", "k_velocity": ""},
     "calibration": {"rising": "", "falling": "", "reference_position": ""},
 }
+
+
+class Turn(NamedTuple):
+    """A rotation, row by row, or a direction: compared more coarsely than lengths."""
+
+    values: tuple[float, ...]
+
+
+class Shown(NamedTuple):
+    """A shape in the frame of its link, with its colour."""
+
+    geometry: Geometry
+    pose: Transform
+    colour: tuple[object, ...] = ()
 
 
 def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
@@ -149,3 +168,36 @@ def _words(value: object) -> Iterator[str]:
             yield from _words(item)
     elif isinstance(value, str):
         yield value
+
+
+def is_same(one: object, other: object) -> bool:
+    """Return whether two values of plain tuples are equal, numbers up to rounding."""
+    match one, other:
+        case Turn(), Turn():
+            pairs = zip(one.values, other.values, strict=True)
+            return len(one.values) == len(other.values) and all(abs(a - b) <= _TURN for a, b in pairs)
+        case tuple(), tuple():
+            return len(one) == len(other) and all(map(is_same, one, other))
+        case float() | int(), float() | int():
+            return abs(one - other) <= max(_TINY, _NUMBER * max(abs(one), abs(other)))
+        case _:
+            return one == other
+
+
+def is_same_set(one: Sequence[Any], other: Sequence[Any], same: Callable[[Any, Any], bool]) -> bool:
+    """Return whether everything in each of two lists is in the other one; what is drawn twice looks the same."""
+    return all(any(same(a, b) for b in other) for a in one) and all(any(same(a, b) for a in one) for b in other)
+
+
+def is_same_shape(one: Shown, other: Shown) -> bool:
+    """Return whether two shapes look the same: a box lies on any of its sides, a cylinder is turned about its axis."""
+    if not is_same(one.colour, other.colour) or dist(one.pose.translation, other.pose.translation) > _LENGTH:
+        return False
+    match one.geometry, other.geometry:
+        case Mesh(filename=a, scale=m), Mesh(filename=b, scale=n):
+            return a == b and is_same(m, n) and turn_between(one.pose.rotation, other.pose.rotation) <= _ANGLE
+        case (Mesh(), _) | (_, Mesh()):
+            return False
+        case a, b:
+            found = ways(a, one.pose, b, other.pose)
+            return any(size <= _LENGTH and angle <= _ANGLE for size, _, angle in found)

@@ -38,8 +38,8 @@ def mismatch(
     None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    ways = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _ways(a, T_w_a, b, T_w_b)]
-    return min(ways, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
+    found = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in ways(a, T_w_a, b, T_w_b)]
+    return min(found, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
 
 
 def turn_between(one: Rotation, other: Rotation) -> float:
@@ -48,7 +48,7 @@ def turn_between(one: Rotation, other: Rotation) -> float:
     return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
-def _ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
+def ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
     """Yield the size, turn and angle of the difference for each way to lay one shape over the other, that of its axes first."""
     match a, b:
         case Sphere(), Sphere():
