@@ -1,6 +1,7 @@
 """The difference between two trees: elements of XML, values of YAML, calls of Python.
 
-Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the difference is independent of the
+Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the difference is
+independent of the
 others: a caller makes edits of the steps that it needs.
 """
 
@@ -32,8 +33,8 @@ class Node(NamedTuple):
 class Step(NamedTuple):
     """One step from a tree to another: what happens to `own`, a node of the first tree, as in `like`, a node of the other one.
 
-    set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`. retag: the node gets the tag of
-    `like`. add: `like` is added to `own`. remove: `own` goes. move: `own` becomes a child of `parent`.
+    set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`. retag: the node gets the
+    tag of `like`. add: `like` is added to `own`. remove: `own` goes. move: `own` becomes a child of `parent`.
     """
 
     verb: Literal["set", "unset", "rename", "retag", "add", "remove", "move"]

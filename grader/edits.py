@@ -15,8 +15,8 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 class Proposal(NamedTuple):
     """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll of ..."), and what to do ("negate ...").
 
-    `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way` counts the ways
-    to make the same change in xacro, the most plausible first.
+    `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
+    counts the ways to make the same change in xacro, the most plausible first.
     """
 
     edits: tuple[Edit, ...]

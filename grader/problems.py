@@ -15,10 +15,10 @@ Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 class Kind:
     """One kind of problem: a code that never changes, its title, what ROS 2 does and how to fix the file.
 
-    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of it. The
-    effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
-    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree. `is_before_ros`: xacro stops at it,
-    before ROS 2 gets the file.
+    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of
+    it. The effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
+    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree. `is_before_ros`: xacro
+    stops at it, before ROS 2 gets the file.
     """
 
     code: str

@@ -19,7 +19,8 @@ _START_TAG = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?]
 class Location:
     """A location in a file of the submission; line and column count from 1, columns in characters.
 
-    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is called.
+    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is
+    called.
     """
 
     path: str
@@ -31,8 +32,8 @@ class Location:
 class Edit(NamedTuple):
     """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing else changes.
 
-    Line and column count from 1, as in a Location. A file that does not exist is created with the text `new`. With `renamed`, the
-    file gets this path instead.
+    Line and column count from 1, as in a Location. A file that does not exist is created with the text `new`. With
+    `renamed`, the file gets this path instead.
     """
 
     path: str
@@ -145,7 +146,8 @@ class Source:
 class LazyLocation(NamedTuple):
     """The place of an element or of one of its attributes, which is computed on demand: most never are.
 
-    `tag` counts the element's start tag in document order, from 0. With `inside` the first element of this name in it is meant.
+    `tag` counts the element's start tag in document order, from 0. With `inside` the first element of this name in it
+    is meant.
     """
 
     source: Source

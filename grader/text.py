@@ -6,7 +6,8 @@ from collections.abc import Collection, Sequence
 from decimal import Decimal
 from pathlib import Path
 
-# The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains `##[`.
+# The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains
+# `##[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _MAX_NAME = 60  # characters of a name that are shown
 

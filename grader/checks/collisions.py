@@ -43,9 +43,9 @@ Element = Visual | Collision
 def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
     """The collision shapes of a link are the shapes that it shows, each in its place.
 
-    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a size do not count. A mesh
-    is the same if it is the same file at the same scale and pose; whether another file has the same shape needs manual
-    grading.
+    They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a size do not count.
+    A mesh is the same if it is the same file at the same scale and pose; whether another file has the same shape needs
+    manual grading.
 
     Args:
         link: The link that is examined.
@@ -84,8 +84,8 @@ def collides_as(
 ) -> Outcome:
     """A link collides as a box, a cylinder or a sphere of the given size in the given place.
 
-    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a cylinder about its axis
-    changes nothing. Shapes without a size do not count.
+    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a cylinder about its
+    axis changes nothing. Shapes without a size do not count.
 
     Args:
         link: The link that is examined.

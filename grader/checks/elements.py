@@ -67,9 +67,9 @@ def element_present(
         attributes: The attributes of this element, by their names.
         path: The element in it that is examined: names separated by slashes, such as "sensor/camera"; by default, the
             element itself.
-        values: What the examined element contains. A key is a path in it, which ends with "@name" for an attribute, such as
-            "camera/image/width" or "plugin/@filename". If elements are repeated, one of them must have the value; for a list
-            of values, each must be that of a different element.
+        values: What the examined element contains. A key is a path in it, which ends with "@name" for an attribute,
+            such as "camera/image/width" or "plugin/@filename". If elements are repeated, one of them must have the
+            value; for a list of values, each must be that of a different element.
         tolerance: How far a number may be off, in the number's own unit.
     """
     wanted = WantedElement(tag, attributes or {}, path, values or {}, tolerance)

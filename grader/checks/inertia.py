@@ -65,13 +65,14 @@ def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: No
 def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
     """The inertia and the centre of mass of a link are those of a uniform solid of its shapes with its mass.
 
-    The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual grading. The mass must be
-    positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The centre of mass
-    may be 2 mm or 2 % of the size off, whichever is more.
+    The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual grading. The mass
+    must be positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The
+    centre of mass may be 2 mm or 2 % of the size off, whichever is more.
 
     Args:
         link: The link that is examined.
-        tolerance: How far the inertia about any axis may be off, in percent of the largest principal moment of the solid.
+        tolerance: How far the inertia about any axis may be off, in percent of the largest principal moment of the
+            solid.
     """
     inertial = _inertial(robot, link)
     impossible = _impossible(link, inertial)

@@ -41,8 +41,8 @@ def joint_limits(
 ) -> Outcome:
     """The joint that moves a link has the given limits.
 
-    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If the limits are the expected
-    ones, but in metres instead of degrees or the other way round, the joint has the wrong type.
+    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If the limits are the
+    expected ones, but in metres instead of degrees or the other way round, the joint has the wrong type.
 
     Args:
         link: The link that the joint moves.

@@ -59,7 +59,8 @@ def shows_mesh(
 
     Any visual of the link may be the mesh; the file is not opened. Absolute and `file://` paths fail. The file of a
     `package://` path must be in the submission where a build of its package installs it, if a package was submitted;
-    then a relative path needs manual grading. `file://$(find my_robot)` in xacro means the same as `package://my_robot`.
+    then a relative path needs manual grading. `file://$(find my_robot)` in xacro means the same as
+    `package://my_robot`.
 
     Args:
         link: The link that is examined.

@@ -39,8 +39,8 @@ def rolls_forward(
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
-    The lowest point of the wheel must move opposite to `forward`. It must also move so relative to the wheel's highest point: a
-    wheel that swivels does not.
+    The lowest point of the wheel must move opposite to `forward`. It must also move so relative to the wheel's highest
+    point: a wheel that swivels does not.
 
     Args:
         link: The link of the wheel.
@@ -69,8 +69,8 @@ def travel_of(
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
     """Return the direction in which a wheel drives its base at a small positive turn, or None and why it does not roll.
 
-    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`. Raises MissingElement, NotDecided or
-    UnknownShape if it cannot be determined.
+    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`. Raises MissingElement,
+    NotDecided or UnknownShape if it cannot be determined.
     """
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
     lowest = highest = poses[0]

@@ -23,10 +23,9 @@ class Outcome(NamedTuple):
     """The result of one check: a sentence, the location, and the measured values in `unit`.
 
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
-    joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds nothing of
-    that kind.
-    `problem` is the message of the problem of the file, at `location`, that the outcome reports, where its own message says more;
-    of an answer or a picture what is in doubt, in a few words.
+    joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds
+    nothing of that kind. `problem` is the message of the problem of the file, at `location`, that the outcome reports,
+    where its own message says more; of an answer or a picture what is in doubt, in a few words.
     """
 
     status: Status
@@ -93,7 +92,8 @@ def pending(message: str, cause: str = "", at: AnyPlace = None, *, problem: str 
 def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:
     """Return the outcome for a fact that is not true.
 
-    `detail` ends the message with what differs between students; `mistake` replaces a message in which something else does.
+    `detail` ends the message with what differs between students; `mistake` replaces a message in which something else
+    does.
     """
     outcome = judged(False, message, at=at, detail=detail)
     return outcome._replace(problem=problem, mistake=mistake or outcome.mistake)

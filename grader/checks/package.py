@@ -48,7 +48,8 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
     setup, registered = package.setup, package.registered
     if fine and setup is not None and registered and name not in registered:
-        # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below that name.
+        # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below
+        # that name.
         others = enumerated([repr(other) for other in registered])
         message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
         at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))

@@ -126,8 +126,8 @@ def kinematics_match_reference(
 ) -> Outcome:
     """The links move as in the reference solution when the joints move within its limits.
 
-    Poses are compared with all joints at 0, with one joint at an end of its range or between, and at random positions, which
-    are always the same. Mimic joints follow. An additional joint that moves a link makes the check fail.
+    Poses are compared with all joints at 0, with one joint at an end of its range or between, and at random positions,
+    which are always the same. Mimic joints follow. An additional joint that moves a link makes the check fail.
 
     Args:
         links: The links whose motion is compared.

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 ENTRY_POINTS = "grader.checks"
 
-# Each is a function in a module of this package, which is imported when a rubric names the check: importing all of them takes
-# as long as to grade a URDF.
+# Each is a function in a module of this package, which is imported when a rubric names the check: importing all of them
+# takes as long as to grade a URDF.
 CHECKS = (
     "tree.urdf_loads",
     "problems.without_problems",
@@ -102,9 +102,9 @@ class Parameter:
 class Check:
     """A check, as a rubric names it.
 
-    `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the whole
-    submission, or the robot of the reference solution. `distribution` is the installed package that the check comes from; empty
-    for the grader's own. `about` is what its module declares of it.
+    `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the
+    whole submission, or the robot of the reference solution. `distribution` is the installed package that the check
+    comes from; empty for the grader's own. `about` is what its module declares of it.
     """
 
     name: str

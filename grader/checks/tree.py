@@ -182,7 +182,8 @@ def counts(
 ) -> Outcome:
     """The tree has the given numbers of links and joints.
 
-    Links and joints that no chain of joints connects to the root are not counted; of several trees, the largest one is counted.
+    Links and joints that no chain of joints connects to the root are not counted; of several trees, the largest one is
+    counted.
 
     Args:
         links: The number of links.

@@ -46,9 +46,9 @@ def xacro_uses(
 ) -> Outcome:
     """The robot is written in xacro, which defines and uses properties and macros, and includes files.
 
-    The graded URDF and the files that it includes are examined as they are written. A property is used if an expression names
-    it, also in the body of a macro; a macro is used if it is called. Without any argument, xacro must be expanded before ROS 2
-    reads it.
+    The graded URDF and the files that it includes are examined as they are written. A property is used if an expression
+    names it, also in the body of a macro; a macro is used if it is called. Without any argument, xacro must be expanded
+    before ROS 2 reads it.
 
     Args:
         file: The end of the path of the one file whose definitions and includes count, such as "urdf/wheel.xacro"; by

@@ -25,8 +25,8 @@ _COPIED = frozenset(
 class Passage(NamedTuple):
     """The part of a document about a question; `location` is its beginning, and `where` says it for a person.
 
-    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong to another
-    question. It is empty if it holds only the question.
+    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong
+    to another question. It is empty if it holds only the question.
     """
 
     text: str
@@ -50,7 +50,8 @@ def find_answer(
 ) -> AnswerSearch:
     """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
 
-    A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a later one.
+    A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a
+    later one.
     """
     read, unread = documents.named(files)
     search = _AnswerSearch(documents, read, [read_ordinal(place) or read_label(place) for place in places], question)

@@ -24,7 +24,8 @@ NOTICE_SECONDS = 1.0  # of reading in all, before it is said what is being read
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
 _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
-# The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
+# The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and
+# answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
     r"|grader \d\S*, \S+: "

@@ -1,8 +1,8 @@
 """Convert a Word or PDF file from standard input to text on standard output, in a separate process.
 
-Pages and pictures are marked, and headings, bold paragraphs and numbered lists of Word are written as in Markdown.
-A crafted file of either format can use unlimited time or memory, so the grader stops the process after a time. The converter
-limits itself as well, and ends with the process that started it, however that ends.
+Pages and pictures are marked, and headings, bold paragraphs and numbered lists of Word are written as in Markdown. A
+crafted file of either format can use unlimited time or memory, so the grader stops the process after a time. The
+converter limits itself as well, and ends with the process that started it, however that ends.
 """
 
 import io

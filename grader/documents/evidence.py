@@ -74,9 +74,9 @@ def find_evidence(
 ) -> FoundEvidence:
     """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
 
-    Files with the label come first. Without one, files count that have a misspelt label with task and step, and headings of Word
-    and PDF files with a picture below them. Not certain are labels without a task, headings without a picture, and documents that
-    were not read or have pictures without headings.
+    Files with the label come first. Without one, files count that have a misspelt label with task and step, and
+    headings of Word and PDF files with a picture below them. Not certain are labels without a task, headings without a
+    picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
     exact = [proof for proof in proofs if any(matches(label, proof.label) for label in wanted)]
@@ -101,8 +101,8 @@ def find_all_evidence(
 ) -> list[FoundEvidence]:
     """Return the evidence for each of several lists of names.
 
-    A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not be read. A
-    file that names another step is perhaps meant for the nearest step of its task without a file.
+    A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not
+    be read. A file that names another step is perhaps meant for the nearest step of its task without a file.
     """
     found = [find_evidence(proofs, one, documents) for one in names]
     claimed = {exhibit.path for one in found for exhibit in one.files}

@@ -38,9 +38,10 @@ _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{
 class Heading(NamedTuple):
     """A line that begins a passage, and the index of the line that ends it.
 
-    `level` is the number of `#` before it. `task` is that of the label, or of the headings above; `section` the task of the
-    heading without a step above. `pattern` are the words of a question and `number` its number, if it has one. An item is one of a
-    numbered list right below the heading of a task; a mention is a sentence that begins a passage, but ends none.
+    `level` is the number of `#` before it. `task` is that of the label, or of the headings above; `section` the task of
+    the heading without a step above. `pattern` are the words of a question and `number` its number, if it has one. An
+    item is one of a numbered list right below the heading of a task; a mention is a sentence that begins a passage, but
+    ends none.
     """
 
     start: int
@@ -60,7 +61,8 @@ class Heading(NamedTuple):
 def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
     """Return the headings among the lines of a document.
 
-    `name` is that of the file, which may name a task. `patterns` are the words of further headings, besides those of questions.
+    `name` is that of the file, which may name a task. `patterns` are the words of further headings, besides those of
+    questions.
     """
     found: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
@@ -183,8 +185,9 @@ def _end(heading: Heading, later: Iterable[Heading], lines: list[str]) -> int:
 def _ends(heading: Heading, other: Heading, lines: list[str]) -> bool:
     """Return whether a later heading ends the passage.
 
-    Below a heading that is marked as one, only such a heading does, or a line that is bold or names task and step at once. A heading without a
-    step, such as "Answer" or "REQUIRED Question:" below "Step 15", does not end a passage without text.
+    Below a heading that is marked as one, only such a heading does, or a line that is bold or names task and step at
+    once. A heading without a step, such as "Answer" or "REQUIRED Question:" below "Step 15", does not end a passage
+    without text.
     """
     if other.is_item:
         return heading.is_item

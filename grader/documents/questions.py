@@ -48,8 +48,8 @@ def read_ordinal(place: str) -> Ordinal | None:
 def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -> AnswerMatch | None:
     """Return which of the answers in one document belongs to a question of a task; None if there is none for it.
 
-    In this order: the only one below the heading of the task; the one with its number; the one at its place, if there are as many
-    as questions. Anything else is not certain.
+    In this order: the only one below the heading of the task; the one with its number; the one at its place, if there
+    are as many as questions. Anything else is not certain.
     """
     if not answers:
         return None

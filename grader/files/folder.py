@@ -23,8 +23,8 @@ def read_folder(folder: Path, top: str = "") -> Tree:
 
     Below `top`, a folder around it, no symlink on its path is followed; by default the folder itself is trusted.
 
-    Ignored and named: symlinks that lead out of it or nowhere, folders that cannot be opened, and anything that is neither file
-    nor folder. Silently ignored: folders of builds and tools, virtual environments, hidden files.
+    Ignored and named: symlinks that lead out of it or nowhere, folders that cannot be opened, and anything that is
+    neither file nor folder. Silently ignored: folders of builds and tools, virtual environments, hidden files.
     """
     walk = _Walk(folder, top)
     walk.enter("", linked=False)

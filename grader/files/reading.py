@@ -25,8 +25,8 @@ def read_capped(
 ) -> bytes:
     """Return the bytes of a regular file of at most `limit` bytes; raises InputError, with one sentence, for anything else.
 
-    `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below the
-    folder `top` no symlink is followed.
+    `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below
+    the folder `top` no symlink is followed.
     """
     shown = shown or shown_below(path, top)
     return capped(read_start(path, limit + 1, shown, top), limit, shown, advice)

@@ -52,8 +52,8 @@ class File:
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 
-    `generated` names files of packages that a build has copied. `unseen` are folders that exist, but were not looked into. `kept` are the
-    archives that have to stay open.
+    `generated` names files of packages that a build has copied. `unseen` are folders that exist, but were not looked
+    into. `kept` are the archives that have to stay open.
     """
 
     name: str

@@ -35,12 +35,12 @@ class Adjustment(NamedTuple):
 class Criterion:
     """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
 
-    The points of a `bonus` are extra credit, not part of the maximum. A dropped criterion has 0 points; manual marks of adjusted
-    criteria do not count.
+    The points of a `bonus` are extra credit, not part of the maximum. A dropped criterion has 0 points; manual marks of
+    adjusted criteria do not count.
 
-    `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints, in
-    degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments name links by
-    their place in the tree.
+    `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints,
+    in degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments
+    name links by their place in the tree.
     """
 
     id: str

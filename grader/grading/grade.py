@@ -35,7 +35,8 @@ def grade(
 ) -> Report:
     """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others.
 
-    A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same parts.
+    A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same
+    parts.
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_whole)
@@ -78,7 +79,8 @@ def _chosen_parts(
 def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequence[Result]) -> tuple[str, ...]:
     """Return a note on frames of the whole robot that are turned or moved alike, if undoing that makes criteria pass.
 
-    The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many mistakes.
+    The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many
+    mistakes.
     """
     lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
     found = _convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None

@@ -32,8 +32,8 @@ class GradedPackage(NamedTuple):
 class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
-    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; `lacks`
-    names what there is evidence for, but no work of this lab: the URDF, the package. `originals` are its files.
+    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read;
+    `lacks` names what there is evidence for, but no work of this lab: the URDF, the package. `originals` are its files.
     """
 
     id: str
@@ -76,7 +76,8 @@ class GradedSubmission:
     def robot(self) -> Robot | None:
         """The robot that was graded; None if there is none, or the URDF can no longer be read.
 
-        A submission in which no URDF was read is not opened again: it may be one that crashed the process that graded it.
+        A submission in which no URDF was read is not opened again: it may be one that crashed the process that graded
+        it.
         """
         urdf = self.originals.urdf if self.originals is not None and self.sha256 is not None else None
         return urdf.reading.robot if isinstance(urdf, Read) else None

@@ -19,8 +19,8 @@ _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures of a criterion that needs manual grading, and the files that are not shown.
 
-    In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a heading all
-    pictures. If no file is named for the evidence, all files of evidence are searched.
+    In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a
+    heading all pictures. If no file is named for the evidence, all files of evidence are searched.
     """
     paths = _files(result) or tuple(proof.file.path for proof in submission.proofs if _is_evidence(result))
     return tuple(_limited(found for path in paths for found in _at(path, result, submission)))

@@ -38,8 +38,9 @@ class ManualComment(NamedTuple):
 class Hint(NamedTuple):
     """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
 
-    `message` says it in a sentence, and `at` is where it is. `edits` is empty where the rubric does not want to show them. `action`
-    is the change without names and lines of the submission: "negate the roll of the joint of 'right_wheel'".
+    `message` says it in a sentence, and `at` is where it is. `edits` is empty where the rubric does not want to show
+    them. `action` is the change without names and lines of the submission: "negate the roll of the joint of
+    'right_wheel'".
     """
 
     message: str
@@ -52,8 +53,8 @@ class Hint(NamedTuple):
 class Result(NamedTuple):
     """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
 
-    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given. Criteria that
-    one edit makes pass have the same hint. `comment` is a grader's comment without points.
+    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given.
+    Criteria that one edit makes pass have the same hint. `comment` is a grader's comment without points.
     """
 
     criterion: Criterion
@@ -124,8 +125,9 @@ class Exhibits(NamedTuple):
 class Report:
     """The points of one submission under one rubric.
 
-    `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece of
-    evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria, whatever the `grade` is.
+    `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece
+    of evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria,
+    whatever the `grade` is.
     """
 
     submission: GradedSubmission

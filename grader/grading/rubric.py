@@ -50,7 +50,8 @@ class Evidence:
 class Late:
     """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
 
-    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time zone.
+    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time
+    zone.
     """
 
     percent_per_day: Decimal
@@ -70,11 +71,10 @@ class Ignored(NamedTuple):
 class Rubric:
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
 
-    `folders` are the names of the lab's folder in a repository of several labs.
-    `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
-    grading. It is empty where the rubric does not say, which means "failed". `without_package` is the same for the package.
-    `links` are the links that criteria name. `hints` is the most that hints tell. `solution` is
-    the reference solution, if there is one.
+    `folders` are the names of the lab's folder in a repository of several labs. `without_urdf` says what the criteria
+    of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual grading. It is empty where the
+    rubric does not say, which means "failed". `without_package` is the same for the package. `links` are the links that
+    criteria name. `hints` is the most that hints tell. `solution` is the reference solution, if there is one.
     """
 
     id: str

@@ -26,8 +26,8 @@ _KEYS_OF_CRITERION: Mapping[str, _Values] = {
 class RubricChange(NamedTuple):
     """A key with another value: of a criterion, or of the rubric itself where `criterion` is empty.
 
-    The key `criterion` means that a criterion was added or removed. A key that criteria do not have is an argument of the check.
-    A missing value is None.
+    The key `criterion` means that a criterion was added or removed. A key that criteria do not have is an argument of
+    the check. A missing value is None.
     """
 
     criterion: str

@@ -22,7 +22,8 @@ _MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
 _SMART = "[“”„‟‘’‚‛«»‹›]"
-# The mistakes that people make: what tomllib says, what is before and what is after the place (a line each), and what to do.
+# The mistakes that people make: what tomllib says, what is before and what is after the place (a line each), and what
+# to do.
 _MISTAKES = (
     # name = “lab”, or a string that begins with " and ends with ”
     (rf".*\n.*\n({_SMART})|Illegal.*\n.*({_SMART})\s*\n$", "{} is not a TOML quote: write straight quotes, \" or '"),

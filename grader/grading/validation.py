@@ -36,7 +36,8 @@ BoundCarried = tuple[tuple[str, ...], Check, TomlRow]  # the possible causes, an
 class Validation:
     """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted values of a rubric.
 
-    `bound` has the check of each criterion with its arguments, in the order of the rows, `carried` what its `carried` says.
+    `bound` has the check of each criterion with its arguments, in the order of the rows, `carried` what its `carried`
+    says.
     """
 
     def __init__(self, table: TomlRow) -> None:

@@ -20,9 +20,9 @@ _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 class Mutant(NamedTuple):
     """One file of a solution with one mistake.
 
-    `id` is stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`. From `start` to `end`
-    the text becomes `new`; a file that is `renamed` gets this path, and one that `is_deleted` is gone. `tags` are those of the
-    element that is changed, from the root, and the attribute with an @.
+    `id` is stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`. From `start`
+    to `end` the text becomes `new`; a file that is `renamed` gets this path, and one that `is_deleted` is gone. `tags`
+    are those of the element that is changed, from the root, and the attribute with an @.
     """
 
     id: str

@@ -115,8 +115,9 @@ class Survivor(NamedTuple):
 class MutantResults(NamedTuple):
     """What became of the mutants: `total` exist, `tried` were graded, `same` of these turned out to be the same robot.
 
-    `survivors` lose nothing, and the rubric does not ignore them as it does those in `ignored`. `unused` are patterns of the
-    rubric that match no mutant, `idle` criteria that no mutant fails, `faults` mutants on which a check is faulty.
+    `survivors` lose nothing, and the rubric does not ignore them as it does those in `ignored`. `unused` are patterns
+    of the rubric that match no mutant, `idle` criteria that no mutant fails, `faults` mutants on which a check is
+    faulty.
     """
 
     total: int

@@ -1,9 +1,9 @@
 """Whether two files are the same robot: up to what cannot be seen of it and what ROS 2 does not read.
 
-What counts: ROS 2's verdict, every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, the elements for
-simulators and controllers, and every name that something refers to. What does not: numbers written otherwise, defaults
-written out, full turns, turns of a shape within its symmetry, shapes without size or drawn twice, the length of an axis, and
-axes and limits that ROS 2 does not use for a type of joint.
+What counts: ROS 2's verdict, every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, the elements
+for simulators and controllers, and every name that something refers to. What does not: numbers written otherwise,
+defaults written out, full turns, turns of a shape within its symmetry, shapes without size or drawn twice, the length
+of an axis, and axes and limits that ROS 2 does not use for a type of joint.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence

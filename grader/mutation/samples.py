@@ -38,9 +38,9 @@ _KEYS: Mapping[str, TomlType] = {
 class Sample:
     """A folder with an expected.toml; the submission is this folder, or the path in it.
 
-    `lost`, `carried` and `pending` are criteria: those that lose their points, those that keep them because an earlier mistake
-    makes them fail, and those that need manual grading. All others pass. Without `rubric` it is for any rubric, and without
-    `verdict` ROS 2's verdict does not matter.
+    `lost`, `carried` and `pending` are criteria: those that lose their points, those that keep them because an earlier
+    mistake makes them fail, and those that need manual grading. All others pass. Without `rubric` it is for any rubric,
+    and without `verdict` ROS 2's verdict does not matter.
     """
 
     folder: Path

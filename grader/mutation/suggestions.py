@@ -28,8 +28,8 @@ def suggestion(
 ) -> str:
     """Return what may catch a mutant that survived, as a clause.
 
-    `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `tolerated` are the criteria that measure another value
-    than on the reference, `known` the checks that exist, which declare what they look at.
+    `robot` is the reference's, `verdict` what ROS 2 does with the mutant, `tolerated` are the criteria that measure
+    another value than on the reference, `known` the checks that exist, which declare what they look at.
     """
     used = {criterion.check.name for criterion in rubric.criteria}
     effect, check = _VERDICTS.get(verdict, ("", ""))

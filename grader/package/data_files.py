@@ -29,7 +29,8 @@ from grader.text import enumerated
 
 # Other arguments that install files and are not evaluated.
 _OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
-# The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders below.
+# The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
+# below.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
 _NO_PACKAGES = frozenset(
     {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test", "tests",

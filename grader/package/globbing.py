@@ -14,7 +14,8 @@ from grader.files.tree import Tree
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
 
-# The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between these.
+# The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between
+# these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it searches for files outside of the package"
@@ -101,8 +102,9 @@ class PackageListing:
     ) -> list[str]:
         """Return the paths that glob.glob finds, as it writes them. Raises SearchError.
 
-        `recursive` lets ** match any number of folders, `hidden` lets wildcards match names that begin with a dot; `start` is
-        the folder that is searched; `above` is the absolute path of the tree's root, which precedes each path.
+        `recursive` lets ** match any number of folders, `hidden` lets wildcards match names that begin with a dot;
+        `start` is the folder that is searched; `above` is the absolute path of the tree's root, which precedes each
+        path.
         """
         if pattern.startswith("/"):
             raise SearchError(_OUTSIDE)

@@ -58,8 +58,8 @@ def location_in(source: Source, position: Position) -> Location:
 def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     """Evaluate the setup.py of a package with these files. Never raises.
 
-    The file system lists a folder, and Python a set, in any order. If there are several files or values, other orders are
-    evaluated as well; what differs between them is unknown.
+    The file system lists a folder, and Python a set, in any order. If there are several files or values, other orders
+    are evaluated as well; what differs between them is unknown.
     """
     if isinstance(code, SyntaxFault):
         return Setup(code.source, code)

@@ -24,8 +24,8 @@ _STEPS = np.arange(-8, 9) / 8.0
 def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
     """Return the unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
 
-    If the rims were polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim
-    differs from its polygon by no more than `SAGITTA`. Two more rounds refine the best normal.
+    If the rims were polygons, these and the normals of flat faces would be all that the separating axis test needs; a
+    rim differs from its polygon by no more than `SAGITTA`. Two more rounds refine the best normal.
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T

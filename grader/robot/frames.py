@@ -19,8 +19,8 @@ DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 
 class Frame(NamedTuple):
     """The frame of a link, as a pose in its frame group.
 
-    After a joint with an undefined pose a new group begins: the poses in it are still defined relative to each other, and one
-    defect does not hide another.
+    After a joint with an undefined pose a new group begins: the poses in it are still defined relative to each other,
+    and one defect does not hide another.
     """
 
     root: str
@@ -76,8 +76,8 @@ class Frames:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0; NaN if xacro leaves that open."""
         if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
-        # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop. The
-        # positions of the joints between are kept: long chains are followed once.
+        # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
+        # The positions of the joints between are kept: long chains are followed once.
         followers: dict[str, Joint] = {}
         value = 0.0
         while joint.name not in followers:
@@ -149,7 +149,8 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
         return _floating(position)
     direction = unit(joint.axis) if joint.axis is not None else None
     if direction is None:
-        # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint moves.
+        # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint
+        # moves.
         return IDENTITY if joint.axis is None and not position else None
     return _planar(direction, position) if joint.type == "planar" else _along(joint, direction, position)
 

@@ -1,7 +1,7 @@
 """Mass, centre of mass and inertia of uniform solids, alone or together, and the principal moments of an inertia tensor.
 
-The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks of
-dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
+The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks
+of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
 """
 
 from collections.abc import Iterable
@@ -41,7 +41,8 @@ def solid_inertia(shape: Shape, mass: float) -> Tensor:
 def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> MassProperties:
     """Return the mass properties of shapes of one density and of this mass together; each comes with its T_frame_shape.
 
-    What two shapes share counts twice. Raises ValueError for shapes without a volume, and for numbers that are too large.
+    What two shapes share counts twice. Raises ValueError for shapes without a volume, and for numbers that are too
+    large.
     """
     placed = [(shape, pose, volume(shape)) for shape, pose in shapes]
     total = sum(volume for _, _, volume in placed)

@@ -14,8 +14,8 @@ _CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))  # the signs of four
 
 
 class Mismatch(NamedTuple):
-    """The differences of two shapes in metres: how far the centres are apart, the largest difference of a size, and how far the
-    turn of one against the other moves a point of the surface. `angle` is that turn in degrees.
+    """The differences of two shapes in metres: how far the centres are apart, the largest difference of a size, and how
+    far the turn of one against the other moves a point of the surface. `angle` is that turn in degrees.
     """
 
     apart: float

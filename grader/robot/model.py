@@ -29,8 +29,8 @@ class UnresolvedPart(NamedTuple):
             raise NotDecided(self.reason, self.reason)
 
 
-# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for more
-# children than are known. Empty for a plain URDF.
+# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
+# more children than are known. Empty for a plain URDF.
 UnresolvedParts = Mapping[str, UnresolvedPart]
 
 
@@ -137,8 +137,8 @@ class Link:
 class Joint:
     """A joint between two links; its frame is the child link's frame.
 
-    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but cannot be
-    read. `parent` and `child` are empty if the file does not name them.
+    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but
+    cannot be read. `parent` and `child` are empty if the file does not name them.
     """
 
     name: str
@@ -161,8 +161,8 @@ class Joint:
 class Robot:
     """Links and joints in file order; of two with the same name the first is looked up.
 
-    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do. `incomplete` says why there may
-    be more links and joints, which cannot be determined statically.
+    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do. `incomplete` says why
+    there may be more links and joints, which cannot be determined statically.
     """
 
     name: str

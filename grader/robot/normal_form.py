@@ -14,8 +14,9 @@ _NAMES = ("name", "material_name")  # of materials: nothing outside of the file 
 def normal_form(robot: Robot) -> tuple[Any, ...]:
     """Return the links and joints of a robot as nested tuples, sorted.
 
-    Comments, white space, the order of elements and the way in which numbers are written do not count. Neither do names that
-    nothing refers to: those of the robot, of materials, of joints that no joint mimics, and of links without a joint.
+    Comments, white space, the order of elements and the way in which numbers are written do not count. Neither do names
+    that nothing refers to: those of the robot, of materials, of joints that no joint mimics, and of links without a
+    joint.
     """
     mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}

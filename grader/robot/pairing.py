@@ -30,7 +30,8 @@ class Offset(NamedTuple):
 class RobotPair(NamedTuple):
     """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
 
-    Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an angle.
+    Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an
+    angle.
     """
 
     robots: tuple[Configuration, Configuration]
@@ -83,7 +84,8 @@ def _angle(one: Transform, other: Transform) -> float:
 def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
     """Return the joints that move links relative to a base by their names, along the chain to each link.
 
-    Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided where a mimic is not known.
+    Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided where a mimic is not
+    known.
     """
     found: dict[str, Joint] = {}
     for link in links:

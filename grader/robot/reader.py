@@ -28,8 +28,8 @@ _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 class Reading:
     """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
 
-    `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if that is
-    not None. `unresolved` has what xacro leaves open in it.
+    `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if
+    that is not None. `unresolved` has what xacro leaves open in it.
     """
 
     verdict: Verdict

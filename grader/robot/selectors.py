@@ -41,8 +41,9 @@ def texts_in(value: Any) -> Iterator[str]:
 def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     """Return the name of the link that a selector means, and any other text as it is; `parents` are the parent joints.
 
-    Of several trees the one with the most links counts. "@root" is its root. The chain with the most moving joints, which are
-    neither fixed nor mimic joints, leads to "@tip", its last link, and "@moved:2" is the child of its second moving joint.
+    Of several trees the one with the most links counts. "@root" is its root. The chain with the most moving joints,
+    which are neither fixed nor mimic joints, leads to "@tip", its last link, and "@moved:2" is the child of its second
+    moving joint.
 
     Raises MissingElement where there is no such link, NotDecided where several could be meant.
     """

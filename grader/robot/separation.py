@@ -2,8 +2,8 @@
 
 Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u two of them overlap
 by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between their centres. If no overlap is negative
-the shapes intersect, and the smallest one is the distance that b must move to separate them: the separating axis
-test (Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Otherwise the GJK distance is the gap (Gilbert, Johnson
+the shapes intersect, and the smallest one is the distance that b must move to separate them: the separating axis test
+(Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Otherwise the GJK distance is the gap (Gilbert, Johnson
 and Keerthi, IEEE Journal of Robotics and Automation 4(2), 1988). Everything is computed in a's frame.
 """
 
@@ -67,8 +67,8 @@ def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed:
 def _separating_direction(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
     """Return the unit direction from a to b of the gap between their cores, or None if these touch or intersect.
 
-    It points to the difference nearest the origin among those between points of b and of a. Each step bounds the gap from
-    both sides.
+    It points to the difference nearest the origin among those between points of b and of a. Each step bounds the gap
+    from both sides.
     """
     corners: Sequence[Vector] = ()
     nearest, shortest = T_a_b.translation, inf

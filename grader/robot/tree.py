@@ -24,9 +24,9 @@ Edges = dict[str, list[Joint]]  # the joints by their parent link
 def parent_joints(robot: Robot) -> dict[str, Joint]:
     """Return the parent joint of each link, by the link's name; a root has none.
 
-    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of a rejected file, so there
-    the most plausible reading counts: no joint that would close a loop, rather one whose name contains its child's than one
-    whose name contains only its parent's (these two may be swapped), and then the first in the file.
+    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of a rejected file, so
+    there the most plausible reading counts: no joint that would close a loop, rather one whose name contains its
+    child's than one whose name contains only its parent's (these two may be swapped), and then the first in the file.
     """
     complete = _complete_joints(robot)
     if robot.rejected:

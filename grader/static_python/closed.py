@@ -1,7 +1,8 @@
 """The exact value of an expression all of whose names have known values, as in xacro: Python's own, from an allow-list.
 
-Where `expressions` returns what can be told of a Python file in part, this either returns Python's value, or says that Python
-certainly raises an error, or that the value cannot be determined statically. Nothing outside the allow-list is reached.
+Where `expressions` returns what can be told of a Python file in part, this either returns Python's value, or says that
+Python certainly raises an error, or that the value cannot be determined statically. Nothing outside the allow-list is
+reached.
 """
 
 import ast

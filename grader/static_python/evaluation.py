@@ -1,7 +1,7 @@
 """The state of one static evaluation: steps, errors, recorded calls, and whether the current statement is certainly reached.
 
-What depends on something known only at run time becomes Unknown, with the reason; nothing is guessed. Steps, sizes and depth are
-bounded, so that the evaluation of any file ends.
+What depends on something known only at run time becomes Unknown, with the reason; nothing is guessed. Steps, sizes and
+depth are bounded, so that the evaluation of any file ends.
 """
 
 import ast

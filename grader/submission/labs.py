@@ -32,9 +32,9 @@ class Belonging(IntEnum):
 class LabFolders:
     """Tells the folders of a lab, by the names that a rubric gives, from those of other labs.
 
-    Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same name with another number, or is a
-    final project. A name that contains more, such as Lab6_Ash, counts if no folder of this lab has exactly its name, and if it has a
-    number; the folder of a package never counts by such a name.
+    Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same name with another
+    number, or is a final project. A name that contains more, such as Lab6_Ash, counts if no folder of this lab has
+    exactly its name, and if it has a number; the folder of a package never counts by such a name.
     """
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:

@@ -45,10 +45,10 @@ def open_submission(
 ) -> Submission:
     """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
-    `wanted` is the URDF's path in its package, `package` the package's name and `folders` the names of the lab's folder, as the
-    rubric gives them. `limit` is the largest size of a URDF in bytes, `arguments` are those of xacro. `with_neighbours` reads the
-    files that a single xacro file includes from the package around it. Raises InputError, with one sentence, if the path cannot
-    be read.
+    `wanted` is the URDF's path in its package, `package` the package's name and `folders` the names of the lab's
+    folder, as the rubric gives them. `limit` is the largest size of a URDF in bytes, `arguments` are those of xacro.
+    `with_neighbours` reads the files that a single xacro file includes from the package around it. Raises InputError,
+    with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
         return read_submission(read_standard_input(limit), identity="stdin", path="-", arguments=arguments)

@@ -50,8 +50,8 @@ def find_packages(tree: Tree, wanted: str) -> list[str]:
 def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
     """Return the packages of a submission, the one that matches best first: that of the wanted name.
 
-    Among packages of one name it is one that is no backup, then the one with most of the files that a lab asks for, above all the URDF at its path; then
-    the least deep, then the first in alphabetical order.
+    Among packages of one name it is one that is no backup, then the one with most of the files that a lab asks for,
+    above all the URDF at its path; then the least deep, then the first in alphabetical order.
     """
     known: dict[str, Package] = {}
     found = [_read_package(tree, folder, known, wanted) for folder in find_packages(tree, wanted)]

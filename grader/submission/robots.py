@@ -12,7 +12,8 @@ _LONG_START = 64 * 1024  # bytes that are read if these are comments only
 _MAX_READ = 2000  # files
 _MAX_ROBOTS = 400  # found by their content alone
 
-# What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always linear.
+# What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always
+# linear.
 _PROLOG = re.compile(
     rb"(?:\xef\xbb\xbf)?(?>\s+|<\?[^>]*>|<!--.*?-->|<!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>)*+", re.DOTALL | re.IGNORECASE
 )
@@ -38,8 +39,8 @@ _BINARY = frozenset(
 class RobotFile(NamedTuple):
     """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
 
-    `robot` is the name of the robot, `includes` are the names of the files that it includes, and `has_links` is whether it may have
-    a link outside of macros, as far as its beginning tells.
+    `robot` is the name of the robot, `includes` are the names of the files that it includes, and `has_links` is whether
+    it may have a link outside of macros, as far as its beginning tells.
     """
 
     path: str

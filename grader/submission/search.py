@@ -56,11 +56,12 @@ def find_urdf(
 ) -> UrdfChoice:
     """Return the URDF that is graded, of `robots` (default: those in the tree).
 
-    `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first, then one
-    with its name, with its name and another ending, with a name that starts alike, with a robot of that name, and last any other;
-    of both kinds files without a link and backups are the last. Of the last two kinds a .urdf comes first. Who includes a file of a
-    later kind than the third counts as that kind. Among equals come files that no other includes, then those in `package` (a folder),
-    then the least deep, then alphabetical order. Files of another package with that package's name, a team mate's, come last of all.
+    `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first,
+    then one with its name, with its name and another ending, with a name that starts alike, with a robot of that name,
+    and last any other; of both kinds files without a link and backups are the last. Of the last two kinds a .urdf comes
+    first. Who includes a file of a later kind than the third counts as that kind. Among equals come files that no other
+    includes, then those in `package` (a folder), then the least deep, then alphabetical order. Files of another package
+    with that package's name, a team mate's, come last of all.
     """
     copies = [path for path in tree.generated if path.lower().endswith(".urdf")]
     generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])

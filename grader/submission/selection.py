@@ -26,8 +26,9 @@ _ELSEWHERE = {
 class Selection(NamedTuple):
     """The files of the lab, the URDF and the package that are graded, the other candidates, and notes on the choice.
 
-    `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `students` are the folders of several students, if
-    the submission holds theirs. `other_lab` is the folder of another lab that is graded.
+    `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `students` are
+    the folders of several students, if the submission holds theirs. `other_lab` is the folder of another lab that is
+    graded.
     """
 
     tree: Tree
@@ -44,9 +45,9 @@ class Selection(NamedTuple):
 def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit: int) -> Selection:
     """Select what is graded, given what the rubric says: the URDF's path, the package's name, the names of the lab's folder.
 
-    Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its kind. Another
-    lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists, only for the robot that the
-    rubric names. `limit` is in bytes of a URDF.
+    Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its
+    kind. Another lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists,
+    only for the robot that the rubric names. `limit` is in bytes of a URDF.
     """
     scope = _LabScope(tree, wanted, folders, limit)
     packages = scope.packages(package, wanted)

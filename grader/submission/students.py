@@ -72,8 +72,8 @@ def students_in(
 ) -> tuple[str, ...]:
     """Return the folders of students, in order, if the works are those of several students; else none.
 
-    `packages` has the names of packages by their folders, `lab` the words that name the lab, and `wanted` is the name of the package
-    that the lab asks for.
+    `packages` has the names of packages by their folders, `lab` the words that name the lab, and `wanted` is the name
+    of the package that the lab asks for.
     """
     owners = {work: tuple(_owners(work.folder, packages, lab, wanted)) for work in works}
     shared = _shared(owners.values())

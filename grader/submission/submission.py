@@ -31,8 +31,8 @@ _NO_FILES = make_tree("", (), ())
 class Submission:
     """The work that a student submitted. `package` is the one that is graded; `no_package` says why none is, and which there are.
 
-    `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several students whose
-    work it holds, and `notes` say how it was read.
+    `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several
+    students whose work it holds, and `notes` say how it was read.
     """
 
     id: str

@@ -41,8 +41,8 @@ class Unreadable(NamedTuple):
 class Read(NamedTuple):
     """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro.
 
-    `as_it_stands` is set for xacro that is loaded without xacro: what ROS 2 makes of the text, while everything else is graded
-    on the expanded text.
+    `as_it_stands` is set for xacro that is loaded without xacro: what ROS 2 makes of the text, while everything else is
+    graded on the expanded text.
     """
 
     path: str
@@ -76,7 +76,8 @@ Urdf = Absent | Unreadable | Read
 def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) -> Read:
     """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
 
-    `around` is what is around it in the submission. Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
+    `around` is what is around it in the submission. Other xacro is loaded as it stands; unless that makes no
+    difference, everything but that is graded on its expansion.
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
@@ -127,8 +128,8 @@ def _needs_xacro(data: bytes) -> bool:
 def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
-    The folder that a build installs a package in is called differently in launch files and in xacro. A file that the launch file
-    names there and that no build certainly installs stays as it is: what is in it cannot be determined.
+    The folder that a build installs a package in is called differently in launch files and in xacro. A file that the
+    launch file names there and that no build certainly installs stays as it is: what is in it cannot be determined.
     """
     from grader.package.launch.places import SHARE  # late: most URDFs are no xacro
     from grader.xacro.expansion import expand

@@ -23,7 +23,8 @@ _NO_FILES = make_tree("", (), ())
 class Surroundings:
     """The files and packages of a submission; `arguments` are those that the user gives xacro.
 
-    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single file.
+    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single
+    file.
     """
 
     tree: Tree = field(default=_NO_FILES, repr=False)

@@ -1,8 +1,8 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
-A text in a macro is used by each call, in its own scope, and one change of it must give each use what it should be. The texts are
-the attribute itself, and those that define the names in it. Their changes are tried, not derived: small variants of an expression,
-and other numbers, which are solved for.
+A text in a macro is used by each call, in its own scope, and one change of it must give each use what it should be. The
+texts are the attribute itself, and those that define the names in it. Their changes are tried, not derived: small
+variants of an expression, and other numbers, which are solved for.
 """
 
 import re

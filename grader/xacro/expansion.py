@@ -1,7 +1,7 @@
 """A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its place in the source.
 
-xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the rest is expanded all the
-same, so that one defect does not hide another.
+xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the rest is expanded all
+the same, so that one defect does not hide another.
 """
 
 from collections.abc import Mapping, Sequence

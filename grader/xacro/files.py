@@ -24,10 +24,10 @@ _OF_FILE = 50  # what looking for one is charged
 class Workspace(NamedTuple):
     """The files of a submission, as xacro sees them.
 
-    `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of a package
-    of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the files may be a part of
-    any package, because there is none among them. `ask` is called with the name of each file that is looked for; `budget` is that
-    of the submission.
+    `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of
+    a package of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the
+    files may be a part of any package, because there is none among them. `ask` is called with the name of each file
+    that is looked for; `budget` is that of the submission.
     """
 
     read: Callable[[str], bytes]

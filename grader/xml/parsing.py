@@ -42,9 +42,8 @@ class Unresolved(NamedTuple):
 class XmlDocument(NamedTuple):
     """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
 
-    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level; `recovered` is then what can be read of
-    the robot. If xacro expanded the text,
-    `unresolved` has the elements that are not known completely.
+    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level; `recovered` is then what can
+    be read of the robot. If xacro expanded the text, `unresolved` has the elements that are not known completely.
     """
 
     root: Element | None

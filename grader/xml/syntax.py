@@ -20,7 +20,8 @@ _MAX_READ = 3_000_000  # characters
 _MAX_NEAR = 20  # tags before an error
 _WINDOW = 400  # characters after an error that must be read
 _XML = '<?xml version="1.0"?>'
-# What is wrong, and what to do: where characters are added, a tag gets another form (from, to), or something else is done.
+# What is wrong, and what to do: where characters are added, a tag gets another form (from, to), or something else is
+# done.
 _WAYS = {
     '"': ("a quote is missing", "add the quote"),
     ">": ("a tag without its >", "end the tag with >"),

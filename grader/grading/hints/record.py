@@ -1,7 +1,7 @@
 """Hints as JSON text, which a gradebook stores, and back.
 
-The graded URDF is stored without its path, so that two submissions whose files differ only in their names have the same hints.
-A null at the end stands for a search that was not complete.
+The graded URDF is stored without its path, so that two submissions whose files differ only in their names have the same
+hints. A null at the end stands for a search that was not complete.
 """
 
 import json

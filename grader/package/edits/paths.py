@@ -99,7 +99,8 @@ def _found_at(task: PackageTask, source: Source, named: NamedFile) -> list[list[
 def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
     """Yield the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
 
-    The difference to the reference has no answer where the file is built in another way: launch-home-path, sensors-launch-home-path.
+    The difference to the reference has no answer where the file is built in another way: launch-home-path,
+    sensors-launch-home-path.
     """
     share = f"{_SHARE_FUNCTION}({name!r})"
     for literal in [it for it in file.nodes if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)]:

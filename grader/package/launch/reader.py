@@ -27,7 +27,8 @@ _JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file sha
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
 _FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
-# Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other files.
+# Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
+# files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 

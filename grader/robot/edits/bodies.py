@@ -1,6 +1,7 @@
 """Edits of the mass, the inertia and the collision shapes of a link: those of a uniform solid of its shapes, as it is shown.
 
-The checks of bodies suggest them, because no number that they measure leads there: a rubric without a reference solution needs them.
+The checks of bodies suggest them, because no number that they measure leads there: a rubric without a reference
+solution needs them.
 """
 
 from collections.abc import Iterator, Mapping

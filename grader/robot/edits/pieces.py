@@ -10,8 +10,8 @@ from grader.xml.urdf_format import TAGS
 
 ENDS = ("parent", "child")
 
-# The ranks of pieces: values of the reference; numbers that are solved for; another structure; numbers that no person would write;
-# conventions of a whole robot.
+# The ranks of pieces: values of the reference; numbers that are solved for; another structure; numbers that no person
+# would write; conventions of a whole robot.
 KNOWN, SOLVED, STRUCTURE, FITTED, CONVENTION = range(5)
 
 

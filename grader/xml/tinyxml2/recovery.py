@@ -12,7 +12,8 @@ from grader.xml.urdf_format import CHILDREN
 
 # What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
 _OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<[?!].*?(?:>|\Z)", re.DOTALL)
-# A broken tag to its > or to the next tag, and the attributes in it: also without quotes, in typographic ones, or without the last.
+# A broken tag to its > or to the next tag, and the attributes in it: also without quotes, in typographic ones, or
+# without the last.
 _BROKEN = re.compile(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
 _ATTRIBUTE = re.compile(
     r"""(?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:"([^"]*)"?|'([^']*)'?|[“”]([^“”]*)[“”]|([^\s"'“”=]+))"""

@@ -23,9 +23,9 @@ _MAX_ERRORS = 20
 class Scan(NamedTuple):
     """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
 
-    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML has no
-    comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the text in elements,
-    too.
+    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML
+    has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
+    text in elements, too.
     """
 
     xml: bytes
