@@ -12,8 +12,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import pytest
 
+from grader.checks.check import Check
 from grader.checks.outcome import Outcome, judged
-from grader.checks.registry import ENTRY_POINTS, Check, check_names, find_check, own_checks
+from grader.checks.registry import ENTRY_POINTS, check_names, find_check, own_checks
 from grader.errors import RubricError
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation

@@ -151,12 +151,12 @@ def _head(head: Head, points: int) -> Iterator[str]:
 def _defaults(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
     known = (usable_check(name) for name in check_names() if name in checks)
-    abouts = {check.name: check.about for check in known if check is not None and check.about.usual}
-    lines = {name: assignment(name, about.usual) for name, about in abouts.items()}
+    usuals = {check.name: check.about.usual for check in known if check is not None and check.about.usual}
+    lines = {name: assignment(name, usual.arguments) for name, usual in usuals.items()}
     if lines:
         yield from ("", "[defaults.with]")
         width = max(map(len, lines.values()))
-        yield from (f"{line:{width}}  # {abouts[name].unit}" for name, line in lines.items())
+        yield from (f"{line:{width}}  # {usuals[name].unit}" for name, line in lines.items())
 
 
 def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:

@@ -1,8 +1,8 @@
 """What a check declares about itself, for those who make hints, rubrics, mutants and pictures without knowing its name."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
 EQUIVALENTS = (
@@ -33,6 +33,18 @@ def everything(arguments: Mapping[str, Any]) -> Collection[str]:
     return EQUIVALENTS
 
 
+class Usual(NamedTuple):
+    """Arguments that a new rubric gives all criteria of a check: the project's tolerances, with their unit in words."""
+
+    arguments: Mapping[str, Any]
+    unit: str
+
+
+METRES = Usual({"tolerance": 0.002}, "metres")  # room for rounding, but not for mistakes
+DEGREES = Usual({"tolerance": 1.0}, "degrees")
+MEASURES = "grader.checks.measures"
+
+
 @dataclass(frozen=True, slots=True)
 class About:
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
@@ -49,7 +61,6 @@ class About:
     looks_at: tuple[str, ...] = ()
     suggests: str = ""
     measure: str = ""
-    usual: Mapping[str, Any] = field(default_factory=dict)
-    unit: str = ""
+    usual: Usual | None = None
     breaks_under: BreaksUnder = nothing
     picture: Literal["", "outline", "wheel", "frame"] = ""

@@ -1,60 +1,35 @@
 """Checks of the appearance of a link: the shape, size and colour of its visuals."""
 
 from collections.abc import Sequence
-from itertools import permutations, repeat
+from itertools import permutations
 from math import cos, radians
 from typing import TypeVar
 
-from grader.checks.about import About
+from grader.checks.about import MEASURES, METRES, About
 from grader.checks.outcome import (
-    SLACK,
     Outcome,
     failed,
     judged,
     measured,
     other_unit,
     passed,
-    pending,
     place,
     point,
     within,
 )
-from grader.checks.toml_types import Colour, NonNegative, Size
-from grader.checks.visuals import ShapeName, main_visual, shape_name, visuals
+from grader.checks.toml_types import NonNegative, Size
+from grader.checks.visuals import all_within, main_visual, rgba, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 ABOUT = {
-    "shows_box": About(
-        ("box", "visual"),
-        measure="grader.checks.measures.shapes:boxes",
-        usual={"tolerance": 0.002},
-        unit="metres",
-        picture="outline",
-    ),
+    "shows_box": About(("box", "visual"), measure=f"{MEASURES}.shapes:boxes", usual=METRES, picture="outline"),
     "shows_cylinder": About(
-        ("cylinder", "visual"),
-        measure="grader.checks.measures.shapes:cylinders",
-        usual={"tolerance": 0.002},
-        unit="metres",
-        picture="outline",
+        ("cylinder", "visual"), measure=f"{MEASURES}.shapes:cylinders", usual=METRES, picture="outline"
     ),
-    "shows_sphere": About(
-        ("sphere", "visual"),
-        measure="grader.checks.measures.shapes:spheres",
-        usual={"tolerance": 0.002},
-        unit="metres",
-        picture="outline",
-    ),
-    "shows_colour": About(
-        ("material",),
-        measure="grader.checks.measures.shapes:colours",
-        usual={"tolerance": 0.01},
-        unit="of a channel from 0 to 1",
-    ),
-    "shows_grey": About(("material",)),
+    "shows_sphere": About(("sphere", "visual"), measure=f"{MEASURES}.shapes:spheres", usual=METRES, picture="outline"),
     "shows_nothing": About(("visual",)),
 }
 
@@ -73,12 +48,12 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     """
     edges = [(_edges(visual, box), visual) for visual, box in _shown(robot, link, Box)]
     actual, visual = edges[0] if len(edges) == 1 else min(edges, key=lambda pair: _difference(pair[0], size))
-    is_turned = actual is None or _all_within(sorted(actual), sorted(size), tolerance)
+    is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges should be along the axes of {link!r}", at)
-    fine = _all_within(actual, size, tolerance)
+    fine = all_within(actual, size, tolerance)
     message = f"{link!r} shows a box {point(actual)} m"
     if not fine:
         message += f"; it should be {point(size)} m ({other_unit(actual, size) or 'x, y, z'})"
@@ -99,7 +74,7 @@ def shows_cylinder(
     expected = (radius, length)
     sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _shown(robot, link, Cylinder)]
     actual, best = sizes[0] if len(sizes) == 1 else min(sizes, key=lambda pair: _difference(pair[0], expected))
-    fine = _all_within(actual, expected, tolerance)
+    fine = all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
@@ -122,51 +97,6 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
     return measured(what, abs(best.radius), radius, tolerance, at=place(best.location, "radius"))
 
 
-def shows_colour(
-    robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
-) -> Outcome:
-    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
-
-    Args:
-        link: The link that is examined.
-        colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
-        tolerance: How far each channel may be off, on the scale from 0 to 1.
-        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
-    """
-    visual = main_visual(robot, link, shape)
-    if visual.material is None or _has_only_texture(visual.material):
-        return _colourless(link, visual)
-    actual = visual.material.rgba[: len(colour)]
-    fine = _all_within(actual, colour, tolerance)
-    message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
-    if not fine:
-        message += f"; it should be {point(colour)}"
-    return judged(fine, message, actual, colour, tolerance, at=place(visual.material.location, "rgba"))
-
-
-def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
-    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked.
-
-    Args:
-        link: The link that is examined.
-        at_least: The darkest grey that passes, from 0 (black) to 1 (white).
-        tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
-    """
-    visual = main_visual(robot, link)
-    if visual.material is None or _has_only_texture(visual.material):
-        return _colourless(link, visual)
-    actual = visual.material.rgba[:3]
-    message = f"{link!r} is shown in rgb {point(actual)}"
-    is_grey = within(max(actual), min(actual), tolerance)
-    is_light = min(actual) >= at_least - SLACK
-    if not is_grey:
-        message += ", which is not grey; red, green and blue should be equal"
-    elif not is_light:
-        message += f"; each should be at least {at_least:g}"
-    fine, at = is_grey and is_light, place(visual.material.location, "rgba")
-    return judged(fine, message, actual, at_least, tolerance, at=at)
-
-
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent).
 
@@ -175,7 +105,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """
     robot.link(link)
     try:
-        shown = [visual for visual in visuals(robot, link) if visual.material is None or _rgba(visual.material)[3] > 0]
+        shown = [visual for visual in visuals(robot, link) if visual.material is None or rgba(visual.material)[3] > 0]
     except MissingElement:
         shown = []
     if not shown:
@@ -208,32 +138,5 @@ def _edges(visual: Visual, box: Box) -> Vector | None:
     return None
 
 
-def _all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
-    return all(map(within, actual, expected, repeat(tolerance)))
-
-
 def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
-
-
-def _rgba(material: Material) -> tuple[float, ...]:
-    """Return the colour of a material; raise NotDecided if xacro leaves it open."""
-    for part in material.unresolved.values():
-        part.check()
-    return material.rgba
-
-
-def _has_only_texture(material: Material) -> bool:
-    # ROS 2 gives a material black where it has a texture and no colour.
-    return _rgba(material) == Material("").rgba and material.texture != ""
-
-
-def _colourless(link: str, visual: Visual) -> Outcome:
-    if visual.material is not None:
-        message = f"{link!r} is shown with a texture, which the grader does not open; needs manual grading"
-        return pending(message, "textures are not opened")
-    if visual.material_name:
-        message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
-        at = place(visual.location, "name", "material")
-        return failed(message, at, mistake=f"{link!r} has no colour: its material is not defined")
-    return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))

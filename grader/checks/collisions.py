@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import hypot, inf
 
-from grader.checks.about import About
+from grader.checks.about import MEASURES, METRES, About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals
@@ -17,21 +17,12 @@ from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.source import LazyLocation
 from grader.text import counted
 
+_EDITS = "grader.robot.edits.bodies:body_pieces"
 ABOUT = {
     "collision_matches_visual": About(
-        ("collision",),
-        suggests="grader.robot.edits.bodies:body_pieces",
-        measure="grader.checks.measures.bodies:collisions_as_shown",
-        usual={"tolerance": 0.002},
-        unit="metres",
+        ("collision",), suggests=_EDITS, measure=f"{MEASURES}.bodies:collisions_as_shown", usual=METRES
     ),
-    "collides_as": About(
-        ("collision",),
-        suggests="grader.robot.edits.bodies:body_pieces",
-        measure="grader.checks.measures.bodies:collisions",
-        usual={"tolerance": 0.002},
-        unit="metres",
-    ),
+    "collides_as": About(("collision",), suggests=_EDITS, measure=f"{MEASURES}.bodies:collisions", usual=METRES),
 }
 
 _ZERO: Vector = (0.0, 0.0, 0.0)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
-from grader.checks.about import About
+from grader.checks.about import MEASURES, About, Usual
 from grader.checks.inertia_mistakes import mistake_of, rounded
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
@@ -18,21 +18,11 @@ from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
+_EDITS = "grader.robot.edits.bodies:body_pieces"
+_KILOGRAMS, _PERCENT = Usual({"tolerance": 0.001}, "kilograms"), Usual({"tolerance": 2.0}, "percent")
 ABOUT = {
-    "mass_is": About(
-        ("mass", "inertial"),
-        suggests="grader.robot.edits.bodies:body_pieces",
-        measure="grader.checks.measures.bodies:masses",
-        usual={"tolerance": 0.001},
-        unit="kilograms",
-    ),
-    "inertia_plausible": About(
-        ("inertial",),
-        suggests="grader.robot.edits.bodies:body_pieces",
-        measure="grader.checks.measures.bodies:inertias",
-        usual={"tolerance": 2.0},
-        unit="percent",
-    ),
+    "mass_is": About(("mass", "inertial"), suggests=_EDITS, measure=f"{MEASURES}.bodies:masses", usual=_KILOGRAMS),
+    "inertia_plausible": About(("inertial",), suggests=_EDITS, measure=f"{MEASURES}.bodies:inertias", usual=_PERCENT),
 }
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding

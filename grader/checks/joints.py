@@ -2,13 +2,12 @@
 
 from math import degrees, hypot, isfinite
 
-from grader.checks.about import About
+from grader.checks.about import DEGREES, MEASURES, About
 from grader.checks.comparison import Number, compared, named, number_text, numbers_of
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
 from grader.errors import MissingElement
-from grader.names import did_you_mean
 from grader.robot.diagnostics import FULL_TURN
 from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
@@ -16,17 +15,12 @@ from grader.robot.model import Joint
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
 ABOUT = {
-    "joint_limits": About(
-        ("limit",), measure="grader.checks.measures.joints:limits", usual={"tolerance": 1.0}, unit="degrees"
-    ),
-    "joint_axis": About(
-        ("axis",), measure="grader.checks.measures.joints:axes", usual={"tolerance": 1.0}, unit="degrees"
-    ),
-    "mimics": About(("mimic",), measure="grader.checks.measures.joints:mimics"),
-    "joint_dynamics": About(("dynamics",), measure="grader.checks.measures.joints:dynamics"),
+    "joint_limits": About(("limit",), measure=f"{MEASURES}.joints:limits", usual=DEGREES),
+    "joint_axis": About(("axis",), measure=f"{MEASURES}.joints:axes", usual=DEGREES),
+    "joint_dynamics": About(("dynamics",), measure=f"{MEASURES}.joints:dynamics"),
 }
 
-_EXACT = 1e-6  # for numbers that a URDF states as they are expected
+EXACT = 1e-6  # for numbers that a URDF states as they are expected
 
 
 def joint_limits(
@@ -59,7 +53,7 @@ def joint_limits(
         )
         return failed(message, place(joint.location, "type"), detail=named(joint))
     limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
-    _check_known(joint, "limit", link, is_there=limit is not None)
+    check_known(joint, "limit", link, is_there=limit is not None)
     fault = f"it should be {_range(lower, upper)} {units}"
     if limit is None:
         return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=named(joint))
@@ -70,7 +64,7 @@ def joint_limits(
     numbers = [
         Number("lower", low, lower, tolerance, fault),
         Number("upper", high, upper, tolerance, fault),
-        *numbers_of({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, _EXACT),
+        *numbers_of({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, EXACT),
     ]
     is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
     if (
@@ -135,55 +129,13 @@ def joint_axis(
     return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else named(joint))
 
 
-def mimics(
-    robot: Configuration,
-    *,
-    link: str,
-    leader: str,
-    multiplier: float | None = None,
-    offset: float | None = None,
-    tolerance: NonNegative = _EXACT,
-) -> Outcome:
-    """The joint that moves a link mimics the joint that moves another link.
-
-    It may do so through other joints: then the multipliers and offsets of all are composed.
-
-    Args:
-        link: The link whose joint follows.
-        leader: The link whose joint is followed.
-        multiplier: The ratio of the position of the following joint to that of the other.
-        offset: The position of the following joint where the other is at 0, in radians or metres.
-        tolerance: How far multiplier and offset may be off, in their units.
-    """
-    joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
-    followed = _followed(robot, joint, link)
-    at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
-    if leading.name not in followed:
-        message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
-        last = next(reversed(followed), joint.name)
-        detail = f" (joint {joint.name!r})"
-        if joint.mimic is not None:
-            detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
-        is_missing = not robot.robot.has_joint(last)
-        if is_missing or "@name" in leading.unresolved:
-            robot.robot.check_complete()
-        if is_missing:
-            message = f"the joint that moves {link!r} mimics a joint that does not exist"
-            detail += did_you_mean(last, (other.name for other in robot.robot.joints))
-        return failed(message, at, detail=detail)
-    ratio, shift = followed[leading.name]
-    message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
-    numbers = numbers_of({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
-    return compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
-
-
 def joint_dynamics(
     robot: Configuration,
     *,
     link: str,
     friction: float | None = None,
     damping: float | None = None,
-    tolerance: NonNegative = _EXACT,
+    tolerance: NonNegative = EXACT,
 ) -> Outcome:
     """The joint that moves a link has the given friction and damping.
 
@@ -197,7 +149,7 @@ def joint_dynamics(
     """
     joint = robot.moving_joint(link)
     given = joint.dynamics
-    _check_known(joint, "dynamics", link, is_there=given is not None)
+    check_known(joint, "dynamics", link, is_there=given is not None)
     found = given or Dynamics()
     numbers = numbers_of({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
@@ -206,30 +158,7 @@ def joint_dynamics(
     return compared(message, numbers, joint, given.location if given else joint.location)
 
 
-def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
-    """Return the joints that a joint mimics, directly and through others, each with the multiplier and offset to it.
-
-    The last may not exist. Raises MissingElement for a loop.
-    """
-    found: dict[str, tuple[float, float]] = {}
-    first, ratio, shift = joint, 1.0, 0.0
-    while True:
-        _check_known(joint, "mimic", link, is_there=joint.mimic is not None)
-        if joint.mimic is None:
-            return found
-        name = joint.mimic.joint
-        ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
-        if name == first.name or name in found:
-            message = f"the joint that moves {link!r} mimics itself, directly or through others"
-            at = place(joint.mimic.location, "joint")
-            raise MissingElement("mimicked joint", link, message=message, detail=named(first), location=at)
-        found[name] = ratio, shift
-        if not robot.robot.has_joint(name):
-            return found
-        joint = robot.joint(name)
-
-
-def _check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
+def check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
     """Raise NotDecided or MissingElement where an element of a joint, or whether it has one, is not known because of xacro."""
     part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
     if part is not None:

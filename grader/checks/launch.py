@@ -4,7 +4,7 @@ import posixpath
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from grader.checks.about import About
+from grader.checks.about import MEASURES, About
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 # What the edits for hints may change.
 ABOUT = {
-    "launch_found": About(("launch",), measure="grader.checks.measures.package:launch_files"),
-    "launch_starts": About(("launch",), measure="grader.checks.measures.package:started_nodes"),
-    "launch_finds_files": About(("launch",), measure="grader.checks.measures.package:opened_files"),
+    "launch_found": About(("launch",), measure=f"{MEASURES}.package:launch_files"),
+    "launch_starts": About(("launch",), measure=f"{MEASURES}.package:started_nodes"),
+    "launch_finds_files": About(("launch",), measure=f"{MEASURES}.package:opened_files"),
 }
 
 _UNKNOWN_FILES = "cannot determine statically which files it names"

@@ -2,7 +2,7 @@
 
 from math import acos, degrees
 
-from grader.checks.about import About
+from grader.checks.about import MEASURES, METRES, About, Usual
 from grader.checks.outcome import (
     SLACK,
     Outcome,
@@ -21,21 +21,12 @@ from grader.robot.shapes import UnknownShape
 from grader.robot.transforms import Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 
+_METRES_AND_DEGREES = Usual({"tolerance": 0.002, "angle": 1.0}, "metres, degrees")
 ABOUT = {
     "frame_at": About(
-        ("joint/origin",),
-        measure="grader.checks.measures.joints:frames",
-        usual={"tolerance": 0.002, "angle": 1.0},
-        unit="metres, degrees",
-        picture="frame",
+        ("joint/origin",), measure=f"{MEASURES}.joints:frames", usual=_METRES_AND_DEGREES, picture="frame"
     ),
-    "centre_at": About(
-        ("visual/origin",),
-        measure="grader.checks.measures.shapes:places",
-        usual={"tolerance": 0.002},
-        unit="metres",
-        picture="outline",
-    ),
+    "centre_at": About(("visual/origin",), measure=f"{MEASURES}.shapes:places", usual=METRES, picture="outline"),
 }
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction

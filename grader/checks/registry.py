@@ -1,23 +1,17 @@
 """The explicit list of checks that a rubric can name. Other packages add theirs by entry points."""
 
-import inspect
-import sys
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
-from itertools import takewhile
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any
 
-from grader.checks.about import About
-from grader.checks.outcome import Outcome
-from grader.checks.toml_types import TomlType, toml_type
+from grader.checks.check import Check, describe
 from grader.errors import InputError, OutOfTime
 from grader.text import enumerated
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-    from grader.checks.docstring import Documentation
 
 ENTRY_POINTS = "grader.checks"
 
@@ -29,13 +23,13 @@ CHECKS = (
     "appearance.shows_box",
     "appearance.shows_cylinder",
     "appearance.shows_sphere",
-    "appearance.shows_colour",
-    "appearance.shows_grey",
+    "colours.shows_colour",
+    "colours.shows_grey",
     "appearance.shows_nothing",
     "tree.held_by",
     "tree.joints_named",
     "tree.root_of_tree",
-    "tree.counts",
+    "counts.counts",
     "placement.frame_at",
     "placement.centre_at",
     "heights.bottom_at_height",
@@ -48,7 +42,7 @@ CHECKS = (
     "motion.turns_about_itself",
     "joints.joint_limits",
     "joints.joint_axis",
-    "joints.mimics",
+    "mimics.mimics",
     "joints.joint_dynamics",
     "inertia.mass_is",
     "inertia.inertia_plausible",
@@ -59,8 +53,8 @@ CHECKS = (
     "elements.element_present",
     "package.package_found",
     "package.package_type",
-    "package.build_installs",
-    "package.installs_files",
+    "installs.build_installs",
+    "installs.installs_files",
     "package.setup_imports",
     "launch.launch_found",
     "launch.launch_starts",
@@ -75,89 +69,6 @@ CHECKS = (
 )
 
 _PLACES = {place.partition(".")[2]: place for place in CHECKS}
-
-# The arguments of checks that name links, or list their names.
-LINK_ARGUMENTS = ("link", "leader", "relative_to", "parent", "holds", "on", "of", "base", "links", "wheels")
-
-Subject = Literal["urdf", "robot", "package", "submission", "reference"]
-SUBJECTS: tuple[Subject, ...] = get_args(Subject)
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """One argument of a check: its annotation, and its default if it has one."""
-
-    name: str
-    annotation: Any
-    required: bool
-    default: object = None
-
-    @property
-    def type(self) -> TomlType:
-        """The type of the TOML value that a rubric gives."""
-        return toml_type(self.annotation)
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """A check, as a rubric names it.
-
-    `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the
-    whole submission, or the robot of the reference solution. `distribution` is the installed package that the check
-    comes from; empty for the grader's own. `about` is what its module declares of it.
-    """
-
-    name: str
-    function: Callable[..., Outcome]
-    examined: tuple[Subject, ...]
-    parameters: Mapping[str, Parameter]
-    distribution: str = ""
-    about: About = field(default_factory=About)
-
-    @property
-    def subject(self) -> Subject:
-        """The main object that it examines."""
-        return self.examined[0]
-
-    @property
-    def documentation(self) -> "Documentation":
-        """What its docstring says. The fact is true of a submission that passes."""
-        from grader.checks.docstring import documentation  # late: grading does not read it
-
-        return documentation(self.function)
-
-
-def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
-    """Return the check that a function is: its signature is the schema of the rubric's `with` table.
-
-    Raises InputError for a signature that is no schema.
-    """
-    hints = get_type_hints(function, include_extras=True)
-    subject, *rest = inspect.signature(function).parameters.values()
-    for parameter in (subject, *rest):
-        if parameter.kind not in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
-            raise InputError(f"its argument {parameter} cannot be given by name")
-        if parameter.name not in hints:
-            raise InputError(f"its argument {parameter.name} has no annotation")
-    also = list(takewhile(_is_subject, rest))
-    parameters = {}
-    for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
-        is_required = default is inspect.Parameter.empty
-        parameters[name] = Parameter(name, hints[name], is_required, None if is_required else default)
-    main = subject.name if subject.name in SUBJECTS else "robot"
-    examined = tuple(
-        name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
-    )
-    name = function.__name__
-    about = getattr(sys.modules.get(function.__module__), "ABOUT", {}).get(name, About())
-    if not isinstance(about, About):
-        raise InputError(f"ABOUT says of {name} what is no About(...)")
-    return Check(name, function, examined, parameters, distribution, about)
-
-
-def _is_subject(parameter: inspect.Parameter) -> bool:
-    """Return whether a parameter after the first is another object that is examined: it is no keyword-only argument."""
-    return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in SUBJECTS
 
 
 def own_checks() -> list[Check]:

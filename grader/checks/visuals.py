@@ -1,13 +1,15 @@
 """The visuals of a link for the checks that measure them, and the places of origins and axes."""
 
+from collections.abc import Sequence
+from itertools import repeat
 from math import inf
 from typing import Literal
 
-from grader.checks.outcome import place
+from grader.checks.outcome import place, within
 from grader.errors import MissingElement
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Geometry, Joint, Link, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Geometry, Joint, Link, Material, Mesh, Sphere, Visual
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
@@ -95,3 +97,15 @@ def axis_place(joint: Joint) -> LazyLocation | None:
     if is_z and joint.origin is not None and any(joint.origin.rpy):
         return place(joint.origin.location, "rpy")
     return place(joint.axis_location, "xyz") or joint.location
+
+
+def all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
+    """Return whether each of several numbers is within a tolerance."""
+    return all(map(within, actual, expected, repeat(tolerance)))
+
+
+def rgba(material: Material) -> tuple[float, ...]:
+    """Return the colour of a material; raise NotDecided if xacro leaves it open."""
+    for part in material.unresolved.values():
+        part.check()
+    return material.rgba

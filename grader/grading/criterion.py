@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any, NamedTuple
 
-from grader.checks.registry import Check
+from grader.checks.check import Check
 
 
 class Carried(NamedTuple):

@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from grader.checks.check import Check
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
-from grader.checks.registry import Check
 from grader.checks.tree import urdf_loads
 from grader.errors import MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion

@@ -8,8 +8,8 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
-from grader.checks.registry import LINK_ARGUMENTS
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.criterion import Adjustment, Carried, Criterion

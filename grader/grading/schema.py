@@ -4,7 +4,8 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from grader.checks.registry import Check, check_names, usable_check
+from grader.checks.check import Check
+from grader.checks.registry import check_names, usable_check
 from grader.checks.toml_types import TomlType, described
 from grader.grading.keys import CRITERION, DEFAULTS, RUBRIC, KeyTable
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from math import radians
 from typing import Any
 
+from grader.checks.check import Check, Subject
 from grader.checks.outcome import point
-from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric

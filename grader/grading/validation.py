@@ -5,7 +5,8 @@ from decimal import Decimal
 from functools import cache
 from typing import Any
 
-from grader.checks.registry import LINK_ARGUMENTS, Check, check_names, find_check
+from grader.checks.check import LINK_ARGUMENTS, Check
+from grader.checks.registry import check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading.keys import (

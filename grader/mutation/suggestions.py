@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable, Sequence
 
-from grader.checks.registry import Check
+from grader.checks.check import Check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant

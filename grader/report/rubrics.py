@@ -3,8 +3,9 @@
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
+from grader.checks.check import Check
 from grader.checks.manual import MANUAL_CHECKS
-from grader.checks.registry import Check, check_names, find_check, unused_checks
+from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Part, Rubric

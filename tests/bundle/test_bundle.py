@@ -16,8 +16,8 @@ import pytest
 
 from grader.bundle import gradescope as installed
 from grader.bundle.gradescope import autograder_zip, package_files, requirements
+from grader.checks.check import describe
 from grader.checks.outcome import Outcome
-from grader.checks.registry import describe
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.grade import grade

@@ -10,12 +10,15 @@ import pytest
 from grader.checks import (
     appearance,
     collisions,
+    colours,
     contact,
+    counts,
     elements,
     heights,
     inertia,
     joints,
     meshes,
+    mimics,
     motion,
     placement,
     problems,
@@ -228,7 +231,7 @@ CASES = (
         mesh_status="failed",
     ),
     Case(
-        appearance.shows_colour,
+        colours.shows_colour,
         {"link": "base", "colour": (0.0, 0.6, 0.0, 1.0), "tolerance": 0.01},
         passing=scene(BASE),
         pass_message="'base' is shown in rgba 0 0.6 0 1",
@@ -238,7 +241,7 @@ CASES = (
         edges={"tolerance": lambda off: painted("base", f"0 {0.6 + off} 0 1")},
     ),
     Case(
-        appearance.shows_grey,
+        colours.shows_grey,
         {"link": "lidar", "at_least": 0.75, "tolerance": 0.01},
         passing=scene(link("lidar", visual(cylinder(), material=paint("0.8 0.8 0.8 1")))),
         pass_message="'lidar' is shown in rgb 0.8 0.8 0.8",
@@ -288,7 +291,7 @@ CASES = (
         needs_size=False,
     ),
     Case(
-        tree.counts,
+        counts.counts,
         {"links": 3, "joints": 2, "moving": 1, "revolute": 1, "continuous": 0, "prismatic": 0, "fixed": 1},
         passing=swinging(),
         pass_message="the tree has 3 links, 2 joints, 1 moving joint, 1 revolute joint, 0 continuous joints, 0 prismatic joints"
@@ -473,7 +476,7 @@ CASES = (
         needs_size=False,
     ),
     Case(
-        joints.mimics,
+        mimics.mimics,
         {"link": "right", "leader": "left", "multiplier": -1.0, "offset": 0.1, "tolerance": 0.01},
         passing=gripping('joint="left_joint" multiplier="-1" offset="0.1"'),
         pass_message="the joint that moves 'right' mimics the joint that moves 'left'",

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from grader.checks.check import Subject, describe
 from grader.checks.outcome import Outcome, Status
-from grader.checks.registry import Subject, describe
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion
 from grader.grading.grade import grade

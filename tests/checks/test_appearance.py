@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.appearance import shows_box, shows_cylinder, shows_nothing, shows_sphere
+from grader.checks.colours import shows_colour, shows_grey
 from grader.robot.transforms import Vector
 from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes

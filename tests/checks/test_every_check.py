@@ -2,8 +2,8 @@
 
 import pytest
 
+from grader.checks.check import describe
 from grader.checks.collisions import collides_as
-from grader.checks.registry import describe
 from tests.checks.cases import CASES, Case
 from tests.checks.outcomes import ask, graded, missing
 from tests.checks.robots import Scene, box, joint, mesh

@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from grader.checks.about import About
+from grader.checks.check import describe
 from grader.checks.outcome import Outcome, passed
-from grader.checks.registry import describe
 from grader.package.package import Package
 from tests.checks.outcomes import ask, graded, missing
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.joints import joint_axis, joint_dynamics, joint_limits, mimics
+from grader.checks.joints import joint_axis, joint_dynamics, joint_limits
+from grader.checks.mimics import mimics
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.transforms import Transform, Vector, rotation_from_rpy

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.tree import counts, held_by, joints_named, root_of_tree, urdf_loads
+from grader.checks.counts import counts
+from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.xml.urdf_format import JOINT_TYPES
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of, mounted
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, own_message, passes

@@ -8,8 +8,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from grader.checks.check import describe
 from grader.checks.outcome import Outcome, failed, pending
-from grader.checks.registry import describe
 from grader.errors import MissingElement
 from grader.grading.criterion import Carried, Criterion
 from grader.grading.grade import grade

@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.appearance import shows_box, shows_colour, shows_cylinder
+from grader.checks.appearance import shows_box, shows_cylinder
+from grader.checks.check import describe
+from grader.checks.colours import shows_colour
 from grader.checks.heights import bottom_at_height
 from grader.checks.motion import rolls_forward, turns_about_itself
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.placement import centre_at, frame_at
-from grader.checks.registry import describe
 from grader.checks.tree import held_by, urdf_loads
 from grader.errors import InputError, MissingElement
 from grader.grading.criterion import Criterion

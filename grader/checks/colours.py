@@ -1,0 +1,84 @@
+"""Checks of the colour in which a link is shown."""
+
+from grader.checks.about import MEASURES, About, Usual
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    judged,
+    pending,
+    place,
+    point,
+    within,
+)
+from grader.checks.toml_types import Colour, NonNegative
+from grader.checks.visuals import ShapeName, all_within, main_visual, rgba
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Material, Visual
+
+_CHANNELS = Usual({"tolerance": 0.01}, "of a channel from 0 to 1")
+ABOUT = {
+    "shows_colour": About(("material",), measure=f"{MEASURES}.shapes:colours", usual=_CHANNELS),
+    "shows_grey": About(("material",)),
+}
+
+
+def shows_colour(
+    robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
+) -> Outcome:
+    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
+
+    Args:
+        link: The link that is examined.
+        colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
+        tolerance: How far each channel may be off, on the scale from 0 to 1.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
+    """
+    visual = main_visual(robot, link, shape)
+    if visual.material is None or _has_only_texture(visual.material):
+        return _colourless(link, visual)
+    actual = visual.material.rgba[: len(colour)]
+    fine = all_within(actual, colour, tolerance)
+    message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
+    if not fine:
+        message += f"; it should be {point(colour)}"
+    return judged(fine, message, actual, colour, tolerance, at=place(visual.material.location, "rgba"))
+
+
+def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked.
+
+    Args:
+        link: The link that is examined.
+        at_least: The darkest grey that passes, from 0 (black) to 1 (white).
+        tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
+    """
+    visual = main_visual(robot, link)
+    if visual.material is None or _has_only_texture(visual.material):
+        return _colourless(link, visual)
+    actual = visual.material.rgba[:3]
+    message = f"{link!r} is shown in rgb {point(actual)}"
+    is_grey = within(max(actual), min(actual), tolerance)
+    is_light = min(actual) >= at_least - SLACK
+    if not is_grey:
+        message += ", which is not grey; red, green and blue should be equal"
+    elif not is_light:
+        message += f"; each should be at least {at_least:g}"
+    fine, at = is_grey and is_light, place(visual.material.location, "rgba")
+    return judged(fine, message, actual, at_least, tolerance, at=at)
+
+
+def _has_only_texture(material: Material) -> bool:
+    # ROS 2 gives a material black where it has a texture and no colour.
+    return rgba(material) == Material("").rgba and material.texture != ""
+
+
+def _colourless(link: str, visual: Visual) -> Outcome:
+    if visual.material is not None:
+        message = f"{link!r} is shown with a texture, which the grader does not open; needs manual grading"
+        return pending(message, "textures are not opened")
+    if visual.material_name:
+        message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
+        at = place(visual.location, "name", "material")
+        return failed(message, at, mistake=f"{link!r} has no colour: its material is not defined")
+    return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))

@@ -1,0 +1,172 @@
+"""Checks of what a build of a package installs."""
+
+import posixpath
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from typing import TYPE_CHECKING, Literal
+
+from grader.checks.about import MEASURES, About
+from grader.checks.outcome import Outcome, failed, passed, pending
+from grader.errors import MissingElement
+from grader.names import closest
+from grader.package.package import MANIFEST, SETUP, Package
+from grader.submission.robots import find_robots, parts_of
+from grader.text import enumerated
+
+if TYPE_CHECKING:
+    from grader.package.globbing import EmptyGlob
+    from grader.package.setup_py import Setup
+
+
+FileKind = Literal["urdf", "launch", "rviz"]
+
+
+ABOUT = {
+    "build_installs": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_files"),
+    "installs_files": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_folders"),
+}
+
+
+_ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+
+
+def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
+    """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
+
+    setup.py is evaluated statically; what cannot be determined needs manual grading.
+
+    Args:
+        kind: The kind of the file.
+        name: The file's name, which decides if the package has several files of the kind.
+    """
+    files = files_of(package, kind, name)
+    if not files:
+        raise package.missing(kind)
+    return _installed(package, files, kind)
+
+
+def installs_files(package: Package, *, files: list[str]) -> Outcome:
+    """A build of the package installs at least one file that matches these patterns, below share/<package>.
+
+    Args:
+        files: Patterns for paths in the package, such as "meshes/*.stl"; one installed file is enough.
+    """
+    found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
+    if not found:
+        patterns = enumerated([repr(pattern) for pattern in files], word="or")
+        raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
+    return _installed(package, found, None)
+
+
+def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
+    """Return the file of a package that has this name, else all of the kind that are no part of another one."""
+    if kind == "launch":
+        chosen = package.launch_file(name)
+        return [chosen] if chosen is not None else []
+    endings = _ENDINGS[kind]
+    paths = [path for path in package.tree.files if path.lower().endswith(endings)]
+    named = [path for path in paths if posixpath.basename(path) == name]
+    parts = parts_of(find_robots(package.tree)) if kind == "urdf" and not named else frozenset()
+    return named or [path for path in paths if path not in parts] or paths
+
+
+def readable_setup(package: Package) -> "Setup | Outcome":
+    """Return the package's setup.py, or the outcome that says why it needs manual grading.
+
+    Raises MissingElement if there is none, or if Python cannot read it.
+    """
+    setup = package.setup
+    if package.is_cmake:
+        reason = "the grader does not evaluate CMakeLists.txt, which lists what is installed"
+        return pending(f"{reason}; needs manual grading", reason)
+    if setup is None:
+        message = "the package has no setup.py, so a build of an ament_python package installs nothing"
+        raise MissingElement("setup.py", package.folder, message=message)
+    if setup.fault is not None and setup.fault.sure:
+        message = f"Python cannot read setup.py: {setup.fault.message}"
+        raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
+    if setup.fault is not None:
+        return pending(
+            f"setup.py cannot be read ({setup.fault.message}); needs manual grading", "setup.py cannot be read"
+        )
+    return setup
+
+
+def _installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
+    setup = readable_setup(package)
+    if isinstance(setup, Outcome):
+        return setup
+    stopped = _stopped(package, setup, files, kind)
+    if stopped is not None:
+        return stopped
+    copies = [copy for copy in setup.copies if copy.source in files]
+    inside = [copy for copy in copies if copy.target.startswith(package.share)]
+    twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
+    if kind == "launch" and len(twice) > 1:
+        message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
+        return failed(message, setup.location(inside[-1].at), mistake="a build installs the launch file twice")
+    if inside:
+        return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if setup.unknown:
+        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of setup.py)"
+        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
+        return pending(f"{message}; needs manual grading", "cannot determine statically what setup.py installs")
+    if copies:
+        message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {package.share}"
+        mistake = f"a build installs the file outside of {package.share}"
+        return failed(message, setup.location(copies[0].at), mistake=mistake)
+    raise _not_installed(package, setup, files, kind)
+
+
+def _stopped(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> Outcome | None:
+    """Return that a build stops at the entry for these files; other criteria report a missing package.xml."""
+    folders = {posixpath.dirname(path) for path in files}
+    for stop in setup.stops:
+        if stop.path == MANIFEST and package.manifest is None:
+            continue
+        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
+        if owner == kind or posixpath.dirname(stop.path) in folders:
+            message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
+            return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
+    return None
+
+
+def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
+    """Return why a build does not install files: no call of setup(), no entry, or a pattern without a match."""
+    if not setup.is_called:
+        message = "a build installs nothing: setup.py does not call setup()"
+        return MissingElement("call of setup", package.folder, message=message)
+    what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
+    empty = _meant(setup.empty, files, kind)
+    if empty is None:
+        message += ": no entry of data_files in setup.py names it"
+        return MissingElement(what, package.folder, message=message)
+    problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
+    detail, at = package.pattern_hint(empty.pattern), setup.location(empty.at)
+    message += f": {problem}"
+    return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
+
+
+def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":
+    """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
+    folders = {posixpath.dirname(path) for path in files}
+    endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
+    for glob in empty:
+        folder = posixpath.dirname(glob.pattern)
+        if folder in folders or (folder and closest(folder, folders)) or (endings and glob.pattern.endswith(endings)):
+            return glob
+    return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
+
+
+def _owner(path: str, package: Package) -> FileKind | None:
+    """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
+    if ".launch." in path or path.endswith("_launch.py"):
+        return "launch"
+    for kind, endings in _ENDINGS.items():
+        if path.lower().endswith(endings):
+            return kind
+    folder = posixpath.dirname(path)
+    beside = [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
+    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
+    kinds = {_owner(path, package) for path in beside if path.endswith(endings) or ".launch." in path}
+    return next(iter(kinds)) if len(kinds) == 1 else None
