@@ -4,12 +4,13 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import chdir, contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import current_thread, main_thread
-from typing import IO
+from typing import IO, Any
 from unittest.mock import patch
 
 from grader.__main__ import main
@@ -35,7 +36,7 @@ def run_with_input(
 ) -> Done:
     """Run the command line like `run`, with standard input or from another folder."""
     words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
-    if _needs_own_process(words, variables, folder):
+    if _needs_own_process(words, variables):
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
@@ -49,16 +50,12 @@ def run_with_input(
     return subprocess.CompletedProcess(words, code, *texts)
 
 
-def _needs_own_process(words: Sequence[str], variables: Mapping[str, str], folder: Path) -> bool:
-    """Return whether a command gives another result in this process.
-
-    All classes that are graded here share a fork server, which has the variables and the current folder of the first one.
-    """
+def _needs_own_process(words: Sequence[str], variables: Mapping[str, str]) -> bool:
+    """Return whether a command gives another result in this process."""
     return (
         current_thread() is not main_thread()  # streams, variables and the current folder belong to the process
         or any(option in words for option in _OWN_PROCESS)
         or any(variable.startswith(_READ_AT_START) for variable in variables)
-        or ("batch" in words and (bool(variables) or folder != ROOT))
     )
 
 
@@ -91,13 +88,38 @@ def _exit_code() -> int:
     raise AssertionError("the command line did not exit")
 
 
+class _Pool:
+    """A pool of workers, as pebble's, that does its tasks at once and in this process."""
+
+    active = True
+
+    def __init__(self, *_: object) -> None:
+        """Take what a pool takes."""
+
+    def schedule(
+        self, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any], _timeout: float
+    ) -> "Future[Any]":
+        """Call a function; its future is done."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments, **named))
+        except Exception as error:  # noqa: BLE001  whatever it is, it is the task's
+            future.set_exception(error)
+        return future
+
+    def stop(self) -> None:
+        """There is nothing to stop."""
+
+    join = stop
+
+
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
     """Set arguments, variables and standard streams as at the start of a process, and restore them."""
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
-        patch.object(sys, "warnoptions", ["error"]),  # of the fork server
+        patch.multiple("grader.classroom.run.pool", ProcessPool=_Pool, _start_server=lambda _: None),
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),
