@@ -22,8 +22,8 @@ GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
 
 # What starts processes or threads that would outlive the command here, and variables that the interpreter reads when it starts.
-_OWN_PROCESS = ("--watch", "--cluster")
-_READ_AT_START = ("PYTHON", "LANG", "LC_", "TZ")
+_OWN_PROCESS = ("--cluster",)
+_READ_AT_START = ("PYTHONPATH", "PYTHONHASHSEED", "LANG", "LC_", "TZ")
 
 
 def run(arguments: Sequence[object], **variables: str) -> Done:
@@ -124,8 +124,8 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         _redirected(1, files[1]),
         _redirected(2, files[2]),
         open(0, encoding="utf-8", errors="surrogateescape", closefd=False) as given,
-        open(1, "w", encoding="utf-8", closefd=False) as out,
-        open(2, "w", encoding="utf-8", errors="backslashreplace", closefd=False) as err,
+        open(1, "w", encoding=variables["PYTHONIOENCODING"], closefd=False) as out,
+        open(2, "w", encoding=variables["PYTHONIOENCODING"], errors="backslashreplace", closefd=False) as err,
         patch.multiple(sys, stdin=given, stdout=out, stderr=err),
     ):
         try:

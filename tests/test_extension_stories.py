@@ -13,7 +13,7 @@ from tests.command_line import HANG_TIMEOUT
 ROOT = Path(__file__).parent.parent
 IGNORED = (".git", ".venv", "__pycache__", ".hypothesis", ".pytest_cache", ".mypy_cache", ".ruff_cache")
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 
 CHECK = '''
 

@@ -15,6 +15,8 @@ Making = Callable[..., Autograder]
 FINE = json.dumps({"score": 1.5, "output": "fine", "tests": []})
 HANGS = """
 import subprocess, sys, time
+
+pytestmark = pytest.mark.exhaustive
 child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
 open({path!r}, "w").write(str(child.pid))
 time.sleep(600)

@@ -15,6 +15,8 @@ from tests.wheels import offline
 WORD = """
 import docx, pypdf
 from importlib.metadata import distribution
+
+pytestmark = pytest.mark.exhaustive
 print(*(distribution(each).locate_file("") for each in ("pypdf", "python-docx", "numpy", "lxml")))
 """
 # The tools of a base image, for a PATH with other Pythons than this one.
@@ -35,7 +37,6 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
     )
 
 
-@pytest.mark.slow
 def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     """pip installs the requirements (here from local wheels), and the reference gets its points."""
     root = tmp_path / "auto grader"

@@ -52,6 +52,8 @@ import sys
 from pathlib import Path
 from grader.__main__ import main
 from tests.work import limited_work
+
+pytestmark = pytest.mark.exhaustive
 path = Path(sys.argv.pop(1))
 with limited_work() as work:
     try:

@@ -80,7 +80,7 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
     assert [statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")] == ["pending"] * 3
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_every_sample_has_one_report_over_twenty_hash_seeds() -> None:
     """All samples are graded with each seed, in one process; hints, which take longer, are searched with two or three seeds."""
     digests: dict[str, list[str]] = {}

@@ -55,6 +55,7 @@ def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
     assert done.stdout == first.stdout
 
 
+@pytest.mark.exhaustive
 def test_no_symlink_out_of_a_submission_is_followed(tmp_path: Path) -> None:
     """A symlink out of the submission is named and ignored, one inside is followed."""
     (tmp_path / "sub").mkdir()

@@ -83,6 +83,7 @@ def test_limits_end_with_the_command() -> None:
     assert all_limits() == before
 
 
+@pytest.mark.exhaustive
 def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
     """Work inside of one call into C, which no exception can interrupt, ends with the process."""
     program = tmp_path / "stuck.py"

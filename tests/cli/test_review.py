@@ -128,6 +128,7 @@ def test_one_criterion_only(top: Path) -> None:
     assert "did you mean 'picture'" in review(top, "", "--criterion", "pictur").stderr
 
 
+@pytest.mark.exhaustive
 def test_without_standard_input(graded_class: Path) -> None:
     """It stops at the first question."""
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
@@ -137,6 +138,7 @@ def test_without_standard_input(graded_class: Path) -> None:
     assert done.stdout.endswith(b"0 marked, 6 left\n")
 
 
+@pytest.mark.exhaustive
 def test_two_reviews_at_once(top: Path) -> None:
     """A question that one reviewer has answered is not asked of the other."""
     command = [sys.executable, "-u", "-m", "grader", "review", "--gradebook", str(top / "book.db")]

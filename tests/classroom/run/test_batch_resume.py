@@ -66,7 +66,7 @@ def _visible(folder: Path) -> dict[str, bytes]:
     return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
     """After kill -9 during start, grading and writing every result is there once, and the reports equal those of one run."""
     reports, seconds = undisturbed
@@ -121,6 +121,7 @@ def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], 
     assert _visible(out) == undisturbed[0]
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("moment", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
 def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -> None:
     """Whenever Ctrl-C arrives after the command has begun, no process prints a traceback."""
@@ -158,6 +159,7 @@ def _is_one_complaint(done: Done) -> bool:
     return all(line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines())
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("limit", [0, 50_000, 400_000])
 def test_no_space_left(limit: int, folder: Path, tmp_path: Path) -> None:
     """Committed results are kept, the reason is one line, and the run continues when there is space again."""
@@ -175,6 +177,7 @@ def test_no_space_left(limit: int, folder: Path, tmp_path: Path) -> None:
     assert (is_sound(book), len(verdicts(book)), duplicates(book)) == (True, SIZE, [])
 
 
+@pytest.mark.exhaustive
 def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
     """The same on a small file system, which is then enlarged."""
     disk = tmp_path / "disk"
@@ -197,6 +200,7 @@ def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
         subprocess.run(["umount", disk], check=True)
 
 
+@pytest.mark.exhaustive
 def test_reports_that_cannot_be_written(
     folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path
 ) -> None:
@@ -212,6 +216,7 @@ def test_reports_that_cannot_be_written(
     assert _visible(out) == undisturbed[0]
 
 
+@pytest.mark.exhaustive
 def test_concurrent_runs_on_the_same_class(folder: Path, tmp_path: Path) -> None:
     """All succeed, and each result is there once."""
     book = tmp_path / "lab6.db"
@@ -225,6 +230,7 @@ def test_concurrent_runs_on_the_same_class(folder: Path, tmp_path: Path) -> None
     assert counted(grader(*command)) == f"0 graded, {SIZE} unchanged"
 
 
+@pytest.mark.exhaustive
 def test_concurrent_runs_on_different_classes(tmp_path: Path) -> None:
     """Two sections of a course are graded into one gradebook, and nothing of either is lost.
 
@@ -243,6 +249,7 @@ def test_concurrent_runs_on_different_classes(tmp_path: Path) -> None:
         assert counted(grader("batch", group, "--gradebook", book)) == "0 graded, 200 unchanged"
 
 
+@pytest.mark.exhaustive
 def test_a_locked_gradebook_is_waited_for(folder: Path, tmp_path: Path) -> None:
     """While another program writes to the gradebook the run waits, and continues when it is done."""
     book = tmp_path / "lab6.db"
