@@ -14,6 +14,7 @@ from typing import IO, Any
 from unittest.mock import patch
 
 from grader.__main__ import main
+from tests.conversion import convert_here
 
 ROOT = Path(__file__).parent.parent
 HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on a busy machine
@@ -119,6 +120,7 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
+        patch("grader.documents.collection.DocumentCollection._run", convert_here),
         patch.multiple("grader.classroom.run.pool", ProcessPool=_Pool, _start_server=lambda _: None),
         _redirected(0, files[0]),
         _redirected(1, files[1]),

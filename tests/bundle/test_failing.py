@@ -11,12 +11,12 @@ import pytest
 from tests.bundle.gradescope import FALLBACK, Autograder
 from tests.classroom.class_runs import eventually
 
+pytestmark = pytest.mark.exhaustive
+
 Making = Callable[..., Autograder]
 FINE = json.dumps({"score": 1.5, "output": "fine", "tests": []})
 HANGS = """
 import subprocess, sys, time
-
-pytestmark = pytest.mark.exhaustive
 child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
 open({path!r}, "w").write(str(child.pid))
 time.sleep(600)

@@ -12,11 +12,11 @@ from tests.bundle.gradescope import Autograder, unpacked
 from tests.command_line import HANG_TIMEOUT
 from tests.wheels import offline
 
+pytestmark = pytest.mark.exhaustive
+
 WORD = """
 import docx, pypdf
 from importlib.metadata import distribution
-
-pytestmark = pytest.mark.exhaustive
 print(*(distribution(each).locate_file("") for each in ("pypdf", "python-docx", "numpy", "lxml")))
 """
 # The tools of a base image, for a PATH with other Pythons than this one.

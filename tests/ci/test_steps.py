@@ -20,7 +20,10 @@ PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
 UPLOAD = "actions/upload-artifact@b7c566a772e6b6bfb58ed0dc250532a479d7789f"
 WORKFLOWS = ROOT / "docs" / "ci"
 
-pytestmark = [pytest.mark.exhaustive, pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash")]
+pytestmark = [
+    pytest.mark.exhaustive,
+    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash"),
+]
 
 
 def instead_of_github(host: Path) -> dict[str, str]:

@@ -134,7 +134,7 @@ def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab.db"
-    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2")
+    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2", cwd=str(ROOT))
     assert "2 graded, 0 unchanged" in done.stderr
     found = dict(rows(book, "SELECT key, verdict || ' ' || score || ' ' || pending FROM grade"))
     assert found == {"alice": "graded 900000 100000", "bob": "graded 900000 100000"}

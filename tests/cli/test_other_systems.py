@@ -36,6 +36,7 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("kind", ["folder", "zip", "urdf"])
 def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
     """A folder, an archive and a URDF get the same report as here."""

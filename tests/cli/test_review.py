@@ -160,10 +160,10 @@ def test_two_reviews_at_once(top: Path) -> None:
 @pytest.mark.parametrize(
     ("typed", "end", "kept"),
     [
-        ("k\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
-        ("what\n\nKEEP\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
+        pytest.param("k\n", "0 marked, 1 left\n", [1.5, None, 3.0], marks=pytest.mark.exhaustive),
+        pytest.param("what\n\nKEEP\n", "0 marked, 1 left\n", [1.5, None, 3.0], marks=pytest.mark.exhaustive),
         ("r\n", "1 marked, 1 left\n", [1.5, None, 3.0, 2.0]),
-        ("", "0 marked, 1 left\n", [1.5, None, 3.0]),
+        pytest.param("", "0 marked, 1 left\n", [1.5, None, 3.0], marks=pytest.mark.exhaustive),
     ],
 )
 def test_a_newer_mark_is_confirmed(typed: str, end: str, kept: list[float], top: Path) -> None:
@@ -209,6 +209,7 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     assert [row[2] for row in marks(top)] == [1, 2, 4]
 
 
+@pytest.mark.exhaustive
 def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
     """At a terminal, in the middle of a question."""
     own, theirs = pty.openpty()

@@ -138,7 +138,9 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     edits = partial(put, SHORT, urdf), partial(put, URDF, urdf), partial(launch.rename, launch.with_name("nothing"))
     done = watch([folder, *saves], *edits)
     assert "nothing has changed" not in "".join(done.out)
-    for shown, news in zip(done.out[1:], ("now failed: lidar-frame (", "now passed: lidar-frame (", "now failed: "), strict=True):
+    for shown, news in zip(
+        done.out[1:], ("now failed: lidar-frame (", "now passed: lidar-frame (", "now failed: "), strict=True
+    ):
         assert news in shown
     assert "launch" in done.out[-1].partition("now failed: ")[2]
     assert '"lidar-frame"' in (folder / "report.json").read_text()
@@ -202,7 +204,9 @@ def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> Non
         assert set(err.splitlines()) <= {"grader: interrupted"}
     read, written = os.pipe()
     command = [sys.executable, "-m", "grader", "grade", "--watch", str(robot)]
-    with subprocess.Popen(command, cwd=ROOT, env=clean_environment(), stdout=written, stderr=subprocess.PIPE) as watched:
+    with subprocess.Popen(
+        command, cwd=ROOT, env=clean_environment(), stdout=written, stderr=subprocess.PIPE
+    ) as watched:
         os.close(written)
         text = b""
         while not text.endswith(END.encode()):
@@ -210,7 +214,10 @@ def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> Non
         os.close(read)
         put(URDF, robot)
         _, error = watched.communicate(timeout=HANG_TIMEOUT)
-    assert (watched.returncode, error.splitlines()[1:]) == (2, [b"grader: cannot write the report: standard output: Broken pipe"])
+    assert (watched.returncode, error.splitlines()[1:]) == (
+        2,
+        [b"grader: cannot write the report: standard output: Broken pipe"],
+    )
 
 
 def refuse(words: str, *arguments: object) -> None:
