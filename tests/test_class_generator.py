@@ -21,7 +21,7 @@ from tests.samples import LAB6, ROOT
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
 import class_generator as made_up
 
-MIXED, SEED = 300, 1
+MIXED, SEED = 120, 1
 ALL_VARIANTS = (*made_up.MISTAKES, *made_up.EQUIVALENTS, *made_up.BROKEN)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 import pytest
-from hypothesis import HealthCheck, given, note, settings
+from hypothesis import given, note
 from hypothesis import strategies as st
 from lxml import etree
 
@@ -13,6 +13,7 @@ from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.opening import read_submission
 from grader.xml.parsing import Element
+from tests.examples import examples
 from tests.rewriting import BEHAVING, Step, parse, rewritings, rewritten
 
 RUBRIC = load_rubric("lab6")
@@ -196,7 +197,7 @@ def carried(report: Report) -> set[str]:
     return {result.criterion.id for result in report.results if result.carried}
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@examples(60)
 @given(data=rewritings(REFERENCE))
 def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     """Nothing is lost by any composition of equivalent rewritings."""
@@ -211,7 +212,7 @@ def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
 def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
     """No single rewriting loses points, in three tries."""
 
-    @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    @examples(8)
     @given(data=rewritten(REFERENCE, (step, step, step)))
     def check(data: bytes) -> None:
         """Assert full marks for this text."""
@@ -230,7 +231,7 @@ def test_a_mistake_loses_the_expected_criteria(mistake: Break) -> None:
 
 
 @each_break
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@examples(3)
 @given(draw=st.data())
 def test_a_mistake_is_recognised_in_every_form(mistake: Break, draw: st.DataObject) -> None:
     """The same criteria are lost, and the same carried, after any composition of equivalent rewritings."""
@@ -256,7 +257,7 @@ _ADDED = st.sampled_from(
 )
 
 
-@settings(max_examples=350, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@examples(80)
 @given(draw=st.data())
 def test_no_value_is_an_error_of_the_grader(draw: st.DataObject) -> None:
     """Whatever a few attributes of the reference are set to, no criterion is errored."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import Done, grader
+from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
 GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
@@ -25,7 +25,8 @@ def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") ->
     if roster:
         (top / "roster.csv").write_text(roster, encoding="utf-8")
         more = (*more, "--roster", top / "roster.csv")
-    return grader("batch", top / "class", "--gradebook", top / into, *more)
+    rubric = () if "--rubric" in more else ("--rubric", without_hints())
+    return grader("batch", top / "class", "--gradebook", top / into, *rubric, *more)
 
 
 def students(top: Path, into: str = "g.db") -> dict[str, dict[str, Any]]:

@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
 from grader.xml.tinyxml2.recovery import Recovery
 from tests.command_line import ROOT, run
+from tests.examples import examples
 from tests.work import limited_work
 
 TEXT = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
@@ -174,7 +175,7 @@ def test_a_path_without_quotes_is_read_whole() -> None:
     assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
-@settings(max_examples=150, deadline=None)
+@examples(40)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
     """Whatever is cut out of a URDF or put into it, what is read is XML whose tags are where they are in the text."""

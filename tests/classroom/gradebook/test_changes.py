@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import run_writer as module
@@ -20,6 +20,7 @@ from grader.grading.criterion import Adjustment
 from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.validation import TOTAL
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
+from tests.examples import examples
 
 LAB = lab()
 OTHER = lab(box="5")
@@ -180,7 +181,7 @@ def test_which_runs(book: Gradebook) -> None:
 STATUS_LETTERS = st.text("pfs?!-", min_size=5, max_size=5)
 
 
-@settings(max_examples=40)
+@examples(12)
 @given(
     st.sampled_from([OTHER, ADJUSTED]),
     STATUS_LETTERS,

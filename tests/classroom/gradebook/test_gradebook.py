@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import gradebook as module
@@ -20,6 +20,7 @@ from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units
+from tests.examples import examples
 
 LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
 STUDENTS = ("anna", "ben", "cleo")
@@ -127,7 +128,7 @@ class Model:
         return score, out_of, pending, faults
 
 
-@settings(max_examples=120)
+@examples(30)
 @given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
 def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
     """View, standing, report and model agree after any runs, changes of submissions and rubrics, and marks."""

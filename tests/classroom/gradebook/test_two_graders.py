@@ -316,7 +316,7 @@ TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignor
 def test_two_graders() -> None:
     """No sequence of what two graders do loses an entry or changes a grade."""
     profile = settings(
-        max_examples=30, stateful_step_count=10, deadline=None,
+        max_examples=10, stateful_step_count=10, deadline=None,
         suppress_health_check=[HealthCheck.too_slow], phases=[Phase.generate],
     )  # fmt: skip
     run_state_machine_as_test(TwoGraders, settings=profile)

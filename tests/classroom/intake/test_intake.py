@@ -21,7 +21,7 @@ from tests.classroom.class_folders import assigned, lay_out, pack
 from tests.classroom.lab6_class import read_class
 from tests.work import limited_work
 
-LARGE = 30_000
+LARGE = 10_000
 ANN = Student("100", "Ann Ash", "ann@example.org", "aash")
 BEA = Student("200", "Bea Birch", "bea@example.org", "bbirch")
 CAL = Student("300", "Cal Cedar", "cal@example.org", "ccedar", canvas="33")

@@ -15,6 +15,8 @@ from random import Random
 import pytest
 
 from tests.classroom.class_runs import (
+    HOSTILE_RUBRIC,
+    WITH_HOSTILE,
     Done,
     contents,
     counted,
@@ -22,6 +24,7 @@ from tests.classroom.class_runs import (
     environment,
     eventually,
     grader,
+    hostile_class,
     is_sound,
     rows,
     session_of,
@@ -97,28 +100,24 @@ def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
         process.wait(seconds)
 
 
-def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+def test_interrupted(tmp_path: Path) -> None:
     """Ctrl-C reports in a line how many results are kept, which they are; then the run continues."""
-    out = tmp_path / "out"
-    book = out.with_suffix(".db")
-    with started(*_command(folder, out)) as process:
-        assert eventually(lambda: len(verdicts(book)) > 20)
+    names = [f"fine-{number}" for number in range(20)]
+    folder, book = hostile_class(tmp_path / "class", "hangs", *names), tmp_path / "lab.db"
+    command = ("batch", folder, "--gradebook", book, "--rubric", HOSTILE_RUBRIC, "--timeout", "3600", "--jobs", "2")
+    with started(*command, **WITH_HOSTILE) as process:
+        assert eventually(lambda: len(verdicts(book)) == len(names))
         os.killpg(process.pid, signal.SIGINT)
         _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
-    first, stopped, last = output.splitlines()
-    assert first == f"grader: {SIZE} submissions, layout folders"
-    assert last == "grader: interrupted"
-    count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
-    assert (
-        stopped == f"grader: stopped: {count} of {SIZE} have a result, which is kept; rerun the same command to resume"
-    )
-    kept = len(verdicts(book))
-    assert 20 < count <= kept < SIZE
+    assert output.splitlines() == [
+        "grader: 21 submissions, layout folders",
+        "grader: stopped: 20 of 21 have a result, which is kept; rerun the same command to resume",
+        "grader: interrupted",
+    ]
     assert is_sound(book)
-    done = grader(*_command(folder, out))
-    assert counted(done) == f"{SIZE - kept} graded, {kept} unchanged"
-    assert _visible(out) == undisturbed[0]
+    (folder / "hangs.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
+    assert counted(grader(*command, **WITH_HOSTILE)) == "1 graded, 20 unchanged"
 
 
 @pytest.mark.exhaustive
