@@ -129,7 +129,14 @@ def test_a_new_rubric(project: Path) -> None:
     (project / "rubrics/lab0").mkdir()
     (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
     python(project, "-m", "grader", "rubric", "check", "lab0")
-    passes(project, "tests/test_submissions.py", "tests/grading", "tests/bundle", "tests/cli/test_completion.py", "tests/cli/test_answers.py")
+    passes(
+        project,
+        "tests/test_submissions.py",
+        "tests/grading",
+        "tests/bundle",
+        "tests/cli/test_completion.py",
+        "tests/cli/test_answers.py",
+    )
 
 
 def test_a_new_format(project: Path) -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import run_writer as module
-from grader.classroom.gradebook.changes import Change, PointsChange, Snapshot, changes, last_two
+from grader.classroom.gradebook.changes import Change, PointsChange, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Entry, Kind, add_mark, criterion_of
@@ -66,34 +66,6 @@ def test_nothing_changed(book: Gradebook) -> None:
     assert found(book) == []
 
 
-def test_another_submission(book: Gradebook) -> None:
-    """The criteria with other results, and by how much."""
-    run(book, anna="pfs?f", ben="ppppp")
-    run(book, digest="b", anna="pppfp")
-    (change,) = found(book)
-    steps = (
-        PointsChange("box", Decimal(0), Decimal("2.5")),
-        PointsChange("tall", Decimal(0), Decimal("0.5")),
-        PointsChange("essay", None, Decimal(0)),
-        PointsChange("picture", Decimal(0), Decimal(1)),
-    )
-    assert change == Change("anna", Decimal(3), Decimal(7), steps, ("the submission changed",))
-
-
-def test_another_rubric(book: Gradebook) -> None:
-    """Criteria with other points, new criteria, and removed ones."""
-    run(book, anna="ppppp", ben="pfspp")
-    bigger = lab(box="5", extra="7")
-    run(book, bigger, anna="pppppp", ben="pfsppf")
-    assert why(book) == {"anna": ("the rubric changed",), "ben": ("the rubric changed",)}
-    assert found(book)[0].steps == (
-        PointsChange("box", Decimal("2.5"), Decimal(5)),
-        PointsChange("extra", None, Decimal(7)),
-    )
-    run(book, anna="ppppp")
-    assert found(book)[0].steps[-1] == PointsChange("extra", Decimal(7), None)
-
-
 def test_another_grader(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
     """The version of the grader is the reason."""
     run(book, anna="ppppp")
@@ -140,19 +112,6 @@ def test_several_reasons(book: Gradebook) -> None:
         "the submission changed", "the rubric changed", "manual marks changed", "it was graded, and is errored",
     )  # fmt: skip
     assert why(book) == {"anna": words}
-
-
-def test_students_who_appear_or_disappear(tmp_path: Path) -> None:
-    """Students that only one of two gradebooks has, and a student who submits later."""
-    with Gradebook(tmp_path / "a.db", create=True) as one, Gradebook(tmp_path / "b.db", create=True) as two:
-        run(one, anna="ppppp", ben="ppppp")
-        run(two, anna="ppppp", cleo="fffff")
-        assert changes(Snapshot(one), Snapshot(two)) == [
-            Change("ben", LAB.points, None, (), ("no longer there",)),
-            Change("cleo", None, Decimal(0), (), ("first submission",)),
-        ]
-        run(one, dora="ppppp")
-        assert why(one) == {"dora": ("first submission",)}
 
 
 def test_which_runs(book: Gradebook) -> None:

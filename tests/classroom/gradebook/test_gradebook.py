@@ -19,7 +19,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units
+from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units, urdf
 from tests.examples import examples
 
 LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
@@ -309,5 +309,10 @@ def test_other_files_are_refused_in_one_line(kind: str, tmp_path: Path) -> None:
     commands = COMMANDS if kind == "damaged" else {name: COMMANDS[name] for name in ("mark", "diff")}
     for command in commands.values():
         assert WHY[kind] in refusal(grader(*command, path))
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class/ash.urdf").write_text(urdf())
+    if kind != "none":
+        done = grader("batch", tmp_path / "class", "--gradebook", path)
+        assert (done.returncode, done.stdout, WHY[kind] in done.stderr) == (2, "", True), done.stderr
     if kind in ("text", "of-others", "newer"):
         assert path.read_bytes() == before
