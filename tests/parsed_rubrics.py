@@ -23,7 +23,7 @@ def read_toml_once(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     """Return the text and the table of a TOML file, as `read_toml` does."""
     if len(data) not in _LONG:
         return read_toml(data, path)
-    key = data, validation.find_check, *sys.path  # plug-ins that a test installs, and checks that it replaces
+    key = data, vars(validation)["find_check"], *sys.path  # plug-ins that a test installs, and checks that it replaces
     if key not in _PARSED:
         text, table = read_toml(data, path)
         _PARSED[key] = _Parsed(text, table, validation.Validation(table))
