@@ -17,6 +17,7 @@ from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.statistics import ClassStatistics, PointTotals, statistics
+from tests.classroom.class_runs import without_hints
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run
 from tests.samples import LAB6, ROOT
 
@@ -34,7 +35,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str
     count = sum(1 for _ in made_up.make_class(top / "class", 60, 7, "mixed"))
     assert count > 60
     book = top / "book.db"
-    assert grader("batch", top / "class", "--gradebook", book, "--jobs", 2).returncode == 0
+    assert grader("batch", top / "class", "--gradebook", book, "--rubric", without_hints()).returncode == 0
     mark_some(book)
     table = grader("export", "csv", "--gradebook", book).stdout
     done = grader("stats", "--gradebook", book, "--format", "json")

@@ -128,7 +128,7 @@ def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
 
     Nor does a run over the folder, apart from submissions whose bytes cannot be read.
     """
-    folder = mixed_class(tmp_path / "class", 40, layout, for_zip=True)
+    folder = mixed_class(tmp_path / "class", 25, layout, for_zip=True)
     packed = _pack(folder, tmp_path / "class.zip")
     rubric = "--rubric", str(without_hints())
     unpacked = batch(folder, tmp_path / "folder", *rubric)

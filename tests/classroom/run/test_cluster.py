@@ -124,6 +124,7 @@ def without_progress(text: str) -> list[str]:
     return [line for line in text.splitlines() if not re.search(r"\d of \d+, \d+/s, ", line)]
 
 
+@pytest.mark.exhaustive
 def test_a_cluster_gives_the_same_marks(tmp_path: Path) -> None:
     """Without workers it is refused; with some, reports and stderr equal those of local processes; then nothing is new."""
     folder = mixed_class(tmp_path / "class", 30, for_zip=True)
