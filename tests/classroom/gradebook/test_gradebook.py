@@ -192,19 +192,6 @@ def is_decided(result: Any) -> bool:
     return result.manual_mark is not None or result.outcome.status in ("passed", "failed", "skipped")
 
 
-def test_a_student_without_a_submission_has_no_points(book: Gradebook) -> None:
-    """A student who is only on the roster is missing and has no points."""
-    from grader.classroom.gradebook.run_writer import save_student
-    from grader.classroom.gradebook.stored import Enrolment
-    from grader.classroom.students import Student
-
-    with book.transaction():
-        save_student(book, Student("dora"), Enrolment(1))
-    ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
-    assert (score, verdict, faults or 0) == (None, "missing", 0)
-    assert Grades(book).find("dora").why_not_final == "nothing was submitted"
-
-
 # --- Versions ---------------------------------------------------------------------------------------------------------
 
 

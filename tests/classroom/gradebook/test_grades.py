@@ -35,13 +35,6 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
         yield opened
 
 
-def test_students_are_found_by_every_identifier(book: Gradebook) -> None:
-    """Key, login, address, numbers and name are accepted; a key takes precedence."""
-    for name in ("anna", "ae1", "anna@example.org", "9001", "Anna Ek"):
-        assert Grades(book).find(name).student.key == "anna"
-    assert Grades(book).find("S1").student.name == "Sven"
-
-
 def notices(book: Gradebook) -> dict[str, str]:
     """Return who needs attention, and why."""
     found = {item.key: "" for group in attention(Grades(book)).groups for item in group.items}

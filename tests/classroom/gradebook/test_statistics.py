@@ -16,7 +16,7 @@ import pytest
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.statistics import ClassStatistics, PointTotals, statistics
+from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from tests.classroom.class_runs import without_hints
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run
 from tests.samples import LAB6, ROOT
@@ -136,17 +136,6 @@ def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
         ]
         record_run(book, rubric, results)
         return statistics(book, rubric)
-
-
-def test_one_is_graded(tmp_path: Path) -> None:
-    """With one student no criterion has a discrimination. The grade is over the seven points that are decided."""
-    found = of(tmp_path, "pps?f")
-    assert (found.graded, found.undecided, found.mean, found.deviation) == (1, 0, 8.6429, 0.0)
-    assert {found.lowest, found.median, found.highest} == {Decimal("8.6429")}
-    assert found.points == PointTotals(Decimal("5.5"), Decimal("1.5"), Decimal(4))
-    assert found.bins == (0, 0, 0, 0, 0, 0, 0, 1, 0, 0)
-    assert [criterion.share for criterion in found.criteria] == [1, 1, 0, None, 0]
-    assert {criterion.discrimination for criterion in found.criteria} == {None}
 
 
 def test_equal_scores_have_no_discrimination(tmp_path: Path) -> None:

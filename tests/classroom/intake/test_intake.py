@@ -31,22 +31,6 @@ def roster(*students: Student) -> Roster:
     return Roster(RosterEntry(student) for student in students or (ANN, BEA, CAL))
 
 
-@pytest.mark.parametrize(
-    ("paths", "message"),
-    [
-        ((), "is empty"),
-        ((".hidden", "__MACOSX/"), "is empty"),
-        (("notes.txt", "grades.csv"), "there is no submission in .*: grades.csv is not a folder"),
-        (("package.xml", "setup.py", "urdf/"), "is one submission and not a class"),
-    ],
-)
-def test_a_folder_without_submissions_is_refused(tmp_path: Path, paths: tuple[str, ...], message: str) -> None:
-    """A folder without a submission is an error of one line."""
-    with pytest.raises(InputError, match=message) as caught:
-        read_class(lay_out(tmp_path / "class", *paths))
-    assert "\n" not in str(caught.value)
-
-
 def test_other_paths_are_refused(tmp_path: Path) -> None:
     """A missing path, a file that is no zip, a broken zip and an unknown layout are errors of one line."""
     (tmp_path / "class.txt").write_text("no zip")
