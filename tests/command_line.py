@@ -4,15 +4,18 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import chdir, contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import current_thread, main_thread
-from typing import IO
+from typing import IO, Any
 from unittest.mock import patch
 
 from grader.__main__ import main
+from tests.conversion import convert_here
+from tests.parsed_rubrics import read_toml_once, validate_once
 
 ROOT = Path(__file__).parent.parent
 HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on a busy machine
@@ -21,8 +24,8 @@ GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
 
 # What starts processes or threads that would outlive the command here, and variables that the interpreter reads when it starts.
-_OWN_PROCESS = ("--watch", "--cluster")
-_READ_AT_START = ("PYTHON", "LANG", "LC_", "TZ")
+_OWN_PROCESS = ("--cluster",)
+_READ_AT_START = ("PYTHONPATH", "PYTHONHASHSEED", "LANG", "LC_", "TZ")
 
 
 def run(arguments: Sequence[object], **variables: str) -> Done:
@@ -35,7 +38,7 @@ def run_with_input(
 ) -> Done:
     """Run the command line like `run`, with standard input or from another folder."""
     words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
-    if _needs_own_process(words, variables, folder):
+    if _needs_own_process(words, variables):
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
@@ -49,16 +52,12 @@ def run_with_input(
     return subprocess.CompletedProcess(words, code, *texts)
 
 
-def _needs_own_process(words: Sequence[str], variables: Mapping[str, str], folder: Path) -> bool:
-    """Return whether a command gives another result in this process.
-
-    All classes that are graded here share a fork server, which has the variables and the current folder of the first one.
-    """
+def _needs_own_process(words: Sequence[str], variables: Mapping[str, str]) -> bool:
+    """Return whether a command gives another result in this process."""
     return (
         current_thread() is not main_thread()  # streams, variables and the current folder belong to the process
         or any(option in words for option in _OWN_PROCESS)
         or any(variable.startswith(_READ_AT_START) for variable in variables)
-        or ("batch" in words and (bool(variables) or folder != ROOT))
     )
 
 
@@ -91,19 +90,46 @@ def _exit_code() -> int:
     raise AssertionError("the command line did not exit")
 
 
+class _Pool:
+    """A pool of workers, as pebble's, that does its tasks at once and in this process."""
+
+    active = True
+
+    def __init__(self, *_: object) -> None:
+        """Take what a pool takes."""
+
+    def schedule(
+        self, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any], _timeout: float
+    ) -> "Future[Any]":
+        """Call a function; its future is done."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments, **named))
+        except Exception as error:  # noqa: BLE001  whatever it is, it is the task's
+            future.set_exception(error)
+        return future
+
+    def stop(self) -> None:
+        """There is nothing to stop."""
+
+    join = stop
+
+
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
     """Set arguments, variables and standard streams as at the start of a process, and restore them."""
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
-        patch.object(sys, "warnoptions", ["error"]),  # of the fork server
+        patch.multiple("grader.grading.rubric", read_toml=read_toml_once, Validation=validate_once),
+        patch("grader.documents.collection.DocumentCollection._run", convert_here),
+        patch.multiple("grader.classroom.run.pool", ProcessPool=_Pool, _start_server=lambda _: None),
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),
         open(0, encoding="utf-8", errors="surrogateescape", closefd=False) as given,
-        open(1, "w", encoding="utf-8", closefd=False) as out,
-        open(2, "w", encoding="utf-8", errors="backslashreplace", closefd=False) as err,
+        open(1, "w", encoding=variables["PYTHONIOENCODING"], closefd=False) as out,
+        open(2, "w", encoding=variables["PYTHONIOENCODING"], errors="backslashreplace", closefd=False) as err,
         patch.multiple(sys, stdin=given, stdout=out, stderr=err),
     ):
         try:

@@ -35,11 +35,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.path not in slow)
 
 
-def pytest_xdist_auto_num_workers() -> int:
-    """Return one worker more than there are processors, because some tests wait for a process, a timer or a connection."""
-    return (os.cpu_count() or 1) + 1
-
-
 def pytest_collection_finish() -> None:
     """Exclude the objects of ten thousand tests from the garbage collector, which would scan them again and again."""
     gc.collect()

@@ -21,7 +21,7 @@ from tests.samples import LAB6, ROOT
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
 import class_generator as made_up
 
-MIXED, SEED = 300, 1
+MIXED, MANY, SEED = 120, 300, 1
 ALL_VARIANTS = (*made_up.MISTAKES, *made_up.EQUIVALENTS, *made_up.BROKEN)
 
 
@@ -116,7 +116,7 @@ def test_two_mistakes_do_not_hide_each_other() -> None:
 
 def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     """Each kind of submission and each awkward name occurs in a class of 300, and is written as far as the disk allows."""
-    written = every(made_up.make_class(tmp_path, MIXED, SEED, "mixed"))
+    written = every(made_up.make_class(tmp_path, MANY, SEED, "mixed"))
     assert {submission.kind for submission in written} == set(made_up.KINDS)
     names = {submission.person.name for submission in written}
     assert {f"{first} {last}" for first, last in made_up.AWKWARD} <= names
@@ -125,7 +125,7 @@ def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     assert [submission.kind for submission in written if not submission.paths] == ["nothing"] * sum(
         submission.kind == "nothing" for submission in written
     )
-    assert written[-1].person.login.endswith(str(MIXED))
+    assert written[-1].person.login.endswith(str(MANY))
 
 
 @pytest.mark.parametrize("layout", made_up.LAYOUTS)

@@ -13,24 +13,24 @@ from tests.command_line import HANG_TIMEOUT
 ROOT = Path(__file__).parent.parent
 IGNORED = (".git", ".venv", "__pycache__", ".hypothesis", ".pytest_cache", ".mypy_cache", ".ruff_cache")
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 
 CHECK = '''
 
-def shows_cube(robot: Configuration, *, link: str, edge: NonNegative, tolerance: NonNegative) -> Outcome:
-    """A link shows a cube with edges of the given length in metres.
+def shows_cube(robot: Configuration, *, link: str, distance: NonNegative, tolerance: NonNegative) -> Outcome:
+    """A link shows a cube whose opposite faces have the given distance in metres.
 
     Args:
         link: The link that is examined.
-        edge: The length of the edges, in metres.
+        distance: The distance of opposite faces, in metres.
         tolerance: How far each length may be off, in metres.
     """
-    return shows_box(robot, link=link, size=(edge, edge, edge), tolerance=tolerance)
+    return shows_box(robot, link=link, size=(distance, distance, distance), tolerance=tolerance)
 '''
 SAMPLE = """CASES = (
     Case(
         appearance.shows_cube,
-        {"link": "base", "edge": 0.2, "tolerance": 0.002},
+        {"link": "base", "distance": 0.2, "tolerance": 0.002},
         passing=scene(link("base", visual(box(0.2, 0.2, 0.2)))),
         pass_message="'base' shows a box 0.2 0.2 0.2 m",
         failing=scene(link("base", visual(box(0.2, 0.2, 0.3)))),
@@ -120,8 +120,7 @@ def test_a_new_check(project: Path) -> None:
     replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
     python(project, "docs/make.py")
     add_to_changelog(project, "The check `shows_cube`.")
-    passes(project, "tests/test_registry.py", "tests/test_architecture.py", "tests/checks/test_every_check.py",
-           "tests/checks/test_appearance.py", "tests/test_docs.py")  # fmt: skip
+    passes(project, "tests/test_registry.py", "tests/test_architecture.py", "tests/test_docs.py", "tests/checks")
 
 
 def test_a_new_rubric(project: Path) -> None:
@@ -130,9 +129,14 @@ def test_a_new_rubric(project: Path) -> None:
     (project / "rubrics/lab0").mkdir()
     (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
     python(project, "-m", "grader", "rubric", "check", "lab0")
-    passes(project, "tests/test_submissions.py::test_a_reference_gets_full_marks", "tests/grading/test_rubric.py",
-           "tests/cli/test_completion.py", "tests/cli/test_answers.py", "tests/bundle/test_bundle.py::test_the_files",
-           "tests/bundle/test_bundle.py::test_unrelated_files_are_excluded")  # fmt: skip
+    passes(
+        project,
+        "tests/test_submissions.py",
+        "tests/grading",
+        "tests/bundle",
+        "tests/cli/test_completion.py",
+        "tests/cli/test_answers.py",
+    )
 
 
 def test_a_new_format(project: Path) -> None:
@@ -143,9 +147,5 @@ def test_a_new_format(project: Path) -> None:
     replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
     add_to_changelog(project, "The format `line`.")
     python(project, "-m", "grader", "grade", "submissions/several-mistakes", "--format", "line", "--fail-under", "0")
-    hostile, facts = "tests/report/test_hostile_text.py", "tests/report/test_same_facts.py"
-    passes(project, f"{hostile}::test_text_of_a_broken_file_stays_text",
-           *(f"{hostile}::test_text_of_a_report_stays_text[{case}]" for case in ("hints-archive", "pictures-only-below")),
-           f"{facts}::test_all_formats_contain_the_same_facts[several-mistakes]",
-           "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission/test_own_reports.py",
+    passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip

@@ -210,6 +210,7 @@ def test_the_same_reference_gives_the_same_bytes(written: tuple[Path, str], tmp_
     assert (tmp_path / "cedar_arm.toml").read_bytes() == written[0].read_bytes()
 
 
+@pytest.mark.exhaustive
 def test_every_mutant_of_the_reference_loses_something(written: tuple[Path, str]) -> None:
     """`grader rubric test` finds no survivor, no idle criterion, and no equivalent that loses points."""
     done = run(("rubric", "test", written[0], "--fail-under", "100%", "--format", "json"))
@@ -301,6 +302,7 @@ def test_a_reference_is_whatever_can_be_graded(kind: str, tmp_path: Path) -> Non
     assert run(("grade", reference, "--rubric", tmp_path / "lab.toml")).returncode == 0
 
 
+@pytest.mark.exhaustive
 def test_mutants_of_a_package_lose_something_or_are_declared(tmp_path: Path) -> None:
     """What no check can test is declared in the rubric, with a reason and with patterns that match."""
     shutil.copytree(LAB6, tmp_path / "my_robot")

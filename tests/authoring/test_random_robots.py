@@ -4,10 +4,11 @@ import tomllib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.command_line import run
+from tests.examples import examples
 
 numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(("0", "1.57", "-3.14", "1e-3", ".5"))
 sizes = st.floats(0.001, 2).map(lambda value: f"{value:.5g}") | st.just("-0.2")
@@ -58,7 +59,7 @@ def urdfs(draw: st.DrawFn) -> str:
     return f'<robot name="ash">{"".join(draw(st.permutations(parts)))}</robot>'
 
 
-@settings(max_examples=25, deadline=None)
+@examples(8)
 @given(text=urdfs())
 def test_a_random_reference_gets_full_marks(text: str) -> None:
     """Every rubric loads and gives its reference all points; the frame and the joint of each link are criteria."""

@@ -13,7 +13,7 @@ from tests.browser.conftest import OpenPage
 from tests.classroom.gradebooks import batch, graded_as, lab, make_class, record_run
 from tests.report.hostile_class import CORPUS, export_hostile_class
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
 
 

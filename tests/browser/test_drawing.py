@@ -7,6 +7,8 @@ import pytest
 from tests.browser.conftest import OpenPage
 from tests.command_line import ROOT
 
+pytestmark = pytest.mark.exhaustive
+
 DRAWING = ROOT / "tests/golden/drawing-several-mistakes.svg"
 FILL = "name => getComputedStyle(document.querySelector(name)).fill"
 LIGHT, DARK = "rgb(255, 255, 255)", "rgb(22, 25, 29)"

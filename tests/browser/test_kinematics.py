@@ -22,7 +22,7 @@ from tests.browser.conftest import OpenPage
 from tests.oracles.example_robots import URDFS
 from tests.samples import ROOT, SAMPLES
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 SCRIPT = ROOT / "grader" / "report" / "pages" / "files" / "kinematics.js"
 MAX_ERROR = 1e-6  # metres, and of the entries of rotations
 TIMES = 3  # random configurations of each robot

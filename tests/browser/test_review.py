@@ -18,7 +18,7 @@ from tests.review_server import Review, running
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
 KEYS = ("ash", "birch", "cedar", "dogwood", "elm")
 XSS = (

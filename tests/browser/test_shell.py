@@ -8,7 +8,7 @@ import pytest
 from grader.report.pages.shell import render_page
 from tests.browser.conftest import OpenPage
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 HOSTILE = (
     "<script>document.title='run'</script><img src=x onerror=\"document.title='run'\"><style>body{color:red}</style>"
 )

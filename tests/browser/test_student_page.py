@@ -17,7 +17,7 @@ from tests.report.reports import hinted, marked
 from tests.report.rewording import recast
 from tests.samples import SAMPLES
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
 PIXELS = "() => { viewer.draw(); return viewer.canvas.toDataURL(); }"
 HOSTILE = "".join(("</script><script>document.title='run'</script>", *HTML, *LINKS, *XML)) + "\"onerror='x' javascript:"

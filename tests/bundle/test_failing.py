@@ -11,6 +11,8 @@ import pytest
 from tests.bundle.gradescope import FALLBACK, Autograder
 from tests.classroom.class_runs import eventually
 
+pytestmark = pytest.mark.exhaustive
+
 Making = Callable[..., Autograder]
 FINE = json.dumps({"score": 1.5, "output": "fine", "tests": []})
 HANGS = """

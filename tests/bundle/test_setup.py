@@ -12,6 +12,8 @@ from tests.bundle.gradescope import Autograder, unpacked
 from tests.command_line import HANG_TIMEOUT
 from tests.wheels import offline
 
+pytestmark = pytest.mark.exhaustive
+
 WORD = """
 import docx, pypdf
 from importlib.metadata import distribution
@@ -35,7 +37,6 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
     )
 
 
-@pytest.mark.slow
 def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     """pip installs the requirements (here from local wheels), and the reference gets its points."""
     root = tmp_path / "auto grader"

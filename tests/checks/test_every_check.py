@@ -1,5 +1,7 @@
 """Properties of all checks: the cases, missing links, links without joints, loops of joints, meshes, empty visuals."""
 
+import re
+
 import pytest
 
 from grader.checks.check import describe
@@ -106,9 +108,10 @@ def test_a_shape_without_size_is_no_shape(case: Case) -> None:
 
 @every_case
 def test_every_tolerance_has_an_edge(case: Case) -> None:
-    """A sample has an edge for each argument of its check that is a tolerance."""
-    parameters = describe(case.check).parameters
-    assert set(case.edges) == {"tolerance", "angle", "distance"} & parameters.keys()
+    """A sample has an edge for each argument of its check that is a tolerance, as its text says: how far something may be off."""
+    texts = describe(case.check).documentation.arguments
+    tolerances = {name for name, text in texts.items() if re.match("How (far|large|deep) .* (may|may each) ", text)}
+    assert set(case.edges) == tolerances
 
 
 @every_edge

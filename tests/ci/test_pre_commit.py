@@ -6,8 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.ci.conftest import git, repository
 from tests.command_line import HANG_TIMEOUT, ROOT
+
+pytestmark = pytest.mark.exhaustive
 
 
 def test_a_commit_with_a_mistake_is_rejected(tmp_path: Path, published: Path) -> None:

@@ -20,7 +20,10 @@ PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
 UPLOAD = "actions/upload-artifact@b7c566a772e6b6bfb58ed0dc250532a479d7789f"
 WORKFLOWS = ROOT / "docs" / "ci"
 
-pytestmark = pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash")
+pytestmark = [
+    pytest.mark.exhaustive,
+    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash"),
+]
 
 
 def instead_of_github(host: Path) -> dict[str, str]:
@@ -73,7 +76,6 @@ def job(tmp_path: Path, temp: Path) -> Job:
     return Job(tmp_path / "work", temp)
 
 
-@pytest.mark.slow
 def test_a_green_check(job: Job) -> None:
     """A robot without mistakes exits with 0 and has score, summary and reports."""
     done = job.grade()
@@ -153,7 +155,6 @@ def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) ->
     assert (done.code, job.output("score")) == (0, "90"), done.stderr
 
 
-@pytest.mark.slow
 def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     """The template for student repositories runs from checkout to artifact, green and red."""
     workflow = load(WORKFLOWS / "student-repository.yml")
@@ -175,7 +176,6 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     assert kept == ["junit.xml", "report.html", "report.json", "report.md", "report.sarif", "report.svg"] * 2
 
 
-@pytest.mark.slow
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
     """The input `version` installs that tag; anything that is no tag is refused before the installation."""
     action = load(ROOT / "action.yml")
@@ -205,7 +205,6 @@ def too_large(host: Path) -> None:
         repository(host / name)
 
 
-@pytest.mark.slow
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches and grades every student's repository, even if some are broken."""
     host = tmp_path / "host"
@@ -258,7 +257,6 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     assert {path.name for path in (runner.temp / "reports").iterdir()} == expected
 
 
-@pytest.mark.slow
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     """The autograder for Classroom 50 writes both files to the student's checkout, and exits with 0 for a low mark."""
     work = tmp_path / "work"

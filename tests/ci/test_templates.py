@@ -18,6 +18,7 @@ SCHEMAS = {
 }
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", SCHEMAS)
 def test_the_file_is_valid_for_its_host(name: str) -> None:
     """An action, a workflow and a GitLab job satisfy their published schemas."""
@@ -30,6 +31,7 @@ def test_the_file_is_valid_for_its_host(name: str) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.exhaustive
 def test_the_schemas_reject_mistakes(tmp_path: Path) -> None:
     """A step with a misspelt key is rejected, so the test above can fail."""
     text = (ROOT / "docs/ci/student-repository.yml").read_text(encoding="utf-8").replace("runs-on:", "run-on:")
@@ -52,6 +54,7 @@ def zizmor(*files: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run([program, *options, *files], capture_output=True, text=True, check=False)
 
 
+@pytest.mark.exhaustive
 def test_zizmor_finds_nothing() -> None:
     """Actions are pinned, permissions are few, no expression is in a script, no token is left in a checkout."""
     done = zizmor(*(ROOT / name for name in WORKFLOWS))
@@ -59,6 +62,7 @@ def test_zizmor_finds_nothing() -> None:
     assert "No findings to report" in done.stdout + done.stderr
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("before", "after", "audit"),
     [
@@ -91,6 +95,7 @@ def test_no_token_stays_in_a_checkout() -> None:
                 assert re.fullmatch(r"[a-z/-]+@[0-9a-f]{40}", step["uses"])
 
 
+@pytest.mark.exhaustive
 def test_hooks_are_valid() -> None:
     """pre-commit accepts the file of hooks."""
     done = subprocess.run(

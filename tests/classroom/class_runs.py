@@ -1,5 +1,6 @@
 """Run commands over whole classes as a user does."""
 
+import atexit
 import io
 import os
 import shutil
@@ -10,7 +11,9 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout, suppress
+from functools import cache
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 from grader.cli.app import run as run_here
@@ -138,17 +141,20 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != INDEX}
 
 
-def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
+def report_in_process(path: Path, to: Path, *more: str) -> tuple[int, bytes | str]:
     """Run `grader grade PATH --format json` in this process and return the exit code and the report or error."""
     output = io.StringIO()
     to.unlink(missing_ok=True)
     with redirect_stdout(io.StringIO()), redirect_stderr(output):
-        code = run_here(["grade", "--save", f"json={to}", "--format", "json", "--", str(path)])
+        code = run_here(["grade", "--save", f"json={to}", "--format", "json", *more, "--", str(path)])
     return code, to.read_bytes() if to.exists() else output.getvalue()
 
 
-def without_hints(folder: Path) -> Path:
-    """Write the rubric of Lab 6 without hints, whose search takes ten times as long as grading; return its path."""
+@cache
+def without_hints() -> Path:
+    """Return the rubric of Lab 6 without hints, whose search takes ten times as long as grading."""
+    folder = Path(mkdtemp())
+    atexit.register(shutil.rmtree, folder)
     text = (ROOT / "rubrics/lab6.toml").read_text(encoding="utf-8")
     assert text.count('hints = "edit"') == 1
     (folder / "lab6.toml").write_text(text.replace('hints = "edit"', 'hints = "none"'), encoding="utf-8")

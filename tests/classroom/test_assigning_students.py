@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import Done, grader
+from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
 GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
@@ -25,7 +25,8 @@ def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") ->
     if roster:
         (top / "roster.csv").write_text(roster, encoding="utf-8")
         more = (*more, "--roster", top / "roster.csv")
-    return grader("batch", top / "class", "--gradebook", top / into, *more)
+    rubric = () if "--rubric" in more else ("--rubric", without_hints())
+    return grader("batch", top / "class", "--gradebook", top / into, *rubric, *more)
 
 
 def students(top: Path, into: str = "g.db") -> dict[str, dict[str, Any]]:
@@ -40,7 +41,7 @@ def mark(top: Path, who: str) -> None:
     assert grader("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
 
 
-@pytest.mark.parametrize("name", ["alice", "ALICE", "Alice Ash", "Ash", "1"])
+@pytest.mark.parametrize("name", ["alice", "ALICE", "Alice Ash"])
 def test_a_team_cannot_submit_for_a_member_of_another(tmp_path: Path, name: str) -> None:
     """A folder in team1 counts for nobody in team2, before and after alice has submitted; her marks stay hers."""
     submit(tmp_path / "class/team1/Lab6/mallory", BAD)
@@ -61,8 +62,11 @@ def test_a_team_cannot_submit_for_a_member_of_another(tmp_path: Path, name: str)
     assert after[f"team1/{name}"] == before[f"team1/{name}"]
 
 
-@pytest.mark.parametrize("roster", ["", "id,name\nalice,Alice Ash\n"])
-@pytest.mark.parametrize("name", ["ALICE", "Alice", "alice~2", "\u0430lice", "Alice Ash", "alice ash"])
+@pytest.mark.parametrize(
+    ("name", "roster"),
+    [(name, "") for name in ("ALICE", "alice~2", "\u0430lice")]
+    + [(name, "id,name\nalice,Alice Ash\n") for name in ("Alice", "Alice Ash", "alice ash")],
+)
 def test_a_similar_name_takes_over_nothing(tmp_path: Path, name: str, roster: str) -> None:
     """Another spelling of alice's name has its own grade, and hers stays with all manual marks."""
     submit(tmp_path / "class/alice", BAD)

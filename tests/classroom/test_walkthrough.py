@@ -17,6 +17,8 @@ from grader.classroom.gradebook.grades import Grades
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.tutorial import Step, follow
 
+pytestmark = pytest.mark.exhaustive
+
 PAGE = (ROOT / "docs" / "grade-a-class.md").read_text(encoding="utf-8")
 SECTION = PAGE.partition("## From download to published grades\n")[2].partition("\n## ")[0]
 
@@ -38,7 +40,6 @@ def followed(folder: Path) -> tuple[str, list[Step]]:
     return follow(SECTION, folder)
 
 
-@pytest.mark.slow
 def test_every_command_works_as_shown(followed: tuple[str, list[Step]]) -> None:
     """No command fails, and the outputs on the page are current."""
     section, steps = followed
@@ -47,7 +48,6 @@ def test_every_command_works_as_shown(followed: tuple[str, list[Step]]) -> None:
     assert not [step.printed for step in steps if "there is no student" in step.printed]
 
 
-@pytest.mark.slow
 def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str, list[Step]]) -> None:
     """Twenty marks are in the gradebook; each row of the upload has its student's total, or EX, and nothing else differs."""
     del followed
@@ -71,7 +71,6 @@ def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str,
     assert grades["100064"].total == Decimal(0)
 
 
-@pytest.mark.slow
 def test_each_graded_student_gets_a_report(folder: Path, followed: tuple[str, list[Step]]) -> None:
     """The zip for Canvas has a file for each student with a submission that Canvas can take, under a name that fits."""
     del followed

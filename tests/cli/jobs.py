@@ -29,7 +29,8 @@ class GithubJob:
             "GITHUB_WORKSPACE": str(self.checkout),
             "GITHUB_STEP_SUMMARY": str(self.summary),
         }
-        return run_with_input(arguments, b"", {**job, **around}, start or self.checkout)
+        hints = ("--hints", "none") if "grade" in arguments and "--hints" not in arguments else ()
+        return run_with_input((*arguments, *hints), b"", {**job, **around}, start or self.checkout)
 
     def files(self, path: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> set[str | None]:
         """Return the files that the annotations of a path refer to."""

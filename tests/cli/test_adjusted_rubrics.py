@@ -11,7 +11,6 @@ from tests.command_line import ROOT
 from tests.report.class_pages import ClassPageReader
 
 DROPPED = "Not counted: odd handout."
-HOSTILE = str(ROOT / "tests" / "classroom" / "hostile")
 
 
 def adjusted(text: str, name: str, action: str) -> str:
@@ -114,6 +113,7 @@ def test_extra_credit_is_above_the_maximum(tmp_path: Path) -> None:
     assert "Extra credit: 0 of 2.5 points, in addition to the maximum." in " ".join(shown.split())
 
 
+@pytest.mark.usefixtures("hostile_checks")
 def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path: Path) -> None:
     """The instructor has dropped it for this reason: the exit code is 3 without the adjustment, and 0 with it."""
     text = lab_text(extra="1").replace(
@@ -122,7 +122,7 @@ def test_a_faulty_check_of_a_dropped_criterion_is_no_fault(wrong: Path, tmp_path
     )
     (wrong / "robot.urdf").write_text(urdf().replace('name="r"', 'name="returns_text"'))
     codes = [
-        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen), PYTHONPATH=HOSTILE).returncode
+        grader("grade", wrong, "--rubric", rubric(tmp_path, chosen)).returncode
         for chosen in (text, adjusted(text, "extra", "drop"))
     ]
     assert codes == [3, 0]
@@ -317,6 +317,7 @@ def test_comments_are_in_reports_of_the_class(top: Path) -> None:
     assert result(data, "box")["points"] == 0
 
 
+@pytest.mark.usefixtures("hostile_checks")
 def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
     """The grader did not fail on anybody: the grade is final but for manual grading."""
     write_submission(tmp_path / "class" / "anna")
@@ -326,7 +327,7 @@ def test_a_class_with_a_faulty_check_that_is_dropped(tmp_path: Path) -> None:
     )
     lab = rubric(tmp_path, adjusted(text, "extra", "drop"))
     where = "--gradebook", tmp_path / "book.db", "--rubric", lab, "--jobs", 1, "--format", "json"
-    done = grader("batch", tmp_path / "class", *where, PYTHONPATH=HOSTILE)
+    done = grader("batch", tmp_path / "class", *where)
     data = json.loads(done.stdout)
     (anna,) = data["students"]
     assert (anna["status"], anna["score"], anna["max_score"], data["run"]["errored"]) == ("graded", 6, 11, 0)

@@ -194,7 +194,7 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
     )
 
 
-@pytest.mark.parametrize("form", ["terminal", "json"])
+@pytest.mark.parametrize("form", ["terminal", pytest.param("json", marks=pytest.mark.exhaustive)])
 def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""
     command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'

@@ -57,6 +57,7 @@ def test_a_slow_document_needs_manual_grading(
     assert "90/100" in shown
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
 def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp_path: Path) -> None:
     """However the grader ends, its converter process ends, too."""
@@ -67,6 +68,7 @@ def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp
         assert eventually(lambda: not session_of(process))
 
 
+@pytest.mark.exhaustive
 def test_no_converter_outlives_a_killed_batch(tmp_path: Path) -> None:
     """A worker that is killed takes its converter with it."""
     write_submission(tmp_path / "class" / "alice")
@@ -92,6 +94,7 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
     return found
 
 
+@pytest.mark.exhaustive
 def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
     """A thread ends the converter on systems without PR_SET_PDEATHSIG."""
     child = (
@@ -115,6 +118,7 @@ def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -
         assert eventually(lambda: not session_of(process))
 
 
+@pytest.mark.exhaustive
 def test_a_converter_without_a_parent_ends_at_once() -> None:
     """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here
@@ -124,12 +128,13 @@ def test_a_converter_without_a_parent_ends_at_once() -> None:
     assert done.returncode == 1
 
 
+@pytest.mark.exhaustive
 def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     """If grading fails because of a document, the submission is graded again without it, with the same points."""
     write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab.db"
-    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2")
+    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2", cwd=str(ROOT))
     assert "2 graded, 0 unchanged" in done.stderr
     found = dict(rows(book, "SELECT key, verdict || ' ' || score || ' ' || pending FROM grade"))
     assert found == {"alice": "graded 900000 100000", "bob": "graded 900000 100000"}

@@ -22,6 +22,8 @@ from tests.classroom.class_runs import counted, environment, grader, reasons, ve
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.exhaustive
+
 MIB = 1024 * 1024
 URDF = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
 # The calls that a command makes, at least three times what was counted: for a megabyte, and for the reference.

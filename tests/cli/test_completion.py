@@ -109,6 +109,7 @@ def test_invalid_requests_print_nothing(variables: dict[str, str]) -> None:
     assert (done.stdout.strip(), done.stderr) == (b"", b"")
 
 
+@pytest.mark.exhaustive
 def test_closed_standard_output_is_no_error() -> None:
     """A shell that closes standard output causes no error."""
     requested = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
@@ -163,6 +164,7 @@ ask() {
 """
 
 
+@pytest.mark.exhaustive
 def test_a_real_bash(tmp_path: Path) -> None:
     """It sources the script that is shown for it, and completes."""
     lines = ("ask grader ex", "ask grader grade '\"my file\"' --part ta", "ask grader rubric sh")
@@ -171,6 +173,7 @@ def test_a_real_bash(tmp_path: Path) -> None:
     assert done.stdout.decode().splitlines() == ["export explain", "task1 task2 task3", "show"]
 
 
+@pytest.mark.exhaustive
 def test_installation(tmp_path: Path) -> None:
     """The rest of the shell's start-up file is kept; a shell that is not known is refused."""
     (tmp_path / ".bashrc").write_text("alias ll='ls -l'\n")

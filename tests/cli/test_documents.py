@@ -191,6 +191,7 @@ class _Terminal(StringIO):
         return True
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("stream", "seconds", "lines"), [(_Terminal, 0.0, 1), (_Terminal, 1e9, 0), (StringIO, 0.0, 0)])
 def test_a_document_that_takes_long_is_named(
     stream: type[StringIO], seconds: float, lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -352,8 +352,20 @@ def test_the_file_of_the_lms_is_never_replaced(name: str, target: str, top: Path
     before = lms.read_bytes()
     why = f"cannot write {lms}: --into reads it, and rows without a grade would be lost; choose another file"
     assert refusal(export(top, target, "--into", lms, "--output", top / name)) == why
+    assert lms.read_bytes() == before
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("name", ["lms.csv", "link.csv", "hard.csv"])
+def test_standard_output_is_no_way_to_replace_the_file_of_the_lms(name: str, top: Path) -> None:
+    """Nor is it appended to."""
+    lms = top / "lms.csv"
+    lms.write_text(canvas(ben="102", nobody="9"))
+    (top / "link.csv").symlink_to("lms.csv")
+    (top / "hard.csv").hardlink_to(lms)
+    before = lms.read_bytes()
     with lms.open("ab") as stdout:
-        command = [sys.executable, "-m", "grader", "export", target, "--gradebook", str(top / "book.db")]
+        command = [sys.executable, "-m", "grader", "export", "canvas", "--gradebook", str(top / "book.db")]
         done = subprocess.run([*command, "--into", str(top / name)], cwd=ROOT, stdout=stdout, check=False)
     assert done.returncode == 2
     assert lms.read_bytes() == before

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import HANG_TIMEOUT, clean_environment, run
+from tests.command_line import HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT, SAMPLES
 
 SEEDS = 20
@@ -38,9 +38,9 @@ def robot(expression: str, text: str = "") -> str:
     )
 
 
-def graded(path: Path, **variables: str) -> tuple[bytes, int, float, dict[str, str]]:
+def graded(path: Path) -> tuple[bytes, int, float, dict[str, str]]:
     """Return the report on a submission, the exit code, the score, and each criterion's status."""
-    done = run(("grade", path, "--format", "json"), **variables)
+    done = run(("grade", path, "--format", "json"))
     report = json.loads(done.stdout)
     return (
         done.stdout,
@@ -62,7 +62,7 @@ def test_what_differs_between_runs_needs_manual_grading(expression: str, tmp_pat
 
 @pytest.mark.slow
 def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
-    """A package whose URDF, setup.py and launch file use the order of sets, and refuse values with them, has one report."""
+    """A package whose files use the order of sets, and refuse values with them, has one report, also in other zones and locales."""
     folder = tmp_path / "my_robot"
     shutil.copytree(PACKAGE, folder)
     (folder / "urdf/my_robot.urdf").write_text(robot(next(iter(UNORDERED)), f'<link name="${{xacro.fatal({SET})}}"/>'))
@@ -74,13 +74,19 @@ def test_reports_are_the_same_with_every_hash_seed(tmp_path: Path) -> None:
         path = folder / name
         assert old in path.read_text()
         path.write_text(path.read_text().replace(old, new))
-    reports = {graded(folder, PYTHONHASHSEED=seed)[0] for seed in "012"}
-    assert len(reports) == 1
+    saved = {}
+    for seed, zone, locale in (("1", "UTC", "C"), ("2", "Asia/Tokyo", "C.UTF-8")):
+        files = [tmp_path / f"{seed}.{kind}" for kind in ("html", "svg")]
+        words = "grade", str(folder), "--format=json", *(f"--save={file.suffix[1:]}={file}" for file in files)
+        done = run_process(words, variables={"PYTHONHASHSEED": seed, "TZ": zone, "LANG": locale})
+        saved[seed] = (done.stdout, *(file.read_bytes() for file in files))
+    assert saved["1"] == saved["2"]
+    assert saved["1"][0] == graded(folder)[0]
     statuses = graded(folder)[3]
     assert [statuses[name] for name in ("base-green", "setup-installs-urdf", "launch-finds-files")] == ["pending"] * 3
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_every_sample_has_one_report_over_twenty_hash_seeds() -> None:
     """All samples are graded with each seed, in one process; hints, which take longer, are searched with two or three seeds."""
     digests: dict[str, list[str]] = {}

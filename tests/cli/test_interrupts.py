@@ -4,6 +4,8 @@ import signal
 import subprocess
 import sys
 
+import pytest
+
 SCRIPT = """
 import signal, sys, time
 from grader.cli.ending import quiet_interrupts
@@ -28,11 +30,13 @@ def ran(body: str) -> tuple[str, str]:
     return done.stdout, done.stderr
 
 
+@pytest.mark.exhaustive
 def test_an_interrupt_in_a_finalizer_is_not_lost() -> None:
     """Without it Python prints the exception and goes on."""
     assert ran("Interrupted(); time.sleep(100)") == ("interrupted\n", "")
 
 
+@pytest.mark.exhaustive
 def test_a_file_that_an_interrupt_leaves_open_is_no_mistake() -> None:
     """A warning about it would be printed while the exception is on its way; without an interrupt it is."""
     leaves_open = "file = open(sys.executable); file = None"
@@ -42,11 +46,13 @@ def test_a_file_that_an_interrupt_leaves_open_is_no_mistake() -> None:
     ) == ("", "")
 
 
+@pytest.mark.exhaustive
 def test_other_faults_of_finalizers_are_shown() -> None:
     """Only what an interrupt causes is quiet."""
     assert "ZeroDivisionError" in ran("type('A', (), {'__del__': lambda self: 1 / 0})()")[1]
 
 
+@pytest.mark.exhaustive
 def test_an_ignored_interrupt_stays_ignored() -> None:
     """After nohup or `trap '' INT` Ctrl-C does nothing."""
     before = "signal.signal(signal.SIGINT, signal.SIG_IGN)"

@@ -158,27 +158,27 @@ def test_a_mark_overrides_a_check(
     assert (found["marks_by_hand"], found["total"]) == (1, score)
 
 
+@pytest.mark.usefixtures("hostile_checks")
 def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:
     """A mark replaces the result of a check that failed with an error; the grade is final then."""
     (tmp_path / "class").mkdir()
     text = urdf().replace('name="r"', 'name="raises"')
     (tmp_path / "class" / "anna.urdf").write_text(text)
     (tmp_path / "roster.csv").write_text("id\nanna\n")
-    where = {"PYTHONPATH": str(HOSTILE)}
     arguments = ("--rubric", HOSTILE / "hostile.toml", "--gradebook", tmp_path / "book.db")
-    assert grader("batch", tmp_path / "class", *arguments, **where).returncode == 0
+    assert grader("batch", tmp_path / "class", *arguments).returncode == 0
     book = ("--gradebook", tmp_path / "book.db")
 
     def status() -> tuple[Any, ...]:
-        (found,) = json.loads(grader("export", "json", *book, **where).stdout)["students"]
+        (found,) = json.loads(grader("export", "json", *book).stdout)["students"]
         return found["status"], found["score"], found["is_final"]
 
     assert status() == ("errored", 1, False)
-    assert "nothing needs manual grading" in grader("review", *book, **where).stdout
-    done = grader("mark", "anna", "behaves", "1.5", *book, **where)
+    assert "nothing needs manual grading" in grader("review", *book).stdout
+    done = grader("mark", "anna", "behaves", "1.5", *book)
     assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
     assert status() == ("errored", 2.5, True)
-    assert "could not be graded, and was marked manually (1): anna" in grader("stats", *book, **where).stdout
+    assert "could not be graded, and was marked manually (1): anna" in grader("stats", *book).stdout
 
 
 def test_no_run_loses_a_mark(top: Path) -> None:
@@ -239,6 +239,7 @@ def test_the_default_author(top: Path) -> None:
     assert marks(top)[0][3] == "kim"
 
 
+@pytest.mark.exhaustive
 def test_concurrent_marks(top: Path) -> None:
     """Several graders, and a batch that grades everything meanwhile: nothing is lost."""
     expected = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
@@ -261,6 +262,7 @@ def test_concurrent_marks(top: Path) -> None:
     assert student(top, "emil")["score"] == 2
 
 
+@pytest.mark.exhaustive
 def test_marks_of_several_threads_wait_for_each_other(top: Path) -> None:
     """A slow write does not break another one."""
     with Gradebook(top / "book.db") as book:

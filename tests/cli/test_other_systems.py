@@ -36,6 +36,7 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("kind", ["folder", "zip", "urdf"])
 def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
     """A folder, an archive and a URDF get the same report as here."""
@@ -55,6 +56,7 @@ def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
     assert done.stdout == first.stdout
 
 
+@pytest.mark.exhaustive
 def test_no_symlink_out_of_a_submission_is_followed(tmp_path: Path) -> None:
     """A symlink out of the submission is named and ignored, one inside is followed."""
     (tmp_path / "sub").mkdir()

@@ -36,7 +36,10 @@ def fill_memory(*_: object, **__: object) -> bytes:
 
 @pytest.mark.parametrize(
     ("what", "said"),
-    [(hang, b"this takes more than 1 s of processor time"), (fill_memory, b"this needs more than 512 MiB of memory")],
+    [
+        pytest.param(hang, b"this takes more than 1 s of processor time", marks=pytest.mark.exhaustive),
+        (fill_memory, b"this needs more than 512 MiB of memory"),
+    ],
 )
 @pytest.mark.parametrize("command", ["grade", "inspect"])
 def test_reading_ends(command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,6 +86,7 @@ def test_limits_end_with_the_command() -> None:
     assert all_limits() == before
 
 
+@pytest.mark.exhaustive
 def test_what_ignores_the_limit_is_ended(tmp_path: Path) -> None:
     """Work inside of one call into C, which no exception can interrupt, ends with the process."""
     program = tmp_path / "stuck.py"

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.classroom.class_runs import HOSTILE, HOSTILE_RUBRIC
+from tests.classroom.class_runs import HOSTILE_RUBRIC
 from tests.golden.cases import run
 
-WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
+pytestmark = pytest.mark.usefixtures("hostile_checks")
 FAULTY = "the check behaves of the package hostile-checks is faulty: "
 
 
@@ -42,7 +42,7 @@ def robot(folder: Path, name: str) -> str:
 def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, threshold: tuple[str, ...]) -> None:
     """Whatever it raises or returns, the criterion is errored, the message names the package, and the exit code is 3."""
     requested = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
-    done = run(requested, **WITH_HOSTILE)
+    done = run(requested)
     assert done.returncode == 3
     loads, behaves = json.loads(done.stdout)["results"]
     assert (loads["status"], loads["points"]) == ("passed", 1)
@@ -52,7 +52,7 @@ def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, thresh
 
 def test_a_working_check_decides(tmp_path: Path) -> None:
     """A plug-in check passes as the grader's own do."""
-    done = run(("grade", robot(tmp_path, "fine"), "--rubric", HOSTILE_RUBRIC), **WITH_HOSTILE)
+    done = run(("grade", robot(tmp_path, "fine"), "--rubric", HOSTILE_RUBRIC))
     assert done.returncode == 0, done.stderr
 
 
@@ -80,7 +80,7 @@ def test_an_invalid_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str,
         ("grade", robot(tmp_path, "fine"), "--rubric", str(tmp_path / "lab.toml")),
         ("rubric", "check", str(tmp_path / "lab.toml")),
     ):
-        done = run(command, **WITH_HOSTILE)
+        done = run(command)
         assert (done.returncode, done.stdout) == (2, b"")
         [line] = done.stderr.decode().splitlines()
         assert "lab.toml:20: the check " in line
@@ -89,7 +89,7 @@ def test_an_invalid_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str,
 
 def test_the_list_of_checks_names_the_faulty_ones() -> None:
     """They hide none of the others."""
-    done = run(("rubric", "checks"), **WITH_HOSTILE)
+    done = run(("rubric", "checks"))
     assert done.returncode == 0
     assert b"without_annotation\n  the check without_annotation of the package hostile-checks" in done.stdout
     assert b"shows_box" in done.stdout
@@ -98,7 +98,7 @@ def test_the_list_of_checks_names_the_faulty_ones() -> None:
 
 def test_the_schema_has_the_usable_ones() -> None:
     """An editor completes the names of all, and knows the arguments of those that can be used."""
-    done = run(("schema", "rubric"), **WITH_HOSTILE)
+    done = run(("schema", "rubric"))
     assert (done.returncode, done.stderr) == (0, b"")
     schema = json.loads(done.stdout)
     named = schema["properties"]["criterion"]["items"]["properties"]["check"]["enum"]

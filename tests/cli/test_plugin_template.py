@@ -11,6 +11,8 @@ import pytest
 
 from tests.command_line import HANG_TIMEOUT, ROOT, Done, clean_environment, run_process
 
+pytestmark = pytest.mark.exhaustive
+
 PAGE = (ROOT / "docs/plug-in-checks.md").read_text(encoding="utf-8")
 TEMPLATE = ROOT / "docs/plug-in-template"
 ENTRY = "[grader.checks]\n{} = math:hypot\n"

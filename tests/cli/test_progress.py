@@ -44,6 +44,7 @@ def on_terminal(*arguments: object) -> str:
     return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", written.decode())
 
 
+@pytest.mark.exhaustive
 def test_the_total_is_known_from_the_start(tmp_path: Path) -> None:
     """Each pass begins at 0 of its total with a rate, and no total is ever unknown."""
     make_class(tmp_path)

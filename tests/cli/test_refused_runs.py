@@ -111,6 +111,7 @@ def test_a_refused_run_leaves_no_report(place: Path, why: str, is_first: bool) -
     assert files(place) == before, done.stderr
 
 
+@pytest.mark.exhaustive
 def test_a_report_that_cannot_be_printed_is_not_saved(place: Path) -> None:
     """Nor is the first of two reports kept if the second cannot be written."""
     before = files(place)

@@ -109,6 +109,7 @@ def test_standard_input(job: GithubJob) -> None:
     assert {location["artifactLocation"]["uri"] for location in locations} == {"-"}
 
 
+@pytest.mark.exhaustive
 def test_a_deleted_current_folder(tmp_path: Path) -> None:
     """A report needs no current folder."""
     gone = tmp_path / "gone"

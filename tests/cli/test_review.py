@@ -4,6 +4,7 @@ import os
 import pty
 import subprocess
 import sys
+from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -128,6 +129,7 @@ def test_one_criterion_only(top: Path) -> None:
     assert "did you mean 'picture'" in review(top, "", "--criterion", "pictur").stderr
 
 
+@pytest.mark.exhaustive
 def test_without_standard_input(graded_class: Path) -> None:
     """It stops at the first question."""
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
@@ -137,53 +139,71 @@ def test_without_standard_input(graded_class: Path) -> None:
     assert done.stdout.endswith(b"0 marked, 6 left\n")
 
 
-def test_two_reviews_at_once(top: Path) -> None:
+@pytest.fixture
+def meanwhile(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Return a function that has somebody do something while the first question waits, and then types lines."""
+
+    def types(others: Callable[[], object], lines: list[str]) -> None:
+        waiting = iter(lines)
+        first = iter([others])
+
+        def typed() -> str:
+            for act in first:
+                act()
+            for line in waiting:
+                return line
+            raise EOFError
+
+        monkeypatch.setattr("builtins.input", typed)
+
+    return types
+
+
+def put(top: Path, key: str, criterion: str, points: int, comment: str = "") -> None:
+    """Mark as Kim."""
+    with Gradebook(top / "book.db") as book:
+        found = queued_result(Grades(book), QueuedCriterion(key, criterion))
+        assert found is not None
+        mark(book, found.grade, found.result.criterion, Decimal(points), "Kim", comment)
+
+
+def test_two_reviews_at_once(top: Path, meanwhile: Callable[..., None]) -> None:
     """A question that one reviewer has answered is not asked of the other."""
-    command = [sys.executable, "-u", "-m", "grader", "review", "--gradebook", str(top / "book.db")]
-    with subprocess.Popen(
-        command, cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    ) as slow:  # fmt: skip
-        assert slow.stdin is not None
-        assert slow.stdout is not None
-        while "in " not in (line := slow.stdout.readline()):  # the last line before the first question
-            assert line
-        review(top, "s\n4\n1\nq\n")
-        out, _ = slow.communicate("2\ns\n", timeout=HANG_TIMEOUT)
-    assert "Anna Ek (anna): About picture" not in out
-    assert "Ben Oh (emil): About picture" in out
-    assert out.endswith("1 marked, 1 left\n")
+
+    def answer() -> None:
+        put(top, "emil", "essay", 4)
+        put(top, "anna", "picture", 1)
+
+    meanwhile(answer, ["2", "s"])
+    done = review(top, "")
+    assert "Anna Ek (anna): About picture" not in done.stdout
+    assert "Ben Oh (emil): About picture" in done.stdout
+    assert done.stdout.endswith("1 marked, 1 left\n")
     assert marks(top) == [("emil", "essay", 4.0, ""), ("anna", "picture", 1.0, ""), ("anna", "essay", 2.0, "")]
 
 
 @pytest.mark.parametrize(
     ("typed", "end", "kept"),
     [
-        ("k\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
-        ("what\n\nKEEP\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
-        ("r\n", "1 marked, 1 left\n", [1.5, None, 3.0, 2.0]),
-        ("", "0 marked, 1 left\n", [1.5, None, 3.0]),
+        (["k"], "0 marked, 1 left\n", [1.5, None, 3.0]),
+        (["what", "", "KEEP"], "0 marked, 1 left\n", [1.5, None, 3.0]),
+        (["r"], "1 marked, 1 left\n", [1.5, None, 3.0, 2.0]),
+        ([], "0 marked, 1 left\n", [1.5, None, 3.0]),
     ],
 )
-def test_a_newer_mark_is_confirmed(typed: str, end: str, kept: list[float], top: Path) -> None:
-    """A reviewer keeps or replaces a mark that another process added after the question; all marks are kept."""
-    book = ("--gradebook", top / "book.db")
+def test_a_newer_mark_is_confirmed(
+    typed: list[str], end: str, kept: list[float], top: Path, meanwhile: Callable[..., None]
+) -> None:
+    """A reviewer keeps or replaces a mark that somebody added after the question; all marks are kept."""
     for points in ("1.5", "-"):
-        assert grader("mark", "anna", "essay", points, *book).returncode == 0
-    command = [sys.executable, "-u", "-m", "grader", "review", "--criterion", "essay", *map(str, book)]
-    with subprocess.Popen(
-        command, cwd=ROOT, env=ENVIRONMENT, text=True,
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    ) as slow:  # fmt: skip
-        assert slow.stdout is not None
-        while "in " not in (line := slow.stdout.readline()):  # the last line before the question
-            assert line
-        assert grader("mark", "anna", "essay", "3", "--comment", "two roots", "--by", "Kim", *book).returncode == 0
-        out, err = slow.communicate(f"2 mine\n{typed}", timeout=60)
-    assert err.startswith("grader: somebody has marked this since it was shown: 3 points by Kim at 20")
-    assert err.endswith("+00:00: two roots\n")
-    assert err.count("\n") == 1
-    assert "k to keep that mark, r to replace it with yours: " in out
-    assert out.endswith(end)
+        assert grader("mark", "anna", "essay", points, "--gradebook", top / "book.db").returncode == 0
+    meanwhile(lambda: put(top, "anna", "essay", 3, "two roots"), ["2 mine", *typed])
+    done = review(top, "", "--criterion", "essay")
+    assert done.stderr.startswith("grader: somebody has marked this since it was shown: 3 points by Kim at 20")
+    assert done.stderr.endswith("+00:00: two roots\n")
+    assert done.stderr.count("\n") == 1
+    assert "k to keep that mark, r to replace it with yours: " in done.stdout
+    assert done.stdout.endswith(end)
     assert [row[2] for row in marks(top)] == kept
 
 
@@ -207,6 +227,7 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     assert [row[2] for row in marks(top)] == [1, 2, 4]
 
 
+@pytest.mark.exhaustive
 def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
     """At a terminal, in the middle of a question."""
     own, theirs = pty.openpty()

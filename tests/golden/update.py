@@ -8,12 +8,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent))
 
-from tests.command_line import run_process
+from tests.command_line import run
 from tests.golden.cases import GOLDEN
 
 if __name__ == "__main__":
     for case in GOLDEN:
-        done = run_process(case.arguments, variables=case.variables)
+        done = run(case.arguments, **case.variables)
         case.file.write_bytes(done.stdout)
         if done.returncode != case.exit_code:
             print(f"{case.name}: exit code {done.returncode}, not {case.exit_code}")

@@ -144,6 +144,7 @@ def test_a_rubric_passes_its_check(lab: str) -> None:
     assert done.returncode == bool(named)
 
 
+@pytest.mark.exhaustive
 @every_lab
 def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     """No mistake costs nothing, unless the rubric says why, and no equivalent costs something; `grader rubric test` tries all."""

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import gradebook as module
@@ -19,7 +19,8 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units
+from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units, urdf
+from tests.examples import examples
 
 LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
 STUDENTS = ("anna", "ben", "cleo")
@@ -127,7 +128,7 @@ class Model:
         return score, out_of, pending, faults
 
 
-@settings(max_examples=120)
+@examples(30)
 @given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
 def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
     """View, standing, report and model agree after any runs, changes of submissions and rubrics, and marks."""
@@ -189,19 +190,6 @@ def check(book: Gradebook, model: Model) -> None:
 def is_decided(result: Any) -> bool:
     """Return whether a check or a mark has decided the points of a criterion."""
     return result.manual_mark is not None or result.outcome.status in ("passed", "failed", "skipped")
-
-
-def test_a_student_without_a_submission_has_no_points(book: Gradebook) -> None:
-    """A student who is only on the roster is missing and has no points."""
-    from grader.classroom.gradebook.run_writer import save_student
-    from grader.classroom.gradebook.stored import Enrolment
-    from grader.classroom.students import Student
-
-    with book.transaction():
-        save_student(book, Student("dora"), Enrolment(1))
-    ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
-    assert (score, verdict, faults or 0) == (None, "missing", 0)
-    assert Grades(book).find("dora").why_not_final == "nothing was submitted"
 
 
 # --- Versions ---------------------------------------------------------------------------------------------------------
@@ -308,5 +296,10 @@ def test_other_files_are_refused_in_one_line(kind: str, tmp_path: Path) -> None:
     commands = COMMANDS if kind == "damaged" else {name: COMMANDS[name] for name in ("mark", "diff")}
     for command in commands.values():
         assert WHY[kind] in refusal(grader(*command, path))
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class/ash.urdf").write_text(urdf())
+    if kind != "none":
+        done = grader("batch", tmp_path / "class", "--gradebook", path)
+        assert (done.returncode, done.stdout, WHY[kind] in done.stderr) == (2, "", True), done.stderr
     if kind in ("text", "of-others", "newer"):
         assert path.read_bytes() == before

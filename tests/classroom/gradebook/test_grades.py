@@ -13,7 +13,6 @@ from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.gradebook.summary import attention
 from grader.classroom.students import ClassSubmission, Student
-from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 
@@ -34,39 +33,6 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
             for person in PEOPLE:
                 save_student(opened, person, None)
         yield opened
-
-
-def test_students_are_found_by_every_identifier(book: Gradebook) -> None:
-    """Key, login, address, numbers and name are accepted; a key takes precedence."""
-    for name in ("anna", "ae1", "anna@example.org", "9001", "Anna Ek"):
-        assert Grades(book).find(name).student.key == "anna"
-    assert Grades(book).find("S1").student.name == "Sven"
-
-
-@pytest.mark.parametrize("name", ["Ben Oh", "101"])
-def test_ambiguous_names_match_nobody(book: Gradebook, name: str) -> None:
-    """A name that several students have matches none of them, even across kinds of identifiers."""
-    found = "'ben' (Ben Oh), 'emil' (Ben Oh)" if name == "Ben Oh" else "'anna' (Anna Ek), 'emil' (Ben Oh)"
-    with pytest.raises(InputError) as caught:
-        Grades(book).find(name)
-    assert str(caught.value) == f"{name!r} is ambiguous: it may be {found}; use one of these ids"
-
-
-@pytest.mark.parametrize(
-    ("name", "guess"),
-    [
-        ("ana", "; did you mean 'anna'?"),
-        ("Ana Ek", "; did you mean 'Anna Ek'?"),
-        ("ANNNA", "; did you mean 'anna'?"),
-        ("", ""),
-    ],
-)
-def test_an_unknown_name(book: Gradebook, name: str, guess: str) -> None:
-    """The message suggests a similar name."""
-    with pytest.raises(InputError) as caught:
-        Grades(book).find(name)
-    everyone = f"; `grader export csv --gradebook {book.path}` lists all students"
-    assert str(caught.value) == f"there is no student {name!r} in the gradebook{guess or everyone}"
 
 
 def notices(book: Gradebook) -> dict[str, str]:
@@ -186,31 +152,6 @@ def test_a_final_mark_on_an_unreadable_submission_is_listed(entry: Entry, tmp_pa
                 add_mark(book, Grades(book).find("anna"), "total", entry)
                 assert notices(book) == {}
         assert notices(book) == {"anna": "final mark or excuse given before the submission changed"}
-
-
-def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:
-    """A grade by an earlier rubric still counts, and is listed."""
-    newer = lab(loads="1")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, LAB, [graded_as(LAB, key, "ppppp") for key in ("anna", "ben")])
-        record_run(book, newer, [graded_as(newer, "anna", "ppppp")])
-        assert notices(book) == {"ben": "graded with an earlier version of the rubric"}
-        assert Grades(book).find("ben").score == LAB.points
-
-
-def test_a_total_is_the_score_minus_the_late_penalty(tmp_path: Path) -> None:
-    """The late policy is that of the rubric that graded the submission; the score is unchanged."""
-    late = lab("due = 2026-09-01T12:00:00Z\npercent_per_day = 10\n")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, late, [graded_as(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")
-        found = Grades(book).find("anna")
-        assert (found.score, found.late.days, found.late.points, found.total) == (
-            Decimal(6),
-            2,
-            Decimal("-2.2"),
-            Decimal("3.8"),
-        )
-        assert Grades(book).report(found).score == Decimal(6)
 
 
 def test_undecodable_names(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, manual_grading_queue, queued_result
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
 from grader.classroom.gradebook.marks import TAKE_BACK, criterion_of, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
@@ -119,20 +119,6 @@ def test_a_criterion_without_points() -> None:
         read_points("1", nothing.id, nothing.points)
 
 
-def test_a_misspelt_criterion() -> None:
-    """The message suggests the similar id."""
-    with pytest.raises(InputError, match="the rubric small has no criterion 'esay'; did you mean 'essay'"):
-        criterion_of(LAB, "esay")
-
-
-def test_questions_are_grouped_by_criterion(standings: Grades) -> None:
-    """Criteria come in the rubric's order; unreadable submissions and missing parts are omitted."""
-    expected = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
-    assert manual_grading_queue(standings) == expected
-    assert manual_grading_queue(standings, ReviewScope("picture")) == expected[2:]
-    assert manual_grading_queue(standings, ReviewScope("box")) == []
-
-
 def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:
     """It is queued again when the mark is removed."""
     first, *rest = manual_grading_queue(standings)
@@ -175,11 +161,3 @@ def test_parts_that_were_not_graded_can_be_marked(standings: Grades) -> None:
     assert (found.score, found.out_of, found.pending) == (Decimal(10), Decimal("10.25"), Decimal(0))
     (essay,) = [result for result in standings.report(found).results if result.criterion.id == "essay"]
     assert (essay.points, essay.outcome.status) == (Decimal(4), "skipped")
-
-
-def test_undecodable_bytes_are_escaped(standings: Grades) -> None:
-    """A comment or a name in another encoding is kept as far as it can be read."""
-    mark(standings.book, standings.find("anna"), ESSAY, Decimal(1), "m\udcff", "gr\udcf6n \ud800")
-    assert list(standings.book.rows("SELECT author, comment FROM mark")) == [("m\\udcff", "gr\\udcf6n \\ud800")]
-    with pytest.raises(InputError, match="there is no"):
-        standings.find("\udcff")

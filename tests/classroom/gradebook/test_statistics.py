@@ -16,7 +16,8 @@ import pytest
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.statistics import ClassStatistics, PointTotals, statistics
+from grader.classroom.gradebook.statistics import ClassStatistics, statistics
+from tests.classroom.class_runs import without_hints
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run
 from tests.samples import LAB6, ROOT
 
@@ -34,7 +35,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str
     count = sum(1 for _ in made_up.make_class(top / "class", 60, 7, "mixed"))
     assert count > 60
     book = top / "book.db"
-    assert grader("batch", top / "class", "--gradebook", book, "--jobs", 2).returncode == 0
+    assert grader("batch", top / "class", "--gradebook", book, "--rubric", without_hints()).returncode == 0
     mark_some(book)
     table = grader("export", "csv", "--gradebook", book).stdout
     done = grader("stats", "--gradebook", book, "--format", "json")
@@ -137,34 +138,6 @@ def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
         return statistics(book, rubric)
 
 
-@pytest.mark.parametrize("signs", [(), ("?!p!?",)])
-def test_without_grades(signs: tuple[str, ...], tmp_path: Path) -> None:
-    """Without grades there are zeros and no shares."""
-    found = of(tmp_path, *signs)
-    assert [found.graded, found.mean, found.deviation, found.median, sum(found.bins)] == [0] * 5
-    assert {(criterion.decided, criterion.share, criterion.discrimination) for criterion in found.criteria} == {
-        (0, None, None)
-    }
-    assert found.failures == ()
-
-
-def test_one_is_graded(tmp_path: Path) -> None:
-    """With one student no criterion has a discrimination. The grade is over the seven points that are decided."""
-    found = of(tmp_path, "pps?f")
-    assert (found.graded, found.undecided, found.mean, found.deviation) == (1, 0, 8.6429, 0.0)
-    assert {found.lowest, found.median, found.highest} == {Decimal("8.6429")}
-    assert found.points == PointTotals(Decimal("5.5"), Decimal("1.5"), Decimal(4))
-    assert found.bins == (0, 0, 0, 0, 0, 0, 0, 1, 0, 0)
-    assert [criterion.share for criterion in found.criteria] == [1, 1, 0, None, 0]
-    assert {criterion.discrimination for criterion in found.criteria} == {None}
-
-
-@pytest.mark.parametrize(("signs", "median"), [(("ppppp", "fffff"), "5.5"), (("ppppp", "fffff", "pffff"), "3")])
-def test_the_median_is_in_the_middle(signs: tuple[str, ...], median: str, tmp_path: Path) -> None:
-    """The median of an even number is halfway between the two middle values."""
-    assert of(tmp_path, *signs).median == Decimal(median)
-
-
 def test_equal_scores_have_no_discrimination(tmp_path: Path) -> None:
     """If the rest of the score is the same for all, there is no correlation, in whichever order points are added."""
     rubric = lab(loads="0.1", box="0.2", tall="0.3", essay="0.7")
@@ -185,16 +158,6 @@ def test_a_criterion_without_points_still_has_a_share(tmp_path: Path) -> None:
 def test_all_points_are_in_the_last_tenth(score: str, bin_of_it: int, tmp_path: Path) -> None:
     """A mark at a boundary is in the upper tenth; full marks are in the last. The tenths are those of the graded parts."""
     assert of(tmp_path, score).bins.index(1) == bin_of_it
-
-
-def test_other_rubrics_are_excluded(tmp_path: Path) -> None:
-    """Points of two rubrics are never mixed."""
-    newer = lab(loads="1")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, LAB, [graded_as(LAB, key, "ppppp") for key in ("anna", "ben")])
-        record_run(book, newer, [graded_as(newer, "anna", "fpppp")])
-        found = statistics(book, newer)
-    assert (found.graded, found.verdicts, found.highest) == (1, {"graded": 2}, Decimal(8))
 
 
 def test_a_manually_overridden_failure_is_not_counted(tmp_path: Path) -> None:

@@ -313,10 +313,11 @@ def _ignore(_: str) -> None:
 TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignore)
 
 
-def test_two_graders() -> None:
+@pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.exhaustive)])
+def test_two_graders(count: int) -> None:
     """No sequence of what two graders do loses an entry or changes a grade."""
     profile = settings(
-        max_examples=30, stateful_step_count=10, deadline=None,
+        max_examples=count, stateful_step_count=10, deadline=None,
         suppress_health_check=[HealthCheck.too_slow], phases=[Phase.generate],
     )  # fmt: skip
     run_state_machine_as_test(TwoGraders, settings=profile)

@@ -14,6 +14,7 @@ from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import assigned, lay_out, pack
 from tests.classroom.lab6_class import read_class
+from tests.examples import examples
 
 FILES = (
     "doejane_LATE_123_9001_lab6.zip",
@@ -126,6 +127,7 @@ WORDS = st.text(st.characters(categories=["L", "M", "Nd", "Pc", "Zs", "Po"]), mi
 ORIGINAL = st.from_regex(r"[A-Za-z][A-Za-z0-9_ ]{0,9}\.(zip|png|urdf|tar\.gz)", fullmatch=True)
 
 
+@examples(30)
 @given(
     st.dictionaries(
         st.integers(1, 10**15),

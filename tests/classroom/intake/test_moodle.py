@@ -11,6 +11,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from tests.classroom.class_folders import assigned, lay_out, pack
 from tests.classroom.lab6_class import read_class
+from tests.examples import examples
 
 FOLDER = "assignsubmission_file"
 
@@ -168,6 +169,7 @@ NAMES = st.text(
 )
 
 
+@examples(30)
 @given(st.dictionaries(st.integers(0, 10**12), NAMES, min_size=2, max_size=6))
 def test_any_download_is_grouped_again(people: dict[int, str]) -> None:
     """Whatever participants are called, each is identified by number and name."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.lms.filling import Conflict, Filled, FillOptions
+from grader.classroom.lms.filling import Filled, FillOptions
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, OfflineFormat, fill_offline
 from grader.classroom.students import Student
@@ -23,22 +23,6 @@ def fill(form: OfflineFormat, text: str, *grades: LmsGrade, **options: Any) -> F
 
 def graded(total: str | None = "58.5", why_not: str = "", **known: Any) -> LmsGrade:
     return LmsGrade(Student("x", **known), None if total is None else Decimal(total), why_not=why_not)
-
-
-@pytest.mark.parametrize("known", [{"login": "JA1"}, {"sis": "S11"}, {"name": "Jane Ash"}])
-def test_students_are_found_in_blackboard(known: dict[str, str]) -> None:
-    """By user name, student id or name; the rest of the row stays, quotes and all."""
-    filled = fill(BLACKBOARD, f'{LEARN}\n"Ash","Jane","ja1","S11","","19.00"\n', graded(**known))
-    assert filled.data.decode() == f'{LEARN}\n"Ash","Jane","ja1","S11","58.50","19.00"\n'
-    assert (filled.preflight.filled, filled.preflight.matches, filled.preflight.warnings) == (1, True, [])
-
-
-@pytest.mark.parametrize("known", [{"login": "ja1"}, {"sis": "S11"}, {"name": "Ash, Jane"}])
-def test_students_are_found_in_brightspace(known: dict[str, str]) -> None:
-    """By id, user name or name, each without the # of the export."""
-    filled = fill(BRIGHTSPACE, f"{D2L}\r\n#S11,#ja1,Ash,Jane,40,#\r\n", graded(**known))
-    assert filled.data.decode() == f"{D2L}\r\n#S11,#ja1,Ash,Jane,58.50,#\r\n"
-    assert filled.preflight.conflicts == [Conflict(2, "Ash, Jane", "40", "58.50")]
 
 
 @pytest.mark.parametrize(("form", "header"), [(BLACKBOARD, LEARN), (BRIGHTSPACE, D2L)])

@@ -15,8 +15,6 @@ from tests.classroom.repositories.table import ROWS, Row, Work
 from tests.classroom.repositories.writing import write_class
 from tests.command_line import run
 
-pytestmark = pytest.mark.slow  # two classes with their documents
-
 Report = dict[str, Any]
 
 SINGLE = [row for row in ROWS if len(row.works) == 1]
@@ -44,7 +42,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Class:
     found = Class(write_class(top / "class", ROWS), {}, {}, {})
     with (top / "roster.csv").open("w", newline="") as file:
         csv.writer(file).writerows([("id", "login", "name", "group"), *_roster()])
-    rubric = without_hints(top)
+    rubric = without_hints()
     for layout in ("folders", "teams"):
         found.gradebooks[layout] = top / f"{layout}.db"
         options = (

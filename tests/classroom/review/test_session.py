@@ -12,8 +12,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope, reusable_comments
 from grader.classroom.gradebook.marks import NewerMarkError, criterion_of
 from grader.classroom.review import ReviewSession
-from grader.errors import InputError
-from tests.classroom.gradebooks import grade_without, graded_as, lab, mark, record_run
+from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 LAB = lab()
 KEYS = ("ash", "birch", "cedar")
@@ -47,22 +46,6 @@ def entries(book: Gradebook) -> list[tuple[Any, ...]]:
     return list(book.rows(f"{query} JOIN student ON student = student.id ORDER BY mark.id"))
 
 
-def test_forward_and_back(book: Gradebook) -> None:
-    """Nothing is before the first item and after the end; skipped items are shown again."""
-    session = ReviewSession(Grades(book), ReviewScope("essay"))
-    seen = [here(session)]
-    assert not session.back()
-    assert here(session) == "ash essay open"
-    for _ in range(4):
-        session.next()
-        seen.append(here(session))
-    assert seen == ["ash essay open", "birch essay open", "cedar essay open", "the end", "the end"]
-    assert session.back()
-    assert session.back()
-    assert here(session) == "birch essay open"
-    assert (session.marked, session.left) == (0, 3)
-
-
 def test_own_marks_stay_and_those_of_others_are_passed_over(book: Gradebook) -> None:
     """Going back shows what this review has marked, not what others have."""
     session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
@@ -89,26 +72,6 @@ def test_a_mark_is_not_repeated(book: Gradebook) -> None:
     assert session.marked == 1
 
 
-def test_undo_adds_entries_and_deletes_none(book: Gradebook) -> None:
-    """Each undo brings back the mark before, and at last takes the mark back."""
-    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
-    session.mark(Decimal(3), "good")
-    session.go(0)
-    session.mark(Decimal(2), "no")
-    session.next()
-    before = session.undo()
-    assert before is not None
-    assert (before.points, before.comment) == (Decimal(3), "good")
-    assert (here(session), session.marked) == ("ash essay 3", 1)
-    assert session.undo() is None
-    assert (here(session), session.marked, session.left, session.can_undo) == ("ash essay open", 0, 3, False)
-    assert [entry[2:] for entry in entries(book)] == [
-        (3.0, "Kim", "Kim", "good"), (2.0, "Kim", "Kim", "no"), (3.0, "Kim", "Kim", "good"), (None, "Kim", "Kim", ""),
-    ]  # fmt: skip
-    session.mark(Decimal(1), "")
-    assert session.marked == 1
-
-
 def test_undo_of_the_current_item_comes_first(book: Gradebook) -> None:
     """Elsewhere the newest mark is undone, and the review goes to its item."""
     session = ReviewSession(Grades(book), ReviewScope("essay"))
@@ -127,23 +90,6 @@ def test_undo_of_the_current_item_comes_first(book: Gradebook) -> None:
         session.undo()
 
 
-def test_a_newer_mark_is_kept_or_replaced(book: Gradebook) -> None:
-    """It is not overwritten unseen; undo brings it back with the name of who gave it, and the author who undid."""
-    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
-    theirs(book, "ash", "essay", "4", "all of it")
-    with pytest.raises(NewerMarkError) as caught:
-        session.mark(Decimal(1), "")
-    assert session.marked == 0
-    session.mark(Decimal(1), "", caught.value.mark.id)
-    session.undo()
-    assert entries(book)[-2:] == [
-        ("ash", "essay", 1.0, "Kim", "Kim", ""),
-        ("ash", "essay", 4.0, "Lee", "Kim", "all of it"),
-    ]
-    session.next()
-    assert not session.back()  # the item is Lee's again
-
-
 def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
     """It is refused, and the item is left to who has marked it since."""
     session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
@@ -153,22 +99,6 @@ def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
     with pytest.raises(NewerMarkError):
         session.undo()
     assert (len(entries(book)), session.marked, session.can_undo) == (count, 0, False)
-
-
-def test_an_undo_of_a_criterion_that_is_no_longer_graded(book: Gradebook, tmp_path: Path) -> None:
-    """It is refused with the reason, and forgotten; the review stays at its item."""
-    session = ReviewSession(Grades(book), ReviewScope("essay", "Kim"))
-    session.mark(Decimal(1), "")
-    session.next()
-    grade_without(tmp_path / "book.db", "ash", "essay")
-    with pytest.raises(InputError, match="not undone: this criterion is no longer graded for"):
-        session.undo()
-    assert (here(session), session.marked, session.can_undo, len(entries(book))) == ("birch essay open", 0, False, 1)
-    session.mark(Decimal(2), "")
-    grade_without(tmp_path / "book.db", "birch", "essay")
-    with pytest.raises(InputError, match="no longer graded"):
-        session.undo()
-    assert here(session) == "cedar essay open"
 
 
 def test_reusable_comments(book: Gradebook) -> None:
@@ -188,9 +118,3 @@ def test_reusable_comments(book: Gradebook) -> None:
     theirs(book, "ash", "essay", None)
     assert first.comments() == second.comments() == ["two roots"]
     assert reusable_comments(book, "essay", 0) == []
-
-
-def test_an_unknown_criterion(book: Gradebook) -> None:
-    """It is refused with a suggestion."""
-    with pytest.raises(InputError, match="did you mean 'essay'"):
-        ReviewSession(Grades(book), ReviewScope("esay"))

@@ -15,6 +15,8 @@ from random import Random
 import pytest
 
 from tests.classroom.class_runs import (
+    HOSTILE_RUBRIC,
+    WITH_HOSTILE,
     Done,
     contents,
     counted,
@@ -22,6 +24,7 @@ from tests.classroom.class_runs import (
     environment,
     eventually,
     grader,
+    hostile_class,
     is_sound,
     rows,
     session_of,
@@ -66,7 +69,7 @@ def _visible(folder: Path) -> dict[str, bytes]:
     return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
     """After kill -9 during start, grading and writing every result is there once, and the reports equal those of one run."""
     reports, seconds = undisturbed
@@ -97,30 +100,27 @@ def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
         process.wait(seconds)
 
 
-def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+def test_interrupted(tmp_path: Path) -> None:
     """Ctrl-C reports in a line how many results are kept, which they are; then the run continues."""
-    out = tmp_path / "out"
-    book = out.with_suffix(".db")
-    with started(*_command(folder, out)) as process:
-        assert eventually(lambda: len(verdicts(book)) > 20)
+    names = [f"fine-{number}" for number in range(20)]
+    folder, book = hostile_class(tmp_path / "class", "hangs", *names), tmp_path / "lab.db"
+    command = ("batch", folder, "--gradebook", book, "--rubric", HOSTILE_RUBRIC, "--timeout", "3600", "--jobs", "2")
+    with started(*command, **WITH_HOSTILE) as process:
+        assert eventually(lambda: len(verdicts(book)) == len(names))
         os.killpg(process.pid, signal.SIGINT)
         _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
-    first, stopped, last = output.splitlines()
-    assert first == f"grader: {SIZE} submissions, layout folders"
-    assert last == "grader: interrupted"
-    count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
-    assert (
-        stopped == f"grader: stopped: {count} of {SIZE} have a result, which is kept; rerun the same command to resume"
-    )
-    kept = len(verdicts(book))
-    assert 20 < count <= kept < SIZE
+    assert output.splitlines() == [
+        "grader: 21 submissions, layout folders",
+        "grader: stopped: 20 of 21 have a result, which is kept; rerun the same command to resume",
+        "grader: interrupted",
+    ]
     assert is_sound(book)
-    done = grader(*_command(folder, out))
-    assert counted(done) == f"{SIZE - kept} graded, {kept} unchanged"
-    assert _visible(out) == undisturbed[0]
+    (folder / "hangs.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
+    assert counted(grader(*command, **WITH_HOSTILE)) == "1 graded, 20 unchanged"
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("moment", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
 def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -> None:
     """Whenever Ctrl-C arrives after the command has begun, no process prints a traceback."""
@@ -158,6 +158,7 @@ def _is_one_complaint(done: Done) -> bool:
     return all(line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines())
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("limit", [0, 50_000, 400_000])
 def test_no_space_left(limit: int, folder: Path, tmp_path: Path) -> None:
     """Committed results are kept, the reason is one line, and the run continues when there is space again."""
@@ -175,6 +176,7 @@ def test_no_space_left(limit: int, folder: Path, tmp_path: Path) -> None:
     assert (is_sound(book), len(verdicts(book)), duplicates(book)) == (True, SIZE, [])
 
 
+@pytest.mark.exhaustive
 def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
     """The same on a small file system, which is then enlarged."""
     disk = tmp_path / "disk"
@@ -197,6 +199,7 @@ def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
         subprocess.run(["umount", disk], check=True)
 
 
+@pytest.mark.exhaustive
 def test_reports_that_cannot_be_written(
     folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path
 ) -> None:
@@ -212,6 +215,7 @@ def test_reports_that_cannot_be_written(
     assert _visible(out) == undisturbed[0]
 
 
+@pytest.mark.exhaustive
 def test_concurrent_runs_on_the_same_class(folder: Path, tmp_path: Path) -> None:
     """All succeed, and each result is there once."""
     book = tmp_path / "lab6.db"
@@ -225,6 +229,7 @@ def test_concurrent_runs_on_the_same_class(folder: Path, tmp_path: Path) -> None
     assert counted(grader(*command)) == f"0 graded, {SIZE} unchanged"
 
 
+@pytest.mark.exhaustive
 def test_concurrent_runs_on_different_classes(tmp_path: Path) -> None:
     """Two sections of a course are graded into one gradebook, and nothing of either is lost.
 
@@ -243,6 +248,7 @@ def test_concurrent_runs_on_different_classes(tmp_path: Path) -> None:
         assert counted(grader("batch", group, "--gradebook", book)) == "0 graded, 200 unchanged"
 
 
+@pytest.mark.exhaustive
 def test_a_locked_gradebook_is_waited_for(folder: Path, tmp_path: Path) -> None:
     """While another program writes to the gradebook the run waits, and continues when it is done."""
     book = tmp_path / "lab6.db"

@@ -324,6 +324,7 @@ def forget(top: Path) -> None:
         book.execute("UPDATE hint SET hints = '[]'")
 
 
+@pytest.mark.exhaustive
 def test_a_lost_search_costs_only_its_own_hints(tmp_path: Path) -> None:
     """A crash and a timeout while edits are tried: every report is written, and the others have hints."""
     names = {"ash": "dies_when_tried", "birch": "fine", "cedar": "hangs_when_tried"}

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import Done, grader
+from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
 BOTH = "id,login,name\n101,alice,Alice Ash\n102,bob,Bob Birch\n"
@@ -28,7 +28,7 @@ def batch(top: Path, *more: str | Path, roster: str = "") -> Done:
     if roster:
         (top / "r.csv").write_text(roster, encoding="utf-8")
         more = (*more, "--roster", top / "r.csv")
-    return grader("batch", top / "class", "--gradebook", top / "g.db", *more)
+    return grader("batch", top / "class", "--gradebook", top / "g.db", "--rubric", without_hints(), *more)
 
 
 def students(top: Path, *more: str) -> dict[str, dict[str, Any]]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import grader, rows
+from tests.classroom.class_runs import grader, rows, without_hints
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/reference"
@@ -30,7 +30,7 @@ def top(tmp_path: Path) -> Path:
 
 def batch(top: Path, *more: str | Path) -> str:
     """Grade the class and return standard error."""
-    done = grader("batch", top / "class", "--gradebook", top / "g.db", *more)
+    done = grader("batch", top / "class", "--gradebook", top / "g.db", "--rubric", without_hints(), *more)
     assert done.returncode == 0, done.stderr
     return str(done.stderr)
 

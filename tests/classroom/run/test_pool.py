@@ -53,6 +53,7 @@ def test_results_come_back(pool: Processes) -> None:
     assert len(pool.submit(bytes, 10**7).result(HANG_TIMEOUT)) == 10**7
 
 
+@pytest.mark.exhaustive
 def test_errors_are_raised(pool: Processes) -> None:
     """An error of the function is raised; a result that cannot be sent is reported, too."""
     with pytest.raises(ZeroDivisionError):
@@ -68,12 +69,14 @@ def _stop() -> None:
         signal.raise_signal(signal.SIGSTOP)
 
 
+@pytest.mark.exhaustive
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """A task that needs more memory is lost, and its worker continues."""
     assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
     assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("function", "arguments", "reason"),
     [
@@ -106,6 +109,7 @@ def test_workers_ignore_the_current_folder_and_ctrl_c(pool: Processes) -> None:
     assert "" not in pool.submit(eval, "__import__('sys').path").result(HANG_TIMEOUT)
 
 
+@pytest.mark.exhaustive
 def test_all_workers_killed_at_once(pool: Processes) -> None:
     """As when memory is short: later tasks are done."""
     pids = {pool.submit(_pid_after, 0.2).result(HANG_TIMEOUT) for _ in range(4)}
@@ -124,6 +128,7 @@ def _pid_after(seconds: float) -> int:
     return os.getpid()
 
 
+@pytest.mark.exhaustive
 def test_shutdown_during_work() -> None:
     """Shutting down does not wait for tasks that hang."""
     processes = Processes(1, 10 * HANG_TIMEOUT)
