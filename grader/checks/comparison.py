@@ -5,8 +5,11 @@ from math import isfinite, isnan
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, judged, place, within
+from grader.errors import MissingElement
 from grader.robot.model import Joint
 from grader.source import LazyLocation
+
+EXACT = 1e-6  # for numbers that a URDF states as they are expected
 
 
 class Number(NamedTuple):
@@ -64,3 +67,12 @@ def named(joint: Joint) -> str:
 def number_text(value: float, digits: int = 9) -> str:
     """Return a number of a URDF for a message."""
     return "missing or unreadable" if isnan(value) else f"{value + 0.0:.{digits}g}"
+
+
+def check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
+    """Raise NotDecided or MissingElement where an element of a joint, or whether it has one, is not known because of xacro."""
+    part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
+    if part is not None:
+        part.check()
+        message = f"xacro cannot expand the <{tag}> of the joint that moves {link!r}"
+        raise MissingElement(tag, link, message=message, location=part.location)

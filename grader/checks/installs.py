@@ -1,4 +1,4 @@
-"""Checks of what a build of a package installs."""
+"""Checks of setup.py: what a build of the package installs, and whether every name in it is defined."""
 
 import posixpath
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from grader.errors import MissingElement
 from grader.names import closest
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.submission.robots import find_robots, parts_of
-from grader.text import enumerated
+from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
     from grader.package.globbing import EmptyGlob
@@ -23,6 +23,7 @@ FileKind = Literal["urdf", "launch", "rviz"]
 
 ABOUT = {
     "build_installs": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_files"),
+    "setup_imports": About((SETUP,), measure=f"{MEASURES}.package:setup_names"),
     "installs_files": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_folders"),
 }
 
@@ -58,6 +59,17 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
     return _installed(package, found, None)
 
 
+def setup_imports(package: Package) -> Outcome:
+    """Every name that setup.py uses is defined, and what it imports is there."""
+    setup = _readable_setup(package)
+    if isinstance(setup, Outcome):
+        return setup
+    if not setup.faults:
+        return passed("every name that setup.py uses is defined")
+    messages = list(dict.fromkeys(fault.message for fault in setup.faults))
+    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at), problem=messages[0])
+
+
 def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     """Return the file of a package that has this name, else all of the kind that are no part of another one."""
     if kind == "launch":
@@ -70,7 +82,7 @@ def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     return named or [path for path in paths if path not in parts] or paths
 
 
-def readable_setup(package: Package) -> "Setup | Outcome":
+def _readable_setup(package: Package) -> "Setup | Outcome":
     """Return the package's setup.py, or the outcome that says why it needs manual grading.
 
     Raises MissingElement if there is none, or if Python cannot read it.
@@ -93,7 +105,7 @@ def readable_setup(package: Package) -> "Setup | Outcome":
 
 
 def _installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
-    setup = readable_setup(package)
+    setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
     stopped = _stopped(package, setup, files, kind)

@@ -3,15 +3,13 @@
 from math import degrees, hypot, isfinite
 
 from grader.checks.about import DEGREES, MEASURES, About
-from grader.checks.comparison import Number, compared, named, number_text, numbers_of
+from grader.checks.comparison import EXACT, Number, check_known, compared, named, number_text, numbers_of
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
-from grader.errors import MissingElement
 from grader.robot.diagnostics import FULL_TURN
 from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
 ABOUT = {
@@ -19,8 +17,6 @@ ABOUT = {
     "joint_axis": About(("axis",), measure=f"{MEASURES}.joints:axes", usual=DEGREES),
     "joint_dynamics": About(("dynamics",), measure=f"{MEASURES}.joints:dynamics"),
 }
-
-EXACT = 1e-6  # for numbers that a URDF states as they are expected
 
 
 def joint_limits(
@@ -156,15 +152,6 @@ def joint_dynamics(
     if given is None and not numbers:
         return failed(f"{message}; it should have one", joint.location, detail=named(joint))
     return compared(message, numbers, joint, given.location if given else joint.location)
-
-
-def check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
-    """Raise NotDecided or MissingElement where an element of a joint, or whether it has one, is not known because of xacro."""
-    part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
-    if part is not None:
-        part.check()
-        message = f"xacro cannot expand the <{tag}> of the joint that moves {link!r}"
-        raise MissingElement(tag, link, message=message, location=part.location)
 
 
 def _range(lower: float, upper: float) -> str:

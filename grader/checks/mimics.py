@@ -1,8 +1,7 @@
 """The check of a joint that mimics another one."""
 
 from grader.checks.about import MEASURES, About
-from grader.checks.comparison import compared, named, numbers_of
-from grader.checks.joints import EXACT, check_known
+from grader.checks.comparison import EXACT, check_known, compared, named, numbers_of
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative
 from grader.errors import MissingElement

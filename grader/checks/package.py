@@ -3,12 +3,11 @@
 from typing import TYPE_CHECKING
 
 from grader.checks.about import MEASURES, About
-from grader.checks.installs import readable_setup
-from grader.checks.outcome import Outcome, failed, judged, passed
+from grader.checks.outcome import Outcome, failed, judged
 from grader.errors import MissingElement, NotDecided
 from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
 from grader.submission.submission import Submission
-from grader.text import enumerated, first_lines
+from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.package.manifest import Manifest
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
 ABOUT = {
     "package_found": About((MANIFEST, SETUP), measure=f"{MEASURES}.package:names"),
     "package_type": About((MANIFEST,), measure=f"{MEASURES}.package:build_types"),
-    "setup_imports": About((SETUP,), measure=f"{MEASURES}.package:setup_names"),
 }
 
 
@@ -61,17 +59,6 @@ def package_type(package: Package, *, build_type: str) -> Outcome:
         message += " (ROS 1; also the default without <build_type>)" if actual == "catkin" else ""
         message += f"; it should be {build_type!r}"
     return judged(fine, message, actual, build_type, at=manifest.type_location)
-
-
-def setup_imports(package: Package) -> Outcome:
-    """Every name that setup.py uses is defined, and what it imports is there."""
-    setup = readable_setup(package)
-    if isinstance(setup, Outcome):
-        return setup
-    if not setup.faults:
-        return passed("every name that setup.py uses is defined")
-    messages = list(dict.fromkeys(fault.message for fault in setup.faults))
-    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at), problem=messages[0])
 
 
 def _readable_manifest(package: Package) -> "Manifest":

@@ -55,7 +55,7 @@ CHECKS = (
     "package.package_type",
     "installs.build_installs",
     "installs.installs_files",
-    "package.setup_imports",
+    "installs.setup_imports",
     "launch.launch_found",
     "launch.launch_starts",
     "launch.launch_finds_files",

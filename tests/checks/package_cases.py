@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from grader.checks.installs import build_installs, installs_files
+from grader.checks.installs import build_installs, installs_files, setup_imports
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
-from grader.checks.package import package_found, package_type, setup_imports
+from grader.checks.package import package_found, package_type
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.checks.xacro_source import xacro_uses
 from tests.checks.outcomes import AnyCheck

@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.checks.installs import build_installs, installs_files
-from grader.checks.package import package_found, package_type, setup_imports
+from grader.checks.installs import build_installs, installs_files, setup_imports
+from grader.checks.package import package_found, package_type
 from grader.source import Location
 from tests.checks.outcomes import finds, lacks
 from tests.checks.submissions import (
