@@ -9,7 +9,8 @@ from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.robot.joints import check_references, read_joint
-from grader.robot.links import Materials, read_link
+from grader.robot.links import read_link
+from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
 from grader.robot.spelling import check_spelling

@@ -1,12 +1,12 @@
 """The nodes that a launch file starts, by Node, a command or urdf_launch, and the files that they are given."""
 
 import re
-import shlex
 
 from grader.names import did_you_mean
+from grader.package.launch.command_words import command_words, pieces
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, StartedNode
 from grader.package.launch.places import SHARE
-from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
+from grader.package.launch.substitutions import PART_UNKNOWN, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
@@ -47,7 +47,7 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     """Add the node that a command starts: ros2 run, or rviz2."""
-    words = _command_words(call.argument(0, "cmd"), context)
+    words = command_words(call.argument(0, "cmd"), context)
     if call.kwargs.get("shell") is True:
         words = " ".join(words).split()
     match words:
@@ -82,10 +82,10 @@ def _as_node(call: Call, words: list[str]) -> Call:
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
     """Return the parameter frame_prefix of a node."""
-    tables = [table for table in _pieces(call.kwargs.get("parameters")) if isinstance(table, dict)]
+    tables = [table for table in pieces(call.kwargs.get("parameters")) if isinstance(table, dict)]
     given: list[Value] = [table["frame_prefix"] for table in tables if "frame_prefix" in table]
     for name in ("arguments", "ros_arguments"):
-        words = _command_words(call.kwargs.get(name), context)
+        words = command_words(call.kwargs.get(name), context)
         given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = resolve(given[-1], context) if given else ""
     return found if isinstance(found, str) and PART_UNKNOWN not in found else None
@@ -93,14 +93,14 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
-    parameters = _pieces(call.kwargs.get("parameters"))
+    parameters = pieces(call.kwargs.get("parameters"))
     tables = [table for table in parameters if isinstance(table, dict)]
     descriptions = [table["robot_description"] for table in tables if "robot_description" in table]
     if descriptions:
         _refer_description(findings, descriptions[-1], call, context)
         return
     unclear = next((value for value in parameters if not isinstance(value, dict) or UNKNOWN_KEYS in value), None)
-    words = _command_words(call.kwargs.get("arguments"), context)
+    words = command_words(call.kwargs.get("arguments"), context)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
     others = words or unclear is not None or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
@@ -137,7 +137,7 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
     if isinstance(arguments, Unknown):
         findings.refer("rviz", arguments, call)
         return
-    words = _command_words(arguments, context)
+    words = command_words(arguments, context)
     path = _display_config(words)
     if path is None and PART_UNKNOWN not in words:
         message = (
@@ -145,8 +145,8 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         )
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
-        pieces = (resolve(piece, context) for piece in _pieces(arguments))
-        unknown = (piece for piece in pieces if isinstance(piece, Unknown))
+        resolved = (resolve(piece, context) for piece in pieces(arguments))
+        unknown = (piece for piece in resolved if isinstance(piece, Unknown))
         unnamed = Unknown("the file that it opens is known only at run time", call.at)
         findings.refer("rviz", next(unknown, unnamed), call)
     elif path != path.lstrip():
@@ -191,41 +191,3 @@ def start_urdf_launch(findings: Findings, path: str, call: Call, context: Contex
             findings.refer("rviz", None, call, wrong=message)
     findings.nodes += [StartedNode(node, node, context.when, findings.locate(call.at)) for node in nodes]
     return True
-
-
-def _command_words(value: Value, context: Context) -> list[str]:
-    """Return the words of a command: each item of a list is one word, a line of XML or YAML is split."""
-    words: list[str] = []
-    for piece in _pieces(value):
-        is_line = isinstance(piece, Call) and piece.name == COMMAND_LINE
-        words += _line_words(piece, context) if is_line else [_word(piece, context)]
-    return words
-
-
-def _pieces(value: Value) -> list[Value] | tuple[Value, ...]:
-    return value if isinstance(value, list | tuple) else [value] if value is not None else []
-
-
-def _word(value: Value, context: Context) -> str:
-    text = resolve(value, context)
-    return text if isinstance(text, str) else PART_UNKNOWN
-
-
-def _line_words(line: Call, context: Context) -> list[str]:
-    """Return the words of a line as launch splits it: its strings are split, the values of substitutions are not."""
-    words = [""]
-    for piece in line.args:
-        if not isinstance(piece, str):
-            words[-1] += _word(piece, context)
-            continue
-        try:
-            found = shlex.split(piece)
-        except ValueError:
-            message = "quotes cannot enclose a substitution in a line of arguments: remove them"
-            context.add_error(message, line.at)
-            found = piece.replace("'", " ").replace('"', " ").split()
-        if piece[:1].isspace() or not found:
-            words.append("")
-        words[-1] += "".join(found[:1])
-        words += [*found[1:], *([""] if piece[-1:].isspace() else [])]
-    return [word for word in words if word]

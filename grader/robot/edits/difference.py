@@ -7,17 +7,13 @@ from itertools import groupby
 
 from grader.difference import Node, Step, is_alike, paired, steps
 from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of, escaped
+from grader.robot.edits.nodes import node_of, wanted_value
 from grader.robot.edits.numbers import number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, PARTS, TAGS
+from grader.xml.urdf_format import CHILDREN, PARTS
 
 _MAX_LINKS = 400  # of a robot: more are not compared
-_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
-
-
-# The attributes that name a joint or a material, which a student may call otherwise.
-_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 
 
 class RobotDifference(PieceMaker):
@@ -52,8 +48,8 @@ class RobotDifference(PieceMaker):
             is_there = any(it.get("name") == joint.get("name") for it in self.draft.joints())
             if own is not None and own.get("name") and own.get("name") not in known and not is_there:
                 names["joint"][joint.get("name") or ""] = own.get("name") or ""
-        mine = [_node(found) for found in self.draft.root.iterchildren("material")]
-        pairs = paired(mine, [_node(found) for found in self.reference.root.iterchildren("material")])
+        mine = [node_of(found) for found in self.draft.root.iterchildren("material")]
+        pairs = paired(mine, [node_of(found) for found in self.reference.root.iterchildren("material")])
         for own_node, like in pairs.both:
             if own_node.values.get("name"):
                 names["material"][like.values.get("name", "")] = own_node.values["name"]
@@ -92,7 +88,7 @@ class RobotDifference(PieceMaker):
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
-        nodes = [_node(child, names) for child in children[: 3 * _MAX_LINKS]]
+        nodes = [node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
         version = draft.root.get("version")
         return Node("robot", (), {"version": version} if version not in (None, "1.0") else {}, nodes, draft.root)
 
@@ -125,7 +121,7 @@ class RobotDifference(PieceMaker):
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
         element: Element = found[0].own.of
-        wanted = {step.name: _wanted(step) for step in found}
+        wanted = {step.name: wanted_value(step) for step in found}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
             yield from self._renamed(element, values.pop("name"))
@@ -258,41 +254,3 @@ def renamed(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
 
 def _is_equal(one: Element, other: Element) -> bool:
     return (one.tag, sorted(one.attrib.items())) == (other.tag, sorted(other.attrib.items()))
-
-
-def _wanted(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
-    if step.verb == "set" and step.like is not None:
-        return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
-    return known.default or None if known is not None else None
-
-
-def _node(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
-    """Return the node of an element, without values and elements that are the default."""
-    tag = str(element.tag)
-    values = {}
-    for name, value in element.attrib.items():
-        text = normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
-            continue
-        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [_node(child, names) for child in element if isinstance(child.tag, str)]
-    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
-    return Node(tag, _keys(element, values), values, children, element)
-
-
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
-    name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
-
-
-def _is_default(node: Node, *, is_moving: bool) -> bool:
-    if node.tag == "axis":
-        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
-    return node.tag == "origin" and not node.values
