@@ -7,7 +7,7 @@ from decimal import Decimal, InvalidOperation
 from typing import Literal, NamedTuple, cast
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
 from grader.classroom.gradebook.stored import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
@@ -19,7 +19,6 @@ from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
 MARK_COLUMNS = "id, kind, points, comment, grader_name, at, result"
-_NEW = "student, criterion, kind, points, comment, author, grader_name, at, result"
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
@@ -173,12 +172,19 @@ def insert_mark(
     book: Gradebook, student: int, criterion: str, mark: Mark, author: str, result: int | None, at: str = ""
 ) -> int:
     """Add a row to the table of marks, without a transaction; return its id. Without a time it is made now."""
-    entry, name = mark.entry, storable(mark.by)
-    units = None if entry.points is None else int(entry.points * UNITS_PER_POINT)
-    at = at or datetime.now(UTC).isoformat(timespec="seconds")
-    row = (student, criterion, entry.kind, units, storable(entry.comment), storable(author), name, at, result)
-    added = book.connection.execute(f"INSERT INTO mark ({_NEW}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
-    return int(added.lastrowid or 0)
+    entry = mark.entry
+    row = {
+        "student": student,
+        "criterion": criterion,
+        "kind": entry.kind,
+        "points": None if entry.points is None else units_of(entry.points),
+        "comment": storable(entry.comment),
+        "author": storable(author),
+        "grader_name": storable(mark.by),
+        "at": at or datetime.now(UTC).isoformat(timespec="seconds"),
+        "result": result,
+    }
+    return book.insert("mark", row)
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
@@ -211,7 +217,7 @@ def mark_of_row(
     identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None
 ) -> Mark:
     """Return a row of MARK_COLUMNS."""
-    points = None if units is None else Decimal(units) / UNITS_PER_POINT
+    points = None if units is None else points_of(units)
     return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at, result)
 
 

@@ -18,7 +18,7 @@ Choice = Literal["first", "second"]
 Conflict = tuple[
     str, str, int, int
 ]  # key, criterion, and the ids of the newest marks: another mark is another conflict
-# What a result refers to: the tables that belong to a rubric, each with its column, and the template.
+# What a result refers to: the tables that belong to a rubric, each with its column, and the dictionary.
 _OF_RUBRIC = (("rubric", "sha256"), ("criterion", "rubric"), ("model_answer", "rubric"))
 
 
@@ -100,9 +100,6 @@ class _Results:
     def __init__(self, first: Gradebook, second: Gradebook) -> None:
         self._first, self._second = first, second
         self._found: dict[int, int] = {}
-        self._columns = [
-            name for (_, name, *_) in first.rows("PRAGMA table_info(result)") if name not in ("id", "student")
-        ]
 
     def of(self, student: int, result: int | None) -> int | None:
         """Return the id in the first gradebook of a result in the second one."""
@@ -113,8 +110,7 @@ class _Results:
         return self._found[result]
 
     def _find_or_copy(self, student: int, result: int) -> int:
-        values = next(self._second.rows(f"SELECT {', '.join(self._columns)} FROM result WHERE id = ?", result))
-        row = dict(zip(self._columns, values, strict=True))
+        row = next(self._second.records("SELECT * FROM result WHERE id = ?", result))
         same = "student = ? AND rubric = ? AND digest = ? AND (digest <> '' OR record = ?)"  # without files it has no digest
         key = student, row["rubric"], row["digest"], row["record"]
         found = self._first.first(f"SELECT max(id) FROM result WHERE {same}", *key)
@@ -122,12 +118,12 @@ class _Results:
             return int(found[0])
         for table, column in _OF_RUBRIC:
             self._copy(table, column, row["rubric"])
-        self._copy("template", "sha256", row["template"])
-        names, marks = ", ".join(("student", *row)), ", ".join("?" * (len(row) + 1))
-        added = self._first.connection.execute(f"INSERT INTO result ({names}) VALUES ({marks})", (student, *values))
-        return int(added.lastrowid or 0)
+        self._copy("dictionary", "sha256", row["dictionary"])
+        number = self._first.insert("result", row | {"id": None, "student": student})
+        for outcome in self._second.records("SELECT * FROM outcome WHERE result = ?", result):
+            self._first.insert("outcome", outcome | {"result": number})
+        return number
 
     def _copy(self, table: str, column: str, value: Any) -> None:
-        for row in self._second.rows(f"SELECT * FROM {table} WHERE {column} = ?", value):
-            marks = ", ".join("?" * len(row))
-            self._first.connection.execute(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", row)
+        for row in self._second.records(f"SELECT * FROM {table} WHERE {column} = ?", value):
+            self._first.insert(table, row, unless_known=True)

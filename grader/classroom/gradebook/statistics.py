@@ -7,16 +7,17 @@ from decimal import Decimal
 from math import sqrt
 from typing import NamedTuple
 
-from grader.classroom.gradebook.failures import grouped
+from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.patterns import Pattern, failure_counts, patterns_of, undecided_reasons, units_of
-from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT
+from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20
-_MARKED = "m"  # in place of a status letter, for a criterion with a manual mark
+# Statuses and points earned, by the position of the criterion, and the positions of manual marks.
+_Pattern = tuple[tuple[str, ...], tuple[int | None, ...], tuple[int, ...]]
 _VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
 
 
@@ -102,67 +103,100 @@ class ClassStatistics:
 
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
-    patterns = list(patterns_of(book, rubric))
-    most = max((pattern.out_of for pattern in patterns), default=int(rubric.points * UNITS_PER_POINT))
-    scores: Counter[int] = Counter()
-    for pattern in patterns:
-        if pattern.counts:
-            scores[pattern.grade(most)] += pattern.students
+    students = list(graded_students(book, rubric))
+    most = max((student.out_of for student in students), default=units_of(rubric.points))
+    scores = Counter(student.grade(most) for student in students if student.counts)
     values, decided = sorted(scores.items()), scores.total()
-    graded = sum(pattern.students for pattern in patterns)
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
-    graded_letters = {(index, status) for pattern in patterns for index, status in enumerate(pattern.statuses)}
-    letters = f"pfs?!{SETTLED}"
-    criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in letters)]
-    failures = grouped(failure_counts(book, rubric))[:_MAX_FAILURES]
+    # Most students have the same results as others: the figures of criteria add up these few rows.
+    patterns = Counter((tuple(one.statuses), tuple(one.earned), one.marked) for one in students)
+    graded = {position for statuses, *_ in patterns for position, name in enumerate(statuses) if name != "ungraded"}
+    criteria = [row for row in rubric.criteria if row.position in graded]
+    causes = grouped(Counter(failure for student in students for failure in student.failures))
     verdicts = list(book.rows(_VERDICTS))
     return ClassStatistics(
         verdicts={str(verdict): int(count) for verdict, is_excused, count, _ in verdicts if not is_excused},
         excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
         final=sum(final for *_, final in verdicts),
-        final_graded=sum(pattern.students for pattern in patterns if pattern.final is not None),
-        out_of=_points(most),
-        graded=graded,
-        pending=sum(pattern.students for pattern in patterns if pattern.pending),
-        undecided=graded - decided,
-        points=_totals(patterns),
-        reasons=undecided_reasons(book, rubric),
+        final_graded=sum(student.final is not None for student in students),
+        out_of=points_of(most),
+        graded=len(students),
+        pending=sum(student.pending > 0 for student in students),
+        undecided=len(students) - decided,
+        points=_totals(students),
+        reasons=_reasons(students),
         mean=mean,
         deviation=sqrt(squares / decided) if decided else 0.0,
         lowest=_ranked_score(values, 0),
         median=(_ranked_score(values, (decided - 1) // 2) + _ranked_score(values, decided // 2)) / 2,
         highest=_ranked_score(values, decided - 1),
         bins=_bins(values, most),
-        criteria=tuple(_criterion(criterion, patterns) for criterion in criteria or rubric.criteria),
-        failures=tuple(CommonFailure(rubric.criteria[kind.position], kind.mistake, count) for kind, count in failures),
+        criteria=tuple(_criterion(criterion, rubric, patterns) for criterion in criteria or rubric.criteria),
+        failures=tuple(
+            CommonFailure(rubric.criteria[cause.position], cause.mistake, count)
+            for cause, count in causes[:_MAX_FAILURES]
+        ),
     )
 
 
-def _totals(patterns: Iterable[Pattern]) -> PointTotals:
+class Member(NamedTuple):
+    """The figures in which a graded student is counted.
+
+    `tenth` is None for a grade that is not in the statistics; `lost` are the positions of criteria with fewer points than the maximum,
+    `mistakes` those of the common mistakes.
+    """
+
+    tenth: int | None
+    lost: tuple[int, ...]
+    mistakes: tuple[int, ...]
+
+
+def members(book: Gradebook, rubric: Rubric, found: ClassStatistics) -> Mapping[str, Member]:
+    """Return the figures in which each student is counted in the statistics of a rubric, by key."""
+    students, most = list(graded_students(book, rubric)), units_of(found.out_of)
+    counts = Counter(failure for student in students for failure in student.failures)
+    causes = groups_of(counts)
+    numbers = {cause: number for number, (cause, _) in enumerate(grouped(counts)[: len(found.failures)])}
+    full = [full_units(row) for row in rubric.criteria]
+    members = {}
+    for student in sorted(students, key=lambda student: student.key):
+        own = dict.fromkeys(causes[failure] for failure in student.failures)
+        members[student.key] = Member(
+            tenth_of(student.grade(most), most) if student.counts else None,
+            tuple(at for at, earned in enumerate(student.earned) if earned is not None and earned < full[at]),
+            tuple(numbers[cause] for cause in own if cause in numbers),
+        )
+    return members
+
+
+def _reasons(students: Iterable[GradedStudent]) -> tuple[tuple[str, int], ...]:
+    """Return why automatic points need manual grading, for most points of a student, and for how many; the most frequent first."""
+    waiting = [student.reasons for student in students if student.reasons and student.pending]
+    found = Counter(max(reasons, key=lambda reason: (reasons[reason], reason)) for reasons in waiting)
+    return tuple(sorted(found.items(), key=lambda item: (-item[1], item[0])))
+
+
+def _totals(students: Iterable[GradedStudent]) -> PointTotals:
     earned = pending = lost = 0
-    for pattern in patterns:
-        earned += pattern.score * pattern.students
-        pending += pattern.pending * pattern.students
-        without_bonus = pattern.score - pattern.bonus
-        lost += max(0, pattern.decided - without_bonus) * pattern.students  # a mark may exceed the maximum
-    return PointTotals(_points(earned), _points(lost), _points(pending))
+    for student in students:
+        earned += student.score
+        pending += student.pending
+        lost += max(0, student.decided - (student.score - student.bonus))  # a mark may exceed the maximum
+    return PointTotals(points_of(earned), points_of(lost), points_of(pending))
 
 
-def _points(units: int) -> Decimal:
-    return Decimal(units) / UNITS_PER_POINT
-
-
-def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionStatistics:
+def _criterion(criterion: Criterion, rubric: Rubric, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
     """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
-    statuses: Counter[str] = Counter()
+    found: Counter[str] = Counter()
+    position = criterion.position
+    others = [row.position for row in rubric.criteria if row.points and row.position != position]
     count = x = r = xx = rr = xr = 0
-    for pattern in patterns:
-        number = pattern.students
-        statuses[_MARKED if criterion.id in pattern.marks else pattern.statuses[criterion.position]] += number
-        earned = pattern.earned[criterion.position]
+    for (statuses, units, marked), number in patterns.items():
+        found["marked" if position in marked else statuses[position]] += number
+        earned = units[position]
         if earned is not None:
-            rest = pattern.total - (earned if criterion.points else 0)
+            rest = sum(units[other] or 0 for other in others)
             count += number
             x += earned * number
             r += rest * number
@@ -170,11 +204,19 @@ def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionSt
             rr += rest * rest * number
             xr += earned * rest * number
     variances = (count * xx - x * x) * (count * rr - r * r)
-    correlation = (count * xr - x * r) / sqrt(variances) if variances else None
-    share = x / (count * (units_of(criterion) or 1)) if count else None
-    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{SETTLED}fs?!")
-    counts = count, passed, marked, carried, failed, skipped, pending, errored
-    return CriterionStatistics(criterion, *counts, share, correlation)
+    return CriterionStatistics(
+        criterion,
+        decided=count,
+        passed=found["passed"],
+        marked=found["marked"],
+        carried=found["settled"],
+        failed=found["failed"],
+        skipped=found["skipped"],
+        pending=found["pending"],
+        errored=found["errored"],
+        share=x / (count * full_units(criterion)) if count else None,
+        discrimination=(count * xr - x * r) / sqrt(variances) if variances else None,
+    )
 
 
 def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
@@ -182,7 +224,7 @@ def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
     for score, count in values:
         rank -= count
         if rank < 0:
-            return _points(score)
+            return points_of(score)
     return Decimal(0)
 
 

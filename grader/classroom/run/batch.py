@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult, graded_on
+from grader.classroom.gradebook.result import GradingResult
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment, StoredSubmission, storable
 from grader.classroom.intake.fingerprint import fingerprint
@@ -84,8 +84,8 @@ class Batch:
         self._sha256 = rubric.sha256  # which is computed
         used = {criterion.part for criterion in rubric.criteria}
         wanted = settings.parts or used
-        self._parts = tuple(part.id for part in rubric.parts if part.id in wanted and part.id in used)
-        self._queue = Queue(executor, settings.workers, self._context, rubric)
+        self._parts = " ".join(part.id for part in rubric.parts if part.id in wanted and part.id in used)
+        self._queue = Queue(executor, settings.workers, self._context)
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self._writer: RunWriter | None = None
         self.progress = Progress(settings.total)
@@ -148,21 +148,20 @@ class Batch:
     def _context(self) -> ClassContext:
         """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
-        rubric, settings, template = self._rubric, self._settings, ""
+        rubric, settings, dictionary = self._rubric, self._settings, b""
         if rubric.solution is not None and rubric.compares_with_reference:
             _ = rubric.solution.robot  # raises InputError: without it nothing can be graded
         with suppress(InputError):  # most records resemble that of the reference solution
             if rubric.solution is not None:
                 reference = rubric.solution.submission
-                template = to_record(grade(rubric, reference))
+                dictionary = to_record(grade(rubric, reference)).encode()
                 self._writer.add_handed_out(filter(None, robot_hashes(reference)))
-        self._writer.use_template(template)
-        return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size, settings.parts)
+        self._writer.use_dictionary(dictionary)
+        return ClassContext(settings.root, rubric.data, str(rubric.path), dictionary, settings.max_size, settings.parts)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
         """Return whether a result may be kept: it is of the same rubric, parts and grader, and not errored."""
-        is_same = (stored.rubric, stored.version) == (self._sha256, __version__)
-        is_same = is_same and graded_on(self._rubric, stored.statuses) == self._parts
+        is_same = (stored.rubric, stored.version, stored.parts) == (self._sha256, __version__, self._parts)
         return is_same and stored.verdict != "errored" and not self._settings.force
 
     def _is_unchanged(self, submission: ClassSubmission, stored: StoredSubmission) -> bool:

@@ -7,8 +7,7 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of
-from grader.classroom.gradebook.members import members
-from grader.classroom.gradebook.statistics import statistics
+from grader.classroom.gradebook.statistics import members, statistics
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 SIGNS = {"anna": "ppppp", "ben": "fpfpf", "cleo": "pfp?p", "dora": "??pp?", "finn": "fpf?p"}
