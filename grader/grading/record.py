@@ -120,4 +120,4 @@ def _location(stored: dict[str, Any]) -> Location:
     return Location(**stored, calls=calls)
 
 
-_ENCODER = json.JSONEncoder(separators=(",", ":"), default=_plain)
+_ENCODER = json.JSONEncoder(separators=(",", ":"), default=_plain, check_circular=False)

@@ -60,11 +60,12 @@ def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
     marks = manual_units(book)
     full: list[int | None] = [full_units(row) for row in rubric.criteria]
     automatic = sum(units_of(row.maximum) for row in rubric.criteria if _is_automatic(row))
-    for row in list(book.records(_GRADED, rubric.sha256)):
-        outcomes = book.outcomes(row.pop("result"))
+    for number, key, result, score, out_of, pending, final in list(book.rows(_GRADED, rubric.sha256)):
         statuses = ["passed"] * len(full)
-        student = GradedStudent(**row, statuses=statuses, earned=full[:], decided=row["out_of"], automatic=automatic)
-        _add_outcomes(student, rubric, outcomes, marks[student.id])
+        student = GradedStudent(
+            number, key, score, out_of, pending, final, statuses, full[:], decided=out_of, automatic=automatic
+        )
+        _add_outcomes(student, rubric, book.outcomes(result), marks[number])
         yield student
 
 

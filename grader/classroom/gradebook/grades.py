@@ -11,8 +11,8 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import criterion_points, points_of
-from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
+from grader.classroom.gradebook.result import criterion_points, points_of, storable
+from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, newest_mark, newest_second
-from grader.classroom.gradebook.stored import storable
+from grader.classroom.gradebook.result import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.matching import plain_group, plain_name
 from grader.errors import InputError

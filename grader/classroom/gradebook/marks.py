@@ -7,8 +7,7 @@ from decimal import Decimal, InvalidOperation
 from typing import Literal, NamedTuple, cast
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
-from grader.classroom.gradebook.stored import storable
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
 from grader.grading.criterion import Criterion

@@ -20,6 +20,9 @@ _DIGITS = 6  # of a measured value
 _LEVEL = 3  # of zlib: with a dictionary, as fast as level 1 and a third smaller
 
 
+OutcomeRow = tuple[int, str, int | None, str, str | None]
+
+
 class StoredOutcome(NamedTuple):
     """A criterion that did not pass. The fields are columns of the table `outcome`; points are in ten-thousandths."""
 
@@ -33,7 +36,7 @@ class StoredOutcome(NamedTuple):
 class GradingResult(NamedTuple):
     """The result of one submission; points are in ten-thousandths. `outcomes` lacks the criteria that passed.
 
-    `parts` are ids between spaces. `urdf` and `robot` are the hashes of the URDF and of its normal form.
+    `outcomes` are plain tuples, which are sent to another process much faster. `parts` are ids between spaces. `urdf` and `robot` are the hashes of the URDF and of its normal form.
     """
 
     key: str
@@ -44,7 +47,7 @@ class GradingResult(NamedTuple):
     score: int = 0
     out_of: int = 0
     pending: int = 0
-    outcomes: tuple[StoredOutcome, ...] = ()
+    outcomes: tuple[OutcomeRow, ...] = ()
     record: bytes = b""
     reason: str = ""
     urdf: str = ""
@@ -61,6 +64,11 @@ class GradingResult(NamedTuple):
             outcomes=_outcomes(report),
             record=compressed(to_record(report).encode(), dictionary),
         )
+
+
+def storable(text: str) -> str:
+    """Return text that SQLite can store: lone surrogates are written as escapes."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def units_of(points: Decimal) -> int:
@@ -103,31 +111,28 @@ def criterion_points(
     return points
 
 
-def _outcomes(report: Report) -> tuple[StoredOutcome, ...]:
-    results = {result.criterion.position: result for result in report.results}
-    rows = (
-        _outcome(position, results[position]) if position in results else StoredOutcome(position, "ungraded")
-        for position in range(len(report.rubric.criteria))
-    )
-    return tuple(row for row in rows if row.status != "passed")
+def _outcomes(report: Report) -> tuple[OutcomeRow, ...]:
+    rows = [_outcome(result) for result in report.results if result.outcome.status != "passed"]
+    if len(report.results) < len(report.rubric.criteria):
+        graded = {result.criterion.id for result in report.results}
+        rows += [(row.position, "ungraded", None, "", None) for row in report.rubric.criteria if row.id not in graded]
+    return tuple(rows)
 
 
-def _outcome(position: int, result: Result) -> StoredOutcome:
+def _outcome(result: Result) -> OutcomeRow:
     criterion, outcome = result.criterion, result.outcome
-    status = outcome.status
-    if status == "passed":
-        return StoredOutcome(position, status)
+    status, position = outcome.status, criterion.position
     if result.why_given:
-        return StoredOutcome(position, "settled", units_of(result.points))
+        return position, "settled", units_of(result.points), "", None
     if status == "failed":
-        return StoredOutcome(position, status, 0, _cause(outcome.mistake or outcome.message), _measured(outcome))
+        return position, status, 0, _cause(outcome.mistake or outcome.message), _measured(outcome)
     if status == "pending" and criterion.check.function not in MANUAL_CHECKS:
-        return StoredOutcome(position, status, None, outcome.mistake or f"{criterion.check.name} could not be decided")
-    return StoredOutcome(position, status, 0 if status == "skipped" else None)
+        return position, status, None, _cause(outcome.mistake or f"{criterion.check.name} could not be decided"), None
+    return position, status, 0 if status == "skipped" else None, "", None
 
 
 def _cause(words: str) -> str:
-    return words if len(words) <= _MAX_CAUSE else words[: _MAX_CAUSE - 3] + "..."
+    return storable(words if len(words) <= _MAX_CAUSE else words[: _MAX_CAUSE - 3] + "...")
 
 
 def _measured(outcome: Outcome) -> str | None:

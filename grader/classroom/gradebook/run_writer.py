@@ -7,14 +7,13 @@ from typing import Any
 from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult, units_of
+from grader.classroom.gradebook.result import GradingResult, storable, units_of
 from grader.classroom.gradebook.stored import (
     PROFILE_COLUMNS,
     Enrolment,
     StoredSubmission,
     files_json,
     profile_of,
-    storable,
 )
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
@@ -66,7 +65,7 @@ class RunWriter:
         columns = ("digest", "verdict", "parts", "score", "out_of", "pending", "record", "urdf", "robot")
         values = {name: getattr(result, name) for name in columns}
         number = self._book.insert("result", row | values | {"reason": storable(result.reason)})
-        rows = [(number, *outcome._replace(cause=storable(outcome.cause))) for outcome in result.outcomes]
+        rows = [(number, *outcome) for outcome in result.outcomes]
         self._book.connection.executemany("INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?)", rows)
         return number
 

@@ -16,8 +16,6 @@ from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20
-# Statuses and points earned, by the position of the criterion, and the positions of manual marks.
-_Pattern = tuple[tuple[str, ...], tuple[int | None, ...], tuple[int, ...]]
 _VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
 
 
@@ -101,6 +99,15 @@ class ClassStatistics:
     failures: tuple[CommonFailure, ...]
 
 
+class _Pattern(NamedTuple):
+    """The results that some students have in common; `total` are the points of all criteria."""
+
+    statuses: tuple[str, ...]
+    earned: tuple[int | None, ...]
+    marked: tuple[int, ...]
+    total: int
+
+
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
     students = list(graded_students(book, rubric))
@@ -110,8 +117,9 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
     # Most students have the same results as others: the figures of criteria add up these few rows.
-    patterns = Counter((tuple(one.statuses), tuple(one.earned), one.marked) for one in students)
-    graded = {position for statuses, *_ in patterns for position, name in enumerate(statuses) if name != "ungraded"}
+    worth = [row.position for row in rubric.criteria if row.points]
+    patterns = Counter(_pattern(student, worth) for student in students)
+    graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
     criteria = [row for row in rubric.criteria if row.position in graded]
     causes = grouped(Counter(failure for student in students for failure in student.failures))
     verdicts = list(book.rows(_VERDICTS))
@@ -132,7 +140,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         median=(_ranked_score(values, (decided - 1) // 2) + _ranked_score(values, decided // 2)) / 2,
         highest=_ranked_score(values, decided - 1),
         bins=_bins(values, most),
-        criteria=tuple(_criterion(criterion, rubric, patterns) for criterion in criteria or rubric.criteria),
+        criteria=tuple(_criterion(criterion, patterns) for criterion in criteria or rubric.criteria),
         failures=tuple(
             CommonFailure(rubric.criteria[cause.position], cause.mistake, count)
             for cause, count in causes[:_MAX_FAILURES]
@@ -186,17 +194,21 @@ def _totals(students: Iterable[GradedStudent]) -> PointTotals:
     return PointTotals(points_of(earned), points_of(lost), points_of(pending))
 
 
-def _criterion(criterion: Criterion, rubric: Rubric, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
+def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
+    total = sum(student.earned[position] or 0 for position in worth)
+    return _Pattern(tuple(student.statuses), tuple(student.earned), student.marked, total)
+
+
+def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
     """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
     found: Counter[str] = Counter()
     position = criterion.position
-    others = [row.position for row in rubric.criteria if row.points and row.position != position]
     count = x = r = xx = rr = xr = 0
-    for (statuses, units, marked), number in patterns.items():
-        found["marked" if position in marked else statuses[position]] += number
-        earned = units[position]
+    for pattern, number in patterns.items():
+        found["marked" if position in pattern.marked else pattern.statuses[position]] += number
+        earned = pattern.earned[position]
         if earned is not None:
-            rest = sum(units[other] or 0 for other in others)
+            rest = pattern.total - (earned if criterion.points else 0)
             count += number
             x += earned * number
             r += rest * number

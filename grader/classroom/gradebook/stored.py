@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from grader.classroom.gradebook.result import storable
 from grader.classroom.students import ClassSubmission, Student
 
 
@@ -91,11 +92,6 @@ class StoredSubmission(NamedTuple):
             and self.submitted == submission.submitted
             and profile_of(submission.student, enrolment, self.profile) == self.profile
         )
-
-
-def storable(text: str) -> str:
-    """Return text that SQLite can store: lone surrogates are written as escapes."""
-    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def files_json(submission: ClassSubmission) -> str:

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.gradebook.result import GradingResult, storable
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
-from grader.classroom.gradebook.stored import Enrolment, StoredSubmission, storable
+from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json

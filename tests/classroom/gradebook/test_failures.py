@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome, Value
 from grader.classroom.gradebook.failures import Failure, grouped
-from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.gradebook.result import GradingResult, StoredOutcome
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Report, Result
 from tests.samples import LAB6
@@ -28,7 +28,7 @@ def failure_of(outcome: Outcome) -> Failure:
     """Return the failure that a gradebook makes of an outcome."""
     report = Report(GradedSubmission("a"), LAB6, ("task1",), (Result(CRITERION, outcome),))
     outcomes = GradingResult("a", "graded", "", "").with_report(report, b"").outcomes
-    (found,) = [one for one in outcomes if one.position == CRITERION.position]
+    (found,) = [StoredOutcome(*row) for row in outcomes if row[0] == CRITERION.position]
     return Failure.of(found)
 
 
