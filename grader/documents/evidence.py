@@ -61,7 +61,7 @@ class Found(NamedTuple):
     """The files of a piece of evidence, and those that may be meant, but are not certain."""
 
     files: tuple[Exhibit, ...]
-    perhaps: tuple[Exhibit, ...] = ()
+    possible: tuple[Exhibit, ...] = ()
 
 
 def read_proofs(tree: Tree) -> tuple[Proof, ...]:
@@ -105,7 +105,7 @@ def find_all_evidence(
     claimed = {exhibit.path for one in found for exhibit in one.files}
     unread = {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
     for index, one in enumerate(found):
-        perhaps = tuple(exhibit for exhibit in one.perhaps if exhibit.heading or exhibit.path not in claimed - unread)
+        perhaps = tuple(exhibit for exhibit in one.possible if exhibit.heading or exhibit.path not in claimed - unread)
         claimed |= {exhibit.path for exhibit in perhaps}
         found[index] = Found(one.files, perhaps)
     steps = [
@@ -119,7 +119,7 @@ def find_all_evidence(
         of_task = [(label, index) for label, index in steps if label.task == proof.loose.task]
         if of_task:
             near = min((abs(min(label.steps) - min(proof.loose.steps)), index) for label, index in of_task)[1]
-            found[near] = Found((), (*found[near].perhaps, *describe([proof])))
+            found[near] = Found((), (*found[near].possible, *describe([proof])))
     return found
 
 

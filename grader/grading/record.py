@@ -44,7 +44,7 @@ def to_record(report: Report) -> str:
             for one in report.problems
         ],
         "exhibits": [
-            {"evidence": one.evidence.id, "files": one.files, "perhaps": one.perhaps} for one in report.exhibits
+            {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.exhibits
         ],
         "others": report.others,
         "notes": report.notes,
@@ -64,7 +64,7 @@ def from_record(text: str, rubric: Rubric, originals: Originals | None = None) -
         tuple(_result(criteria, one) for one in data["results"]),
         tuple(_problem(one) for one in data["problems"]),
         tuple(
-            Exhibits(evidence[one["evidence"]], _exhibits(one["files"]), _exhibits(one["perhaps"]))
+            Exhibits(evidence[one["evidence"]], _exhibits(one["files"]), _exhibits(one["possible"]))
             for one in data["exhibits"]
         ),
         _exhibits(data["others"]),

@@ -10,6 +10,7 @@ from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import Agreement, ClassSummary
 from grader.report.as_json import kinds
+from grader.report.class_schemas import COUNTS
 from grader.report.json_data import edit, exact, rounded, to_json
 
 
@@ -32,7 +33,7 @@ def render_class_json(
             ],
             "agreement": _agreement(summary.agreement),
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
-            "needs_a_look": summary.attention.total,
+            "needs_attention": summary.attention.total,
             "attention": [
                 {
                     "reason": group.reason,
@@ -63,13 +64,13 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "score": exact(grade.score) if has_result else None,
         "max_score": exact(grade.out_of) if has_result else None,
         "pending": exact(grade.pending) if has_result else None,
-        "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
+        "late": {"days": grade.late.days, "points": exact(grade.late.points), "reason": grade.late.reason},
         "total": exact(grade.total) if has_result or grade.final is not None else None,
         "final_mark": exact(grade.final),
         "is_excused": grade.is_excused,
         "is_final": not grade.why_not_final,
         "carried": carried,
-        "marks_by_hand": grade.marks,
+        "manual_marks": grade.marks,
         "paths": list(grade.files.paths),
         "attempt": grade.attempt,
         "earlier": list(grade.earlier),
@@ -110,9 +111,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
                 **kinds(row.criterion),
-                "passed": row.passed,
-                "marked_by_hand": row.marked,
-                **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},
+                **{name: getattr(row, name) for name in COUNTS},
                 "share": rounded(row.share),
                 "discrimination": rounded(row.discrimination),
             }

@@ -157,7 +157,7 @@ def _print_rest(number: int, console: Console) -> None:
 def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[str], console: Console) -> None:
     console.print()
     asked = [row for row in criteria if row.of]
-    has_marks, has_carried = any(row.marked for row in asked), any(row.carried for row in asked)
+    has_marks, has_carried = any(row.manual_marks for row in asked), any(row.carried for row in asked)
     more = [*(["carried"] if has_carried else []), *(["manual"] if has_marks else [])]
     # With both, ids of 26 letters fit on 80 columns.
     table = Table(box=None, pad_edge=False, padding=(0, 0, 0, 1) if len(more) > 1 else (0, 1), header_style="bold")
@@ -170,7 +170,7 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
             format_points(row.criterion.points),
             str(row.passed),
             *([str(row.carried)] if has_carried else []),
-            *([str(row.marked)] if has_marks else []),
+            *([str(row.manual_marks)] if has_marks else []),
             str(row.of),
             percent(row.share) if row.share is not None else "",
             _discrimination_text(row.discrimination),

@@ -49,7 +49,7 @@ def student(top: Path, key: str) -> dict[str, Any]:
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key
         )
     numbers = [None if found[name] is None else Decimal(str(found[name])) * 10_000 for name in GRADE]
-    assert [score, out_of, pending, marks] == [*numbers, found["marks_by_hand"]]
+    assert [score, out_of, pending, marks] == [*numbers, found["manual_marks"]]
     return dict(found)
 
 
@@ -155,7 +155,7 @@ def test_a_mark_overrides_a_check(
     assert mark(top, key, criterion, points, "--comment", "seen").returncode == 0
     found = student(top, key)
     assert (found["score"], found["max_score"], found["pending"]) == (score, out_of, pending)
-    assert (found["marks_by_hand"], found["total"]) == (1, score)
+    assert (found["manual_marks"], found["total"]) == (1, score)
 
 
 def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ _VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP
 
 @dataclass(frozen=True, slots=True)
 class CriterionStatistics:
-    """The results of a criterion. The check passed for `passed` of `decided` students, `marked` have a manual mark.
+    """The results of a criterion. The check passed for `passed` of `decided` students, `manual_marks` have one.
 
     For `carried` students it failed because of an earlier mistake alone: they have the points.
 
@@ -33,7 +33,7 @@ class CriterionStatistics:
     criterion: Criterion
     decided: int
     passed: int
-    marked: int
+    manual_marks: int
     carried: int
     failed: int
     skipped: int
@@ -205,7 +205,7 @@ def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> Criter
     position = criterion.position
     count = x = r = xx = rr = xr = 0
     for pattern, number in patterns.items():
-        found["marked" if position in pattern.marked else pattern.statuses[position]] += number
+        found["manual_marks" if position in pattern.marked else pattern.statuses[position]] += number
         earned = pattern.earned[position]
         if earned is not None:
             rest = pattern.total - (earned if criterion.points else 0)
@@ -220,7 +220,7 @@ def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> Criter
         criterion,
         decided=count,
         passed=found["passed"],
-        marked=found["marked"],
+        manual_marks=found["manual_marks"],
         carried=found["settled"],
         failed=found["failed"],
         skipped=found["skipped"],
