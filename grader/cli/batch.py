@@ -14,7 +14,7 @@ from grader.cli.options import (
     PartOption,
     rubric_ids,
 )
-from grader.cli.output import screen, warn
+from grader.cli.output import TERMINAL
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
@@ -86,7 +86,6 @@ def batch(
 
       Troubleshooting: see docs/grade-a-class.md.
     """
-    from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
 
     formats = tuple(report_format or [Format.TERMINAL])
@@ -94,7 +93,25 @@ def batch(
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
-        path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
-        tuple(ignore_file or ()), reports, formats, csv, verbose,
-    )  # fmt: skip
-    return grade_class(request, output_format, screen(), progress_display, warn)
+        path=path,
+        gradebook=gradebook,
+        rubric=rubric,
+        jobs=jobs,
+        timeout=timeout,
+        roster=roster,
+        layout=layout,
+        assignment=assignment,
+        due=due,
+        force=force,
+        cluster=cluster,
+        add=add,
+        max_size=max_size,
+        parts=tuple(part or ()),
+        ignore_files=tuple(ignore_file or ()),
+        reports=reports,
+        report_formats=formats,
+        csv=csv,
+        verbose=verbose,
+        kind=output_format,
+    )
+    return grade_class(request, TERMINAL)

@@ -2,12 +2,17 @@
 
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Callable
+from contextlib import AbstractContextManager, suppress
+from typing import TYPE_CHECKING
 
 from grader.report.screen import Screen, columns
 from grader.text import printable, without_commands
 from grader.usecases import Terminal
 from grader.usecases.writing import write_stdout
+
+if TYPE_CHECKING:
+    from grader.classroom.run.batch import Progress
 
 
 def screen() -> Screen:
@@ -59,4 +64,11 @@ class TransientLine:
         self._width = len(text)
 
 
-TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show)
+def class_progress(work: str) -> AbstractContextManager[Callable[["Progress"], None]]:
+    """Show the progress of a pass over a class."""
+    from grader.cli.progress import progress_display
+
+    return progress_display(work)
+
+
+TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show, class_progress)

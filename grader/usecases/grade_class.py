@@ -18,13 +18,12 @@ from grader.classroom.run.class_check import check_roster
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
-from grader.report.screen import Screen
 from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases import Terminal, Warn
+from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
-from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
-from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
+from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
+from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
@@ -36,7 +35,7 @@ _MAX_LINES = 10
 class ClassRequest:
     """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
 
-    Without a `rubric` it is that of the last run into the gradebook. `ignore_files` are robots that the course handed out.
+    `kind` is the format of the summary. Without a `rubric` it is that of the last run into the gradebook. `ignore_files` are robots that the course handed out.
     """
 
     path: Path
@@ -58,6 +57,7 @@ class ClassRequest:
     report_formats: tuple[Format, ...]
     csv: Path | None
     verbose: bool
+    kind: OutputFormat
 
     @property
     def root(self) -> Path:
@@ -65,10 +65,9 @@ class ClassRequest:
         return self.path.resolve()
 
 
-def grade_class(
-    request: ClassRequest, kind: OutputFormat, screen: Screen, progress: ProgressDisplay, warn: Warn
-) -> str:
+def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     """Grade a class and return its summary. Raises InputError and RubricError."""
+    warn = terminal.warn
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
@@ -89,35 +88,46 @@ def grade_class(
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
-                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size,
-                request.parts, handed_out,
-            )  # fmt: skip
-            with progress("grading") as show:
+                root=str(request.root),
+                layout=intake.layout,
+                total=len(intake),
+                workers=workers,
+                force=request.force,
+                roster=roster,
+                deadline=due,
+                add=request.add,
+                max_size=request.max_size,
+                parts=request.parts,
+                handed_out=handed_out,
+            )
+            with terminal.class_progress("grading") as show:
                 batch = Batch(book, rubric, settings, executor, show)
                 done = _run(batch, intake, warn)
             _warn_lines(batch.notes, warn)
             errored = f" ({done.errored} errored)" if done.errored else ""
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
-        with_fixes = _search_hints(request, kind, book, progress, warn)
+        with_fixes = _search_hints(request, book, terminal)
         if request.reports is not None:
-            with _processes(request.jobs, REPORT_SECONDS) as executor, progress("writing reports") as show:
-                formats = request.report_formats
-                write_reports(executor, request.gradebook, request.reports, formats, deadline, warn, show)
+            run = ReportRun(request.gradebook, request.reports, request.report_formats, deadline)
+            with (
+                _processes(request.jobs, REPORT_SECONDS) as executor,
+                terminal.class_progress("writing reports") as show,
+            ):
+                write_reports(executor, run, warn, show)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
-        return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes, verbose=request.verbose)
+        summary = SummaryRequest(request.kind, with_fixes, request.verbose)
+        return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
 
 
-def _search_hints(
-    request: ClassRequest, kind: OutputFormat, book: Gradebook, progress: ProgressDisplay, warn: Warn
-) -> bool:
+def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) -> bool:
     """Search the hints of reports and of the class; return whether all were searched that statistics need."""
     if request.force:
         remove_hints(book)
     options = HintOptions(request.jobs, request.timeout, request.max_size)
-    is_json, reports = kind is OutputFormat.JSON, request.reports is not None
+    is_json, reports = request.kind is OutputFormat.JSON, request.reports is not None
     statistics = is_json or (reports and Format.HTML in request.report_formats)
-    search_class_hints(book, options, progress, warn, reports=reports, statistics=statistics)
+    search_class_hints(book, options, terminal, reports=reports, statistics=statistics)
     return is_json
 
 

@@ -15,7 +15,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
-from grader.usecases.class_summary import class_summary
+from grader.usecases.class_summary import SummaryRequest, class_summary
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     HOSTILE,
@@ -43,7 +43,7 @@ def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProc
 def student(top: Path, key: str) -> dict[str, Any]:
     """Return a student's grade from `grader export json`, which equals the view."""
     with Gradebook(top / "book.db") as book:
-        data = json.loads(class_summary(Grades(book), OutputFormat.JSON))
+        data = json.loads(class_summary(Grades(book), SummaryRequest(OutputFormat.JSON)))
         (found,) = [student for student in data["students"] if student["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key

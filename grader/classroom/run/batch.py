@@ -116,14 +116,8 @@ class Batch:
                 self.notes.append(f"{path} may belong to {stored.key}, who had another submission: left unassigned")
                 contested.add(stored.key)
                 self._report(("unchanged",))
-                continue
-            stored = stored if stored is not None and self._is_valid(stored) else None
-            if stored is not None and self._is_unchanged(submission, stored):
-                self._report(("unchanged",))
             else:
-                self._at_work[submission.student.key] = (submission, stored)
-                digest = stored.digest if stored is not None else ""
-                self._queue.put(Task(submission.student.key, submission.paths, submission.names, digest))
+                self._put(submission, stored)
             while self._queue.is_full:
                 self._collect(writer, all_in=False)
         while len(self._queue):
@@ -132,18 +126,29 @@ class Batch:
             students.recognise(student)
         with book.transaction():
             for stored in students.gone():
-                if stored.key not in contested:
-                    writer.add_gone(stored)
-                if (
-                    stored.enrolment.is_on_roster
-                    and settings.roster is not None
-                    and settings.roster.entry(stored.key) is None
-                ):
-                    writer.remove_from_roster(stored.student_id)
+                self._add_gone(writer, stored, is_contested=stored.key in contested)
             for student in (*intake.absent, *(intake.contested if settings.roster is not None else ())):
                 save_student(book, student, self._enrolment(student))
         writer.finish()
         return self.progress
+
+    def _put(self, submission: ClassSubmission, stored: StoredSubmission | None) -> None:
+        """Let a submission be graded, unless it has a valid result and has not changed."""
+        stored = stored if stored is not None and self._is_valid(stored) else None
+        if stored is not None and self._is_unchanged(submission, stored):
+            self._report(("unchanged",))
+            return
+        self._at_work[submission.student.key] = (submission, stored)
+        digest = stored.digest if stored is not None else ""
+        self._queue.put(Task(submission.student.key, submission.paths, submission.names, digest))
+
+    def _add_gone(self, writer: RunWriter, stored: StoredSubmission, *, is_contested: bool) -> None:
+        """Record that a stored submission was not found, and whether its student has left the roster."""
+        roster = self._settings.roster
+        if not is_contested:
+            writer.add_gone(stored)
+        if stored.enrolment.is_on_roster and roster is not None and roster.entry(stored.key) is None:
+            writer.remove_from_roster(stored.student_id)
 
     def _context(self) -> ClassContext:
         """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
