@@ -14,7 +14,7 @@ from grader.cli.options import (
     PartOption,
     rubric_ids,
 )
-from grader.cli.output import TERMINAL
+from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import DueOption, GradebookOption
-from grader.cli.output import TERMINAL
+from grader.cli.terminal import TERMINAL
 from grader.usecases.writing import write_stdout
 
 Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]

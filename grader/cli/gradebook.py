@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
-from grader.cli.output import TERMINAL, screen
+from grader.cli.output import screen
+from grader.cli.terminal import TERMINAL
 from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
 

@@ -2,17 +2,11 @@
 
 import os
 import sys
-from collections.abc import Callable
-from contextlib import AbstractContextManager, suppress
-from typing import TYPE_CHECKING
+from contextlib import suppress
 
 from grader.report.screen import Screen, columns
 from grader.text import printable, without_commands
-from grader.usecases import Terminal
 from grader.usecases.writing import write_stdout
-
-if TYPE_CHECKING:
-    from grader.classroom.run.batch import Progress
 
 
 def screen() -> Screen:
@@ -62,13 +56,3 @@ class TransientLine:
         if text or self._width:
             write_stderr(without_commands(f"\r{' ' * self._width}\r{text}"))
         self._width = len(text)
-
-
-def class_progress(work: str) -> AbstractContextManager[Callable[["Progress"], None]]:
-    """Show the progress of a pass over a class."""
-    from grader.cli.progress import progress_display
-
-    return progress_display(work)
-
-
-TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show, class_progress)

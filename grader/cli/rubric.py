@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import FormatOption, RubricOption, rubric_ids
-from grader.cli.output import class_progress, screen, warn
+from grader.cli.output import screen, warn
+from grader.cli.terminal import class_progress
 from grader.report.formats import OutputFormat
 from grader.usecases import DEFAULT_RUBRIC, rubrics
 from grader.usecases.writing import write_stdout

@@ -14,7 +14,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, queued_result
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.cli.output import class_progress
+from grader.cli.terminal import class_progress
 from grader.report.screen import Screen
 from grader.usecases import Terminal
 from grader.usecases.review import review as review_class

@@ -23,7 +23,7 @@ from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.review import ReviewSession
 from grader.classroom.students import Student
-from grader.cli.output import class_progress
+from grader.cli.terminal import class_progress
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
 from grader.report.screen import Screen
