@@ -9,8 +9,8 @@ from zipfile import is_zipfile
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.lms.filling import FillOptions
-from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, OutputFormat

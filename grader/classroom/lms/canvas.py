@@ -22,8 +22,8 @@ from grader.classroom.lms.filling import (
     first_of_each,
 )
 from grader.classroom.lms.grades import LmsGrade, read_points
-from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import CANVAS_TEST_STUDENT, Student
+from grader.classroom.tables import Table, TableRow, read_table
 from grader.errors import InputError
 from grader.text import format_points
 

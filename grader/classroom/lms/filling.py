@@ -10,9 +10,9 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.tables import Table, TableRow
 from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
 from grader.classroom.students import Student
+from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 from grader.text import format_points
 

@@ -22,8 +22,8 @@ from grader.classroom.lms.filling import (
 )
 from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
-from grader.classroom.lms.tables import Table, TableRow, neutral, read_table
 from grader.classroom.students import Student
+from grader.classroom.tables import Table, TableRow, neutral, read_table
 from grader.text import format_points
 
 _TAG = re.compile(r"<[^>]*+>")  # gradingtable.php puts the name of a suspended student into a span, with a picture

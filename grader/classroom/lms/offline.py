@@ -26,8 +26,8 @@ from grader.classroom.lms.filling import (
     first_of_each,
 )
 from grader.classroom.lms.grades import LmsGrade, read_points
-from grader.classroom.lms.tables import TableRow, read_table
 from grader.classroom.students import Student
+from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError
 from grader.text import enumerated, format_points
 
