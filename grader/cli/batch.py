@@ -86,32 +86,12 @@ def batch(
 
       Troubleshooting: see docs/grade-a-class.md.
     """
+    options = locals()  # named like the fields of the request
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
 
     formats = tuple(report_format or [Format.TERMINAL])
     for kind in formats:
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    request = ClassRequest(
-        path=path,
-        gradebook=gradebook,
-        rubric=rubric,
-        jobs=jobs,
-        timeout=timeout,
-        roster=roster,
-        layout=layout,
-        assignment=assignment,
-        due=due,
-        force=force,
-        cluster=cluster,
-        add=add,
-        max_size=max_size,
-        parts=tuple(part or ()),
-        ignore_files=tuple(ignore_file or ()),
-        reports=reports,
-        report_formats=formats,
-        csv=csv,
-        verbose=verbose,
-        kind=output_format,
-    )
-    return grade_class(request, TERMINAL)
+    lists = {"part": tuple(part or ()), "ignore_file": tuple(ignore_file or ()), "report_format": formats}
+    return grade_class(ClassRequest(**options | lists), TERMINAL)

@@ -70,25 +70,10 @@ def export(
 
       Grades that still need manual grading are omitted: grade them with `grader review`, or pass --pending-as-zero.
     """
+    options = locals()  # named like the fields of the request
     from grader.usecases.export import ExportRequest
     from grader.usecases.export import export as export_grades
 
-    request = ExportRequest(
-        target=target,
-        gradebook=gradebook,
-        into=into,
-        output=output,
-        strict=strict,
-        due=due,
-        column=column,
-        feedback_column=feedback_column,
-        pending_as_zero=pending_as_zero,
-        any_maximum=any_maximum,
-        only=only,
-        excel=excel,
-        feedback=feedback,
-        feedback_format=feedback_format,
-    )
-    data, code = export_grades(request, TERMINAL)
+    data, code = export_grades(ExportRequest(**options), TERMINAL)
     write_stdout(data)
     return code

@@ -3,7 +3,7 @@
 from typing import Any
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
-COUNTS = ("passed", "manual_marks", "carried", "failed", "skipped", "pending", "errored")  # of a criterion's results
+COUNTS = "passed manual_marks carried failed skipped pending errored"  # of the results of a criterion
 TEXT: dict[str, Any] = {"type": "string"}
 NUMBER: dict[str, Any] = {"type": "number"}
 COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
@@ -52,7 +52,7 @@ _CRITERION_STATISTICS = record(
     {
         "id": TEXT,
         "max_points": POINTS,
-        **each(TOTAL, " ".join(COUNTS)),
+        **each(TOTAL, COUNTS),
         "share": nullable(POINTS),
         "discrimination": nullable({"type": "number", "minimum": -1, "maximum": 1}),
         "bonus": {"const": True},

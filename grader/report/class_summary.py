@@ -100,10 +100,12 @@ def _print_agreement(agreement: Agreement, console: Console) -> None:
     if not agreement.items:
         return
     _print_heading("Agreement of two graders", console)
-    mean = f"mean difference {agreement.mean_difference:.1f} % of the maximum"
+    mean = f"mean difference {agreement.mean_difference_percent:.1f} % of the maximum"
     lines = [f"{counted(agreement.items, 'item')} marked twice, {agreement.same} with the same points, {mean}"]
     for item in agreement.largest:
-        points = f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.maximum)} points"
+        points = (
+            f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.max_points)} points"
+        )
         lines.append(f"{item.key}, {item.criterion}: {points}")
     for line in lines:
         wrapped(console, Text(printable(line)), 4, Text("  "))

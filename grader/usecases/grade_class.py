@@ -35,7 +35,7 @@ _MAX_LINES = 10
 class ClassRequest:
     """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
 
-    `kind` is the format of the summary. Without a `rubric` it is that of the last run into the gradebook. `ignore_files` are robots that the course handed out.
+    `output_format` is that of the summary. Without a `rubric` it is that of the last run into the gradebook. `ignore_file` are robots that the course handed out.
     """
 
     path: Path
@@ -51,13 +51,13 @@ class ClassRequest:
     cluster: str | None
     add: bool
     max_size: int
-    parts: tuple[str, ...]
-    ignore_files: tuple[Path, ...]
+    part: tuple[str, ...]
+    ignore_file: tuple[Path, ...]
     reports: Path | None
-    report_formats: tuple[Format, ...]
+    report_format: tuple[Format, ...]
     csv: Path | None
     verbose: bool
-    kind: OutputFormat
+    output_format: OutputFormat
 
     @property
     def root(self) -> Path:
@@ -72,11 +72,11 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
     rubric = rubric_of(request.rubric, request.gradebook, warn)
-    for name in request.parts:
+    for name in request.part:
         rubric.part(name)
     deadline = read_deadline(request.due)
     warn_of_due(request.due, rubric, warn)
-    handed_out = tuple(handed_out_hashes(request.ignore_files, rubric))
+    handed_out = tuple(handed_out_hashes(request.ignore_file, rubric))
     roster = roster_of(request.roster, request.gradebook, warn)
     _refuse_targets(request)
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
@@ -84,7 +84,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     if request.roster is not None and not request.add:
         check_roster(intake)
     with Gradebook(request.gradebook, create=True) as book:
-        warn_of_parts(book, request.parts, rubric, warn)
+        warn_of_parts(book, request.part, rubric, warn)
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
@@ -97,7 +97,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
                 deadline=due,
                 add=request.add,
                 max_size=request.max_size,
-                parts=request.parts,
+                parts=request.part,
                 handed_out=handed_out,
             )
             with terminal.class_progress("grading") as show:
@@ -108,7 +108,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
         with_fixes = _search_hints(request, book, terminal)
         if request.reports is not None:
-            run = ReportRun(request.gradebook, request.reports, request.report_formats, deadline)
+            run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
             with (
                 _processes(request.jobs, REPORT_SECONDS) as executor,
                 terminal.class_progress("writing reports") as show,
@@ -116,7 +116,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
                 write_reports(executor, run, warn, show)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
-        summary = SummaryRequest(request.kind, with_fixes, request.verbose)
+        summary = SummaryRequest(request.output_format, with_fixes, request.verbose)
         return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
 
 
@@ -125,8 +125,8 @@ def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) ->
     if request.force:
         remove_hints(book)
     options = HintOptions(request.jobs, request.timeout, request.max_size)
-    is_json, reports = request.kind is OutputFormat.JSON, request.reports is not None
-    statistics = is_json or (reports and Format.HTML in request.report_formats)
+    is_json, reports = request.output_format is OutputFormat.JSON, request.reports is not None
+    statistics = is_json or (reports and Format.HTML in request.report_format)
     search_class_hints(book, options, terminal, reports=reports, statistics=statistics)
     return is_json
 
@@ -178,7 +178,7 @@ def _refuse_targets(request: ClassRequest) -> None:
     for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
     if reports is not None:
-        refuse_report_folder(reports, request.report_formats, (root,))
+        refuse_report_folder(reports, request.report_format, (root,))
     if csv is not None and not csv.resolve().parent.is_dir():
         raise missing_folder(csv)
     if csv is not None:
@@ -189,7 +189,7 @@ def _refuse_targets(request: ClassRequest) -> None:
 def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
     roster = [request.roster] if request.roster is not None else []
-    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_files])
+    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_file])
     if request.root in (csv.resolve(), *csv.resolve().parents):
         raise InputError(
             f"cannot write {printable_path(csv)}: the next run would take it for a submission; choose a file outside of the class"

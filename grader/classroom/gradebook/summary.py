@@ -35,12 +35,12 @@ class MarkedTwice(NamedTuple):
     criterion: str
     first: Decimal
     second: Decimal
-    maximum: Decimal
+    max_points: Decimal
 
     @property
     def difference(self) -> Decimal:
         """The difference in percent of the maximum."""
-        return 100 * abs(self.first - self.second) / self.maximum
+        return 100 * abs(self.first - self.second) / self.max_points
 
 
 class Agreement(NamedTuple):
@@ -51,7 +51,7 @@ class Agreement(NamedTuple):
 
     items: int
     same: int
-    mean_difference: float
+    mean_difference_percent: float
     largest: tuple[MarkedTwice, ...]
 
 
