@@ -81,14 +81,14 @@ def _append(book: Gradebook, item: MergeItem, choice: Choice | None, results: "_
     """Write the new entries of an item, and the mark that counts if that is not the last one; return the number of entries."""
     own, theirs = item.newest
     counts = {"first": own, "second": theirs, None: item.counts}[choice]
-    entries = [(entry, results.of(item.student, entry.mark.result)) for entry in item.new]
-    for entry, result in entries:
-        insert_mark(book, item.student, item.criterion, entry.mark, entry.author, result, entry.mark.at)
+    for entry in item.new:
+        mark = entry.mark._replace(result=results.of(item.student, entry.mark.result))
+        insert_mark(book, item.student, item.criterion, mark, entry.author)
     if counts is None or is_newest(counts, (*item.first, *item.new)):
-        return len(entries)
+        return len(item.new)
     result = counts.mark.result if counts is own else results.of(item.student, counts.mark.result)
-    insert_mark(book, item.student, item.criterion, counts.mark, account(), result)
-    return len(entries) + 1
+    insert_mark(book, item.student, item.criterion, counts.mark._replace(result=result, at=""), account())
+    return len(item.new) + 1
 
 
 class _Results:
