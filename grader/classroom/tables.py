@@ -87,8 +87,9 @@ class Table:
 def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:
     """Return the rows of a CSV file; `shown` is its name in messages.
 
-    It is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. The delimiter is the first comma, semicolon or tab outside
-    quotes in the first line, or the most frequent one in the file of a person: Nachname, Vorname;Matrikelnummer;Login. Raises InputError for a file that is too large or not CSV.
+    It is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. The delimiter is the first comma, semicolon or tab
+    outside quotes in the first line, or the most frequent one in the file of a person, who may write a comma in a
+    title. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
     bom, encoding, text = _decoded(data, shown)

@@ -38,8 +38,8 @@ def warn_of_due(due: str | None, rubric: "Rubric", warn: Warn) -> None:
 class SummaryRequest:
     """The summary of a class: its format, and for `stats` the groups to compare, and the deadline.
 
-    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students who need
-    attention.
+    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students
+    who need attention.
     """
 
     kind: OutputFormat

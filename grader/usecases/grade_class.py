@@ -35,7 +35,8 @@ _MAX_LINES = 10
 class ClassRequest:
     """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
 
-    `output_format` is that of the summary. Without a `rubric` it is that of the last run into the gradebook. `ignore_file` are robots that the course handed out.
+    `output_format` is that of the summary. Without a `rubric` it is that of the last run into the gradebook.
+    `ignore_file` are robots that the course handed out.
     """
 
     path: Path

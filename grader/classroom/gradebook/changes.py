@@ -16,8 +16,8 @@ from grader.grading.validation import TOTAL
 from grader.text import format_points, shell_quoted
 
 _STATES = """
-SELECT student.id, student.key, student.name, result.id, result.verdict, result.parts, result.digest, result.rubric, result.version,
-    submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
+SELECT student.id, student.key, student.name, result.id, result.verdict, result.parts, result.digest, result.rubric,
+    result.version, submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
 FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
     (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?)
 LEFT JOIN result ON result.id = submission.result ORDER BY student.key

@@ -1,4 +1,4 @@
-"""The graded students of a class, each with the points of every criterion: what the figures of the class are made of."""
+"""The graded students of a class, each with the points of every criterion: all figures of the class count them."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
@@ -22,10 +22,11 @@ _MARKS = "SELECT student, criterion, points FROM manual_mark"
 class GradedStudent:
     """A student with a graded submission, in ten-thousandths of a point, with manual marks.
 
-    `statuses` and `earned` are by the position of the criterion; `earned` is None if it is undecided or adjusted. A criterion
-    without points has 1 if it passed, so that it has a share and a discrimination as well. `marked` are the positions of manual marks. `final` is a final mark, which
-    replaces the grade. `decided` are the points of the maximum that are decided, `bonus` is the extra credit in the score.
-    `undecided` are the automatic points that need manual grading, of `automatic`, and `reasons` why, with their points.
+    `statuses` and `earned` are by the position of the criterion; `earned` is None if it is undecided or adjusted. A
+    criterion without points has 1 if it passed, so that it has a share and a discrimination as well. `marked` are the
+    positions of manual marks. `final` is a final mark, which replaces the grade. `decided` are the points of the
+    maximum that are decided, `bonus` is the extra credit in the score. `undecided` are the automatic points that need
+    grading, of `automatic`, and `reasons` why, with their points.
     """
 
     id: int
@@ -46,11 +47,11 @@ class GradedStudent:
 
     @property
     def counts(self) -> bool:
-        """Return whether there is a grade: a final one, or points are decided, and not most of the automatic ones undecided."""
+        """Return whether there is a grade: a final mark, or decided points, and not most automatic ones undecided."""
         return self.final is not None or (self.decided > 0 and 2 * self.undecided <= self.automatic)
 
     def grade(self, most: int) -> int:
-        """Return the final mark, else the share that was earned of the decided points, times the maximum, with extra credit."""
+        """Return the final mark, else the share of the decided points times the maximum, with extra credit."""
         share = round((self.score - self.bonus) * most / self.decided) if self.decided else 0
         return self.final if self.final is not None else share + self.bonus
 

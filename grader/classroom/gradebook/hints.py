@@ -11,8 +11,7 @@ from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
 
 _QUERY = """
-SELECT grade.id AS student, key, grade.result, grade.digest, grade.urdf, grade.robot, grade.parts, source, files, is_gone,
-    hint.hints
+SELECT grade.id AS student, key, grade.result, digest, urdf, robot, parts, source, files, is_gone, hint.hints
 FROM grade LEFT JOIN hint ON hint.result = grade.result
 WHERE verdict = 'graded' AND rubric = ? AND version = ? ORDER BY is_gone, key
 """

@@ -36,7 +36,8 @@ class StoredOutcome(NamedTuple):
 class GradingResult(NamedTuple):
     """The result of one submission; points are in ten-thousandths. `outcomes` lacks the criteria that passed.
 
-    `outcomes` are plain tuples, which are sent to another process much faster. `parts` are ids between spaces. `urdf` and `robot` are the hashes of the URDF and of its normal form.
+    `outcomes` are plain tuples, which are sent to another process much faster. `parts` are ids between spaces. `urdf`
+    and `robot` are the hashes of the URDF and of its normal form.
     """
 
     key: str
@@ -136,7 +137,7 @@ def _cause(words: str) -> str:
 
 
 def _measured(outcome: Outcome) -> str | None:
-    """Return the measured numbers and then the expected ones with the tolerance as JSON; None if no numbers were compared."""
+    """Return the measured and the expected numbers with the tolerance as JSON; None if no numbers were compared."""
     measured, expected = _numbers(outcome.measured), _numbers(outcome.expected)
     if outcome.tolerance is None or not measured:
         return None

@@ -21,7 +21,10 @@ from grader.grading.rubric import Rubric
 
 _FIND = f"SELECT id, {', '.join(PROFILE_COLUMNS)} FROM student WHERE key = ?"
 _UPDATE = f"UPDATE student SET {', '.join(f'{name} = ?' for name in PROFILE_COLUMNS)} WHERE id = ?"
-_NEWEST = "SELECT id, rubric, version, digest, dictionary, record, urdf, robot FROM result WHERE student = ? ORDER BY id DESC LIMIT 1"
+_NEWEST = """
+SELECT id, rubric, version, digest, dictionary, record, urdf, robot FROM result WHERE student = ?
+ORDER BY id DESC LIMIT 1
+"""
 
 
 class RunWriter:

@@ -172,7 +172,8 @@ SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WH
 CREATE VIEW manual_mark AS SELECT * FROM current_mark WHERE kind = 'points' AND criterion <> 'total';
 
 CREATE VIEW newest_submission AS
-SELECT * FROM submission WHERE run = (SELECT max(run) FROM submission AS newer WHERE newer.student = submission.student);
+SELECT * FROM submission
+WHERE run = (SELECT max(run) FROM submission AS newer WHERE newer.student = submission.student);
 
 -- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names
 -- the criteria whose mark was given for another submission, `revalued` those that had another maximum then, and `over` those

@@ -151,8 +151,8 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
 class Member(NamedTuple):
     """The figures in which a graded student is counted.
 
-    `tenth` is None for a grade that is not in the statistics; `lost` are the positions of criteria with fewer points than the maximum,
-    `mistakes` those of the common mistakes.
+    `tenth` is None for a grade that is not in the statistics; `lost` are the positions of criteria with fewer points
+    than the maximum, `mistakes` those of the common mistakes.
     """
 
     tenth: int | None
@@ -179,7 +179,7 @@ def members(book: Gradebook, rubric: Rubric, found: ClassStatistics) -> Mapping[
 
 
 def _reasons(students: Iterable[GradedStudent]) -> tuple[tuple[str, int], ...]:
-    """Return why automatic points need manual grading, for most points of a student, and for how many; the most frequent first."""
+    """Return the reason for most points of each student that need manual grading, the most frequent first, counted."""
     waiting = [student.reasons for student in students if student.reasons and student.pending]
     found = Counter(max(reasons, key=lambda reason: (reasons[reason], reason)) for reasons in waiting)
     return tuple(sorted(found.items(), key=lambda item: (-item[1], item[0])))

@@ -26,8 +26,8 @@ PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
 _VALUES = attrgetter(*STUDENT_COLUMNS)
 STORED_SUBMISSIONS = f"""
-SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.parts, submission.fingerprint,
-    submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
+SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.parts,
+    submission.fingerprint, submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
     {", ".join(f"student.{name}" for name in PROFILE_COLUMNS)}
 FROM student JOIN newest_submission AS submission ON submission.student = student.id
 JOIN result ON result.id = submission.result

@@ -14,9 +14,9 @@ _MAX_NAMED = 10
 class Matches:
     """The submissions of a class matched with a roster: both by their positions.
 
-    `owners` are the students of submissions. `shared` are the members that a group's submission counts for. `contested` are the
-    students with several possible submissions, `ambiguous` these submissions, `uncertain` those that may be another student's,
-    `unmatched` those of nobody on the roster. `notes` are messages for the user.
+    `owners` are the students of submissions. `shared` are the members that a group's submission counts for. `contested`
+    are the students with several possible submissions, `ambiguous` these submissions, `uncertain` those that may be
+    another student's, `unmatched` those of nobody on the roster. `notes` are messages for the user.
     """
 
     def __init__(self, submissions: Submissions, roster: Roster) -> None:
@@ -40,7 +40,7 @@ class Matches:
                 self._claimants.setdefault(tuple(members), []).append(index)
 
     def _match(self, roster: Roster) -> None:
-        """Match each submission of a class that is not anonymous, then decide between those that may belong to one student."""
+        """Match each submission, then decide between those of one student; none of an anonymous class."""
         groups = CanvasGroups(roster)
         doubts: list[tuple[str, GroupClaim]] = []
         otherwise: list[str] = []
@@ -67,8 +67,8 @@ class Matches:
         self._add_doubts(doubts)
         if otherwise:
             self.notes.append(
-                f"{enumerated(otherwise, _MAX_NAMED)}: not named like the student with this id on the roster; if this is a"
-                " group assignment, add a column `group` to the roster, and the submission counts for each member"
+                f"{enumerated(otherwise, _MAX_NAMED)}: not named like the student with this id on the roster; if this"
+                " is a group assignment, add a column `group` to the roster, and the submission counts for each member"
             )
         for owner, claimants in claims.items():
             self._decide(owner, sorted(claimants))
@@ -105,7 +105,7 @@ class Matches:
             self.notes.append(f"{other} may belong to {key} as well, but {first} counts: left unassigned")
 
     def share(self, holds_students: Callable[[str], bool]) -> None:
-        """Let each group's submission count for its members without another one; that of a section counts for nobody."""
+        """Let a group's submission count for its members without another one; that of a section counts for nobody."""
         own = {owner: index for index, owner in self.owners.items()}
         for members, named in self._claimants.items():
             keys = {index: self._submissions.student(index).key for index in named}

@@ -123,9 +123,9 @@ class Filling:
     ) -> Filled:
         """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
 
-        `fill_row` gets a row, the grade, and its total; it returns the new row, the same row if nothing changes, or the reason why
-        the grade cannot be written, or a note that the LMS would refuse it. `fill_excuse` does the same for an excuse, in an LMS
-        that supports excuses.
+        `fill_row` gets a row, the grade, and its total; it returns the new row, the same row if nothing changes, or the
+        reason why the grade cannot be written, or a note that the LMS would refuse it. `fill_excuse` does the same for
+        an excuse, in an LMS that supports excuses.
         """
         matched = match_rows(list(self._students.values()), grades, self.preflight)
         rows = []
@@ -150,12 +150,12 @@ class Filling:
         return RowNote(row.number, self._students[row.number].who, why)
 
     def with_points(self, row: TableRow, column: int, total: Decimal, like: str) -> TableRow:
-        """Return a row with the total, written `like` another number, in a column; a grade that is overwritten is a conflict."""
+        """Return a row with the total, written `like` another number, in a column; another old grade is a conflict."""
         old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
         return row if read_points(old) == read_points(new) else self.with_value(row, column, new)
 
     def with_value(self, row: TableRow, column: int, new: str) -> TableRow:
-        """Return a row with a value in a column, the same row if it has it; a value that is overwritten is a conflict."""
+        """Return a row with a value in a column, the same row if it has it; another old value is a conflict."""
         old = row.value(column)
         if old.casefold() == new.casefold():
             return row
