@@ -61,12 +61,22 @@ def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
     marks = manual_units(book)
     full: list[int | None] = [full_units(row) for row in rubric.criteria]
     automatic = sum(units_of(row.maximum) for row in rubric.criteria if _is_automatic(row))
+    bonus = [row.position for row in rubric.criteria if row.bonus and row.points]
+    adjusted = [row.position for row in rubric.criteria if row.adjustment is not None]
     for number, key, result, score, out_of, pending, final in list(book.rows(_GRADED, rubric.sha256)):
         statuses = ["passed"] * len(full)
         student = GradedStudent(
             number, key, score, out_of, pending, final, statuses, full[:], decided=out_of, automatic=automatic
         )
-        _add_outcomes(student, rubric, book.outcomes(result), marks[number])
+        for position, outcome in book.outcomes(result).items():
+            _add_outcome(student, rubric.criteria[position], outcome, marks[number])
+        for row in rubric.criteria if marks[number] else ():
+            if row.id in marks[number] and row.adjustment is None:
+                student.marked += (row.position,)
+                student.earned[row.position] = marks[number][row.id]
+        student.bonus = sum(student.earned[position] or 0 for position in bonus)
+        for position in adjusted:
+            student.earned[position] = None
         yield student
 
 
@@ -81,22 +91,6 @@ def manual_units(book: Gradebook) -> defaultdict[int, dict[str, int]]:
 def full_units(criterion: Criterion) -> int:
     """Return what a criterion is worth in `earned`."""
     return units_of(criterion.points) or 1
-
-
-def _add_outcomes(
-    student: GradedStudent, rubric: Rubric, outcomes: Mapping[int, StoredOutcome], marks: Mapping[str, int]
-) -> None:
-    for position, outcome in outcomes.items():
-        _add_outcome(student, rubric.criteria[position], outcome, marks)
-    for row in rubric.criteria:
-        if row.id in marks and row.adjustment is None:
-            student.marked += (row.position,)
-            student.earned[row.position] = marks[row.id]
-    for row in rubric.criteria:
-        if row.bonus and row.points:
-            student.bonus += student.earned[row.position] or 0
-        if row.adjustment is not None:
-            student.earned[row.position] = None
 
 
 def _add_outcome(
