@@ -69,9 +69,9 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     if found.files:
         return _pictures("needs manual grading: ", found.files)
     labels = enumerated([repr(name) for name in names[:3]], word="or")
-    if found.perhaps:
+    if found.possible:
         start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
-        return _pictures(start, found.perhaps)._replace(problem="perhaps")
+        return _pictures(start, found.possible)._replace(problem="perhaps")
     paths = [proof.file.path for proof in submission.proofs]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"

@@ -14,7 +14,7 @@ from grader.cli.options import (
     PartOption,
     rubric_ids,
 )
-from grader.cli.output import screen, warn
+from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
@@ -86,15 +86,12 @@ def batch(
 
       Troubleshooting: see docs/grade-a-class.md.
     """
-    from grader.cli.progress import progress_display
+    options = locals()  # named like the fields of the request
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
 
     formats = tuple(report_format or [Format.TERMINAL])
     for kind in formats:
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    request = ClassRequest(
-        path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
-        tuple(ignore_file or ()), reports, formats, csv, verbose,
-    )  # fmt: skip
-    return grade_class(request, output_format, screen(), progress_display, warn)
+    lists = {"part": tuple(part or ()), "ignore_file": tuple(ignore_file or ()), "report_format": formats}
+    return grade_class(ClassRequest(**options | lists), TERMINAL)

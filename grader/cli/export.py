@@ -6,7 +6,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import DueOption, GradebookOption
-from grader.cli.output import warn
+from grader.cli.terminal import TERMINAL
 from grader.usecases.writing import write_stdout
 
 Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
@@ -70,12 +70,10 @@ def export(
 
       Grades that still need manual grading are omitted: grade them with `grader review`, or pass --pending-as-zero.
     """
-    from grader.cli.progress import progress_display
+    options = locals()  # named like the fields of the request
     from grader.usecases.export import ExportRequest
     from grader.usecases.export import export as export_grades
 
-    lms = (into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum)
-    request = ExportRequest(target, gradebook, *lms, only, excel, feedback, feedback_format)
-    data, code = export_grades(request, progress_display, warn)
+    data, code = export_grades(ExportRequest(**options), TERMINAL)
     write_stdout(data)
     return code

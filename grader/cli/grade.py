@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
-from grader.cli.output import TERMINAL, screen, warn, write_stderr
+from grader.cli.output import screen, warn, write_stderr
+from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.levels import Level

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
-from grader.cli.output import TERMINAL, screen, warn
+from grader.cli.output import screen
+from grader.cli.terminal import TERMINAL
 from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
 
@@ -50,10 +51,10 @@ def stats(
 
       Prepare the next lecture: see the edits that would fix the most.
     """
-    from grader.cli.progress import progress_display
-    from grader.usecases.class_summary import class_statistics
+    from grader.usecases.class_summary import SummaryRequest, class_statistics
 
-    return class_statistics(gradebook, by, due, output_format, screen(), progress_display, warn, verbose=verbose)
+    request = SummaryRequest(output_format, with_fixes=True, verbose=verbose, by=by, due=due)
+    return class_statistics(gradebook, request, TERMINAL)
 
 
 def diff(
@@ -81,9 +82,10 @@ def diff(
 
       What a resubmission or a manual mark changed: the same command; each student has the reason.
     """
+    from grader.usecases.two_gradebooks import DiffRequest
     from grader.usecases.two_gradebooks import diff as compare
 
-    return compare(gradebook, other, before, after, output_format, screen())
+    return compare(DiffRequest(gradebook, other, before, after), output_format, screen())
 
 
 _HELP = """Merge the manual marks of two gradebooks.

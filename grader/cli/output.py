@@ -6,7 +6,6 @@ from contextlib import suppress
 
 from grader.report.screen import Screen, columns
 from grader.text import printable, without_commands
-from grader.usecases import Terminal
 from grader.usecases.writing import write_stdout
 
 
@@ -57,6 +56,3 @@ class TransientLine:
         if text or self._width:
             write_stderr(without_commands(f"\r{' ' * self._width}\r{text}"))
         self._width = len(text)
-
-
-TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show)

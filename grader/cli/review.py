@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ByOption, GradebookOption
-from grader.cli.output import TERMINAL, warn
+from grader.cli.output import warn
+from grader.cli.terminal import TERMINAL
 from grader.errors import InputError
 from grader.usecases.writing import write_stdout
 

@@ -7,6 +7,7 @@ import typer
 
 from grader.cli.options import FormatOption, RubricOption, rubric_ids
 from grader.cli.output import screen, warn
+from grader.cli.terminal import class_progress
 from grader.report.formats import OutputFormat
 from grader.usecases import DEFAULT_RUBRIC, rubrics
 from grader.usecases.writing import write_stdout
@@ -146,11 +147,10 @@ def run_test(
 
       grader rubric test my_lab.toml samples --fail-under 100%
     """
-    from grader.cli.progress import progress_display
     from grader.usecases.rubric_making import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, screen(), warn, progress_display)
+    text, code = test(request, screen(), warn, class_progress)
     write_stdout(text)
     return code
 

@@ -61,7 +61,7 @@ class FoundEvidence(NamedTuple):
     """The files of a piece of evidence, and those that may be meant, but are not certain."""
 
     files: tuple[Exhibit, ...]
-    perhaps: tuple[Exhibit, ...] = ()
+    possible: tuple[Exhibit, ...] = ()
 
 
 def read_proofs(tree: Tree) -> tuple[Proof, ...]:
@@ -108,7 +108,7 @@ def find_all_evidence(
     claimed = {exhibit.path for one in found for exhibit in one.files}
     unread = {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
     for index, one in enumerate(found):
-        perhaps = tuple(exhibit for exhibit in one.perhaps if exhibit.heading or exhibit.path not in claimed - unread)
+        perhaps = tuple(exhibit for exhibit in one.possible if exhibit.heading or exhibit.path not in claimed - unread)
         claimed |= {exhibit.path for exhibit in perhaps}
         found[index] = FoundEvidence(one.files, perhaps)
     without = [index for index, one in enumerate(found) if not one.files]
@@ -116,7 +116,7 @@ def find_all_evidence(
     for proof in (proof for proof in proofs if proof.file.path not in claimed and proof.loose.is_complete):
         near = _nearest(proof.loose, steps)
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].perhaps, *describe([proof])))
+            found[near] = FoundEvidence((), (*found[near].possible, *describe([proof])))
     return found
 
 

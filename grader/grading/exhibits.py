@@ -33,7 +33,7 @@ def exhibits_of(
     found = find_all_evidence(submission.proofs, names, submission.readable_documents)
     by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=True)}
     exhibits = tuple(Exhibits(evidence, *by_id[evidence.id]) for evidence in wanted)
-    listed = {exhibit.path for one in found for exhibit in (*one.files, *one.perhaps)}
+    listed = {exhibit.path for one in found for exhibit in (*one.files, *one.possible)}
     others = [proof for proof in submission.proofs if proof.file.path not in listed]
     return exhibits, describe(others[:_MAX_PICTURES])
 

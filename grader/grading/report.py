@@ -118,7 +118,7 @@ class Exhibits(NamedTuple):
 
     evidence: Evidence
     files: "tuple[Exhibit, ...]"
-    perhaps: "tuple[Exhibit, ...]" = ()
+    possible: "tuple[Exhibit, ...]" = ()
 
 
 @dataclass(frozen=True, slots=True)

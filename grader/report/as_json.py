@@ -25,8 +25,8 @@ def report_data(report: Report) -> dict[str, Any]:
             "path": submission.path,
             "sha256": submission.sha256,
             "package": submission.package and (submission.package.folder or "."),  # "." is the submission itself
-            "passed_over": [{"path": file.path, "because": file.reason} for file in submission.other_candidates],
-            "left_out": list(submission.ignored),
+            "other_candidates": [{"path": file.path, "reason": file.reason} for file in submission.other_candidates],
+            "ignored": list(submission.ignored),
         },
         "notes": list(report.notes),
         "parts": list(report.parts),
@@ -42,7 +42,7 @@ def report_data(report: Report) -> dict[str, Any]:
                 "part": found.evidence.part,
                 "title": found.evidence.title,
                 "files": list(map(asdict, found.files)),
-                "perhaps": list(map(asdict, found.perhaps)),
+                "possible": list(map(asdict, found.possible)),
             }
             for found in report.exhibits
         ],

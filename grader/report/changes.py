@@ -74,7 +74,7 @@ def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str
             "name": change.name,
             "before": exact(change.before),
             "after": exact(change.after),
-            "because": list(change.why),
+            "reasons": list(change.why),
             "criteria": [
                 {"id": step.criterion, "before": exact(step.before), "after": exact(step.after)}
                 for step in change.steps

@@ -10,7 +10,8 @@ from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import Agreement, ClassSummary
 from grader.report.as_json import kinds
-from grader.report.json_data import edit, exact, rounded, to_json
+from grader.report.class_schemas import COUNTS
+from grader.report.json_data import edit, exact, fields, rounded, to_json
 
 
 def render_class_json(
@@ -32,7 +33,7 @@ def render_class_json(
             ],
             "agreement": _agreement(summary.agreement),
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
-            "needs_a_look": summary.attention.total,
+            "needs_attention": summary.attention.total,
             "attention": [
                 {
                     "reason": group.reason,
@@ -42,10 +43,7 @@ def render_class_json(
             ],
             "evidence_without_urdf": summary.evidence_only["URDF"],
             "evidence_without_package": summary.evidence_only["package"],
-            "late": {
-                "count": late.students,
-                **{name: exact(getattr(late, name)) for name in ("lost", "least", "most")},
-            },
+            "late": {"count": late.students, **fields(late, "lost least most")},
             "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )
@@ -56,35 +54,27 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
     student, has_result = grade.student, grade.result is not None
     return {
         "id": student.key,
-        "name": student.name,
-        "email": student.email,
+        **fields(student, "name email"),
         "status": grade.verdict,
         "reason": grade.reason,
         "score": exact(grade.score) if has_result else None,
         "max_score": exact(grade.out_of) if has_result else None,
         "pending": exact(grade.pending) if has_result else None,
-        "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
+        "late": fields(grade.late, "days points reason"),
         "total": exact(grade.total) if has_result or grade.final is not None else None,
         "final_mark": exact(grade.final),
         "is_excused": grade.is_excused,
         "is_final": not grade.why_not_final,
         "carried": carried,
-        "marks_by_hand": grade.marks,
+        "manual_marks": grade.marks,
         "paths": list(grade.files.paths),
-        "attempt": grade.attempt,
-        "earlier": list(grade.earlier),
+        **fields(grade, "attempt earlier"),
     }
 
 
 def _fix(fix: CommonFix) -> dict[str, Any]:
     """Return a change that several students need as plain data."""
-    return {
-        "action": fix.action,
-        "count": fix.count,
-        "criteria": list(fix.criteria),
-        "points": exact(fix.points),
-        "example": list(map(edit, fix.example)),
-    }
+    return {**fields(fix, "action count criteria points"), "example": list(map(edit, fix.example))}
 
 
 def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
@@ -93,28 +83,17 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
         "counts": dict(sorted(statistics.verdicts.items())),
         "max_score": exact(statistics.out_of),
         "final_marks": statistics.final,
-        "excused": statistics.excused,
-        "graded": statistics.graded,
-        "pending": statistics.pending,
-        "undecided": statistics.undecided,
-        "points": {name: exact(points) for name, points in statistics.points._asdict().items()},
+        **fields(statistics, "excused graded pending undecided"),
+        "points": fields(statistics.points, "earned lost pending"),
         "reasons": [{"reason": reason, "count": count} for reason, count in statistics.reasons],
-        "mean": rounded(statistics.mean),
-        "deviation": rounded(statistics.deviation),
-        "lowest": exact(statistics.lowest),
-        "median": exact(statistics.median),
-        "highest": exact(statistics.highest),
+        **fields(statistics, "mean deviation lowest median highest"),
         "tenths": list(statistics.bins),
         "criteria": [
             {
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
                 **kinds(row.criterion),
-                "passed": row.passed,
-                "marked_by_hand": row.marked,
-                **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},
-                "share": rounded(row.share),
-                "discrimination": rounded(row.discrimination),
+                **fields(row, f"{COUNTS} share discrimination"),
             }
             for row in statistics.criteria
         ],
@@ -131,11 +110,7 @@ def _comparison(comparison: Comparison) -> dict[str, Any]:
         "by": comparison.by,
         "groups": [
             {
-                "name": section.name,
-                **{name: getattr(section, name) for name in ("students", "graded", "late")},
-                "late_points": exact(section.late_points),
-                "mean": rounded(section.mean),
-                "median": rounded(section.median),
+                **fields(section, "name students graded late late_points mean median"),
                 "shares": {
                     row.id: rounded(share) for row, share in zip(comparison.criteria, section.shares, strict=True)
                 },
@@ -148,17 +123,8 @@ def _comparison(comparison: Comparison) -> dict[str, Any]:
 
 def _agreement(agreement: Agreement) -> dict[str, Any]:
     return {
-        "items": agreement.items,
-        "same": agreement.same,
-        "mean_difference_percent": rounded(agreement.mean_difference),
+        **fields(agreement, "items same mean_difference_percent"),
         "largest": [
-            {
-                "id": item.key,
-                "criterion": item.criterion,
-                "first": exact(item.first),
-                "second": exact(item.second),
-                "max_points": exact(item.maximum),
-            }
-            for item in agreement.largest
+            {"id": item.key, **fields(item, "criterion first second max_points")} for item in agreement.largest
         ],
     }

@@ -3,6 +3,7 @@
 from typing import Any
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
+COUNTS = "passed manual_marks carried failed skipped pending errored"  # of the results of a criterion
 TEXT: dict[str, Any] = {"type": "string"}
 NUMBER: dict[str, Any] = {"type": "number"}
 COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
@@ -51,7 +52,7 @@ _CRITERION_STATISTICS = record(
     {
         "id": TEXT,
         "max_points": POINTS,
-        **each(TOTAL, "passed marked_by_hand carried failed skipped pending errored"),
+        **each(TOTAL, COUNTS),
         "share": nullable(POINTS),
         "discrimination": nullable({"type": "number", "minimum": -1, "maximum": 1}),
         "bonus": {"const": True},
@@ -77,10 +78,10 @@ _STUDENT = record(
         **each(TEXT, "id name email reason"),
         "status": {"enum": ["graded", "unreadable", "errored", "missing"]},
         **each(nullable(POINTS), "score max_score pending total"),
-        "late": record({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "because": TEXT}),
+        "late": record({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
         "final_mark": nullable(POINTS),
         **each(FLAG, "is_excused is_final"),
-        **each(TOTAL, "marks_by_hand attempt"),
+        **each(TOTAL, "manual_marks attempt"),
         **each(array(TEXT), "paths earlier carried"),
     }
 )
@@ -115,7 +116,7 @@ CLASS_SCHEMA = document(
         "comparison": record(
             {"by": {"enum": ["section", "marker"]}, "groups": array(_GROUP), "differing": array(TEXT)}
         ),
-        "needs_a_look": TOTAL,
+        "needs_attention": TOTAL,
         "attention": array(record({"reason": TEXT, "students": array(record({"id": TEXT, "detail": TEXT}))})),
         "evidence_without_urdf": TOTAL,
         "evidence_without_package": TOTAL,
@@ -137,7 +138,7 @@ DIFF_SCHEMA = document(
                 {
                     **_CHANGE,
                     "name": TEXT,
-                    "because": array(TEXT),
+                    "reasons": array(TEXT),
                     "criteria": array(record(_CHANGE)),
                     "rubric": array(record({**each(TEXT, "id key"), **each(VALUE, "before after")})),
                 }

@@ -100,10 +100,12 @@ def _print_agreement(agreement: Agreement, console: Console) -> None:
     if not agreement.items:
         return
     _print_heading("Agreement of two graders", console)
-    mean = f"mean difference {agreement.mean_difference:.1f} % of the maximum"
+    mean = f"mean difference {agreement.mean_difference_percent:.1f} % of the maximum"
     lines = [f"{counted(agreement.items, 'item')} marked twice, {agreement.same} with the same points, {mean}"]
     for item in agreement.largest:
-        points = f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.maximum)} points"
+        points = (
+            f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.max_points)} points"
+        )
         lines.append(f"{item.key}, {item.criterion}: {points}")
     for line in lines:
         wrapped(console, Text(printable(line)), 4, Text("  "))
@@ -157,7 +159,7 @@ def _print_rest(number: int, console: Console) -> None:
 def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[str], console: Console) -> None:
     console.print()
     asked = [row for row in criteria if row.of]
-    has_marks, has_carried = any(row.marked for row in asked), any(row.carried for row in asked)
+    has_marks, has_carried = any(row.manual_marks for row in asked), any(row.carried for row in asked)
     more = [*(["carried"] if has_carried else []), *(["manual"] if has_marks else [])]
     # With both, ids of 26 letters fit on 80 columns.
     table = Table(box=None, pad_edge=False, padding=(0, 0, 0, 1) if len(more) > 1 else (0, 1), header_style="bold")
@@ -170,7 +172,7 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
             format_points(row.criterion.points),
             str(row.passed),
             *([str(row.carried)] if has_carried else []),
-            *([str(row.marked)] if has_marks else []),
+            *([str(row.manual_marks)] if has_marks else []),
             str(row.of),
             percent(row.share) if row.share is not None else "",
             _discrimination_text(row.discrimination),

@@ -60,6 +60,16 @@ def rounded(value: Any) -> Any:
     return dict(value) if isinstance(value, Mapping) else value
 
 
+def plain(value: Any) -> Any:
+    """Return points as a JSON number, and any other value rounded."""
+    return exact(value) if isinstance(value, Decimal) else rounded(value)
+
+
+def fields(value: object, names: str) -> dict[str, Any]:
+    """Return some fields of an object as plain data; `names` are separated by spaces."""
+    return {name: plain(getattr(value, name)) for name in names.split()}
+
+
 def location(where: Location | None) -> dict[str, Any] | None:
     """Return a location as plain data."""
     if where is None:

@@ -26,8 +26,8 @@ def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
 def evidence_line(report: Report) -> str:
     """Return how many pieces of evidence were found, and which were not; empty if the lab asks for none."""
     found = sum(bool(exhibits.files) for exhibits in report.exhibits)
-    uncertain = [_exhibits_text(exhibits) for exhibits in report.exhibits if exhibits.perhaps and not exhibits.files]
-    missing = [exhibits.evidence.title for exhibits in report.exhibits if not (exhibits.files or exhibits.perhaps)]
+    uncertain = [_exhibits_text(exhibits) for exhibits in report.exhibits if exhibits.possible and not exhibits.files]
+    missing = [exhibits.evidence.title for exhibits in report.exhibits if not (exhibits.files or exhibits.possible)]
     texts = [f"Evidence: {found or 'none'} of {len(report.exhibits)} found", *uncertain]
     texts += (
         [f"missing: {enumerated(missing, _MAX_MISSING)}"] if missing and len(missing) < len(report.exhibits) else []
@@ -38,7 +38,7 @@ def evidence_line(report: Report) -> str:
 def _exhibits_text(found: Exhibits) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
     files = ", ".join(exhibit.words for exhibit in found.files)
-    perhaps = enumerated([exhibit.words for exhibit in found.perhaps], _MAX_LISTED, "or")
+    perhaps = enumerated([exhibit.words for exhibit in found.possible], _MAX_LISTED, "or")
     return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
 
 

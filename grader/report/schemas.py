@@ -60,8 +60,8 @@ _SUBMISSION = record(
         "id": TEXT,
         **each(nullable(TEXT), "path package"),
         "sha256": nullable(HASH),
-        "passed_over": array(record(each(TEXT, "path because"))),
-        "left_out": array(TEXT),
+        "other_candidates": array(record(each(TEXT, "path reason"))),
+        "ignored": array(TEXT),
     }
 )
 REPORT_SCHEMA = document(
@@ -76,7 +76,7 @@ REPORT_SCHEMA = document(
         "grade": record({"points": nullable(POINTS), "late": NUMBER, "final": FLAG}),
         "problems": array(_PROBLEM),
         "results": array(_RESULT),
-        "evidence": array(record({**each(TEXT, "id part title"), **each(array(_EXHIBIT), "files perhaps")})),
+        "evidence": array(record({**each(TEXT, "id part title"), **each(array(_EXHIBIT), "files possible")})),
         "other_pictures": array(_EXHIBIT),
     },
     optional=("grade",),

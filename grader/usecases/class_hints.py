@@ -1,7 +1,6 @@
 """Search the proven hints of a class in worker processes, with progress."""
 
-from collections.abc import Callable, Iterable
-from contextlib import AbstractContextManager
+from collections.abc import Iterable
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -13,9 +12,7 @@ from grader.classroom.run.hint_search import HintSearch
 from grader.classroom.run.pool import Processes, processors
 from grader.files.reading import URDF_LIMIT
 from grader.text import counted
-from grader.usecases import Warn
-
-ProgressDisplay = Callable[[str], AbstractContextManager[Callable[[Progress], None]]]
+from grader.usecases import Terminal
 
 
 class HintOptions(NamedTuple):
@@ -27,7 +24,7 @@ class HintOptions(NamedTuple):
 
 
 def search_class_hints(
-    book: Gradebook, options: HintOptions, progress: ProgressDisplay, warn: Warn, *, reports: bool, statistics: bool
+    book: Gradebook, options: HintOptions, terminal: Terminal, *, reports: bool, statistics: bool
 ) -> None:
     """Search the hints that the reports of students show, and those that the statistics of the class count, and store them.
 
@@ -40,23 +37,23 @@ def search_class_hints(
         searches.append(HintSearch(book, newest, attrgetter("robot"), options.max_size))
     total = sum(len(search.wanted) for search in searches)
     if total and book.read_only:
-        warn(f"no hints for {counted(total, 'submission')}: {book.read_only}")
+        terminal.warn(f"no hints for {counted(total, 'submission')}: {book.read_only}")
         return
     if total:
         remove_old_hints(book)
-        _run(searches, total, options, progress)
+        _run(searches, total, options, terminal)
     unavailable = sum(search.unavailable for search in searches)
     if unavailable:
         verb = "has" if unavailable == 1 else "have"
-        warn(
+        terminal.warn(
             f"no hints for {counted(unavailable, 'submission')}, which {verb} changed or moved since the last run: "
             "run `grader batch` again"
         )
 
 
-def _run(searches: Iterable[HintSearch], total: int, options: HintOptions, progress: ProgressDisplay) -> None:
+def _run(searches: Iterable[HintSearch], total: int, options: HintOptions, terminal: Terminal) -> None:
     workers = options.jobs or processors()
-    with Processes(workers, options.timeout) as executor, progress("searching hints") as show:
+    with Processes(workers, options.timeout) as executor, terminal.class_progress("searching hints") as show:
         done = Progress(total)
         show(done)
         for search in searches:

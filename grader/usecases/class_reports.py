@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from itertools import islice
 from pathlib import Path
@@ -30,12 +30,23 @@ from grader.usecases.writing import make_folder, refuse_symlinks, save
 _MAX_TRIED = 3  # students whose submissions may have changed since they were graded
 
 
-def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[str, str], due: datetime | None) -> None:
+@dataclass(frozen=True, slots=True)
+class ReportRun:
+    """The reports to write from a gradebook into a folder; `feedback` adds who graded."""
+
+    book: Path
+    folder: Path
+    formats: tuple[Format, ...]
+    due: datetime | None = None
+    feedback: bool = False
+
+
+def write_class_page(executor: Executor, run: ReportRun, names: dict[str, str]) -> None:
     """Write the page into the folder of the students' pages. Students whose submissions were removed have no link."""
     from grader.report.pages.class_page import MAX_DRAWINGS, render_class_page  # late: they import jinja2
 
-    with Gradebook(book) as opened:
-        grades = Grades(opened, due)
+    with Gradebook(run.book) as opened:
+        grades = Grades(opened, run.due)
         summary = summary_of(grades, with_fixes=True)
         there = {grade.student.key: grade for grade in grades.all() if grade.student.key in names and not grade.is_gone}
         links = {key: address(f"{names[key]}.{Format.HTML.ending}") for key in there}
@@ -43,9 +54,9 @@ def write_class_page(executor: Executor, book: Path, folder: Path, names: dict[s
             fix: sorted((key for key in fix.students if key in there), key=lambda key: -there[key].score)[:_MAX_TRIED]
             for fix in summary.fixes[:MAX_DRAWINGS]
         }
-        drawings = _drawings(executor, book, examples)
+        drawings = _drawings(executor, run.book, examples)
         page = render_class_page(summary, grades, links, drawings)
-    save(folder / CLASS_PAGE, without_commands(page))
+    save(run.folder / CLASS_PAGE, without_commands(page))
 
 
 def _drawings(executor: Executor, book: Path, examples: Mapping[CommonFix, Sequence[str]]) -> dict[str, str]:
@@ -97,50 +108,31 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
         raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
-def write_reports(
-    executor: Executor,
-    book: Path,
-    folder: Path,
-    formats: Sequence[Format],
-    due: datetime | None,
-    warn: Warn,
-    show: Callable[[Progress], None],
-) -> None:
+def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable[[Progress], None]) -> None:
     """Write a report for every student in `report_names`; with the format HTML, also the class's page. Raises InputError."""
-    make_folder(folder)
-    with Gradebook(book) as opened:
+    make_folder(run.folder)
+    with Gradebook(run.book) as opened:
         names = report_names(opened)
-    earlier = update_index(folder, names)
-
-    lost = render_reports(executor, book, folder, formats, due, names, show)
-    if Format.HTML in formats:
-        write_class_page(executor, book, folder, {key: names[key] for key in names if key not in lost}, due)
-    warn(f"{counted(len(names) - len(lost), 'report')} written to {printable_path(folder)}")
+    earlier = update_index(run.folder, names)
+    lost = render_reports(executor, run, names, show)
+    if Format.HTML in run.formats:
+        write_class_page(executor, run, {key: names[key] for key in names if key not in lost})
+    shown = printable_path(run.folder)
+    warn(f"{counted(len(names) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
         warn(printable(f"no report for {key}: {why}"))
     if earlier:
         reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        warn(f"{printable_path(folder)} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
+        warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
 def render_reports(
-    executor: Executor,
-    book: Path,
-    folder: Path,
-    formats: Sequence[Format],
-    due: datetime | None,
-    names: dict[str, str],
-    show: Callable[[Progress], None],
-    *,
-    feedback: bool = False,
+    executor: Executor, run: ReportRun, names: dict[str, str], show: Callable[[Progress], None]
 ) -> dict[str, str]:
-    """Write the reports of students into a folder, by their file names; return who has none, and why.
-
-    `feedback` adds who graded.
-    """
+    """Write the reports of students, by their file names; return who has none, and why."""
 
     def write(some: dict[str, str]) -> "Future[None]":
-        return executor.submit(_write_some, str(book), str(folder), tuple(formats), due, some, feedback)
+        return executor.submit(_write_some, run, some)
 
     chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
     show(Progress(len(names)))
@@ -171,18 +163,16 @@ def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[st
     return {}
 
 
-def _write_some(
-    book: str, folder: str, formats: tuple[Format, ...], due: datetime | None, names: dict[str, str], feedback: bool
-) -> None:
-    with Gradebook(Path(book)) as opened:
-        grades = Grades(opened, due)
+def _write_some(run: ReportRun, names: dict[str, str]) -> None:
+    with Gradebook(run.book) as opened:
+        grades = Grades(opened, run.due)
         for grade in list(grades.between(min(names), max(names))):
             name = names.get(grade.student.key)
             if name is not None:
-                report = report_of(grades, grade, feedback=feedback)
-                picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in formats else ""
-                for kind in formats:
-                    save(Path(folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
+                report = report_of(grades, grade, feedback=run.feedback)
+                picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
+                for kind in run.formats:
+                    save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
 
 
 def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:

@@ -1,5 +1,6 @@
 """The summary of a class: marks, statistics, and who needs attention."""
 
+from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -8,12 +9,12 @@ from typing import TYPE_CHECKING
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
-from grader.classroom.gradebook.sections import Comparison, Grouping, compare
+from grader.classroom.gradebook.sections import Grouping, compare
 from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
-from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases import Terminal, Warn
+from grader.usecases.class_hints import HintOptions, search_class_hints
 
 if TYPE_CHECKING:
     from grader.classroom.run.batch import Progress
@@ -33,56 +34,50 @@ def warn_of_due(due: str | None, rubric: "Rubric", warn: Warn) -> None:
         )
 
 
-def class_statistics(
-    gradebook: Path,
-    by: Grouping | None,
-    due: str | None,
-    kind: OutputFormat,
-    screen: Screen,
-    progress: ProgressDisplay,
-    warn: Warn,
-    *,
-    verbose: bool = False,
-) -> str:
+@dataclass(frozen=True, slots=True)
+class SummaryRequest:
+    """The summary of a class: its format, and for `stats` the groups to compare, and the deadline.
+
+    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students
+    who need attention.
+    """
+
+    kind: OutputFormat
+    with_fixes: bool = False
+    verbose: bool = False
+    by: Grouping | None = None
+    due: str | None = None
+
+
+def class_statistics(gradebook: Path, request: SummaryRequest, terminal: Terminal) -> str:
     """Return the summary of a gradebook's class with the edits that would gain points, or a comparison of groups.
 
     As JSON, it has both. Raises InputError.
     """
     with Gradebook(gradebook) as book:
-        grades = Grades(book, read_deadline(due))
-        warn_of_due(due, grades.newest_rubric(), warn)
-        comparison = compare(grades, by) if by is not None else None
-        if comparison is not None and kind is not OutputFormat.JSON:
+        grades = Grades(book, read_deadline(request.due))
+        warn_of_due(request.due, grades.newest_rubric(), terminal.warn)
+        if request.by is not None and request.kind is not OutputFormat.JSON:
             from grader.report.sections import render_sections
 
-            return draw(partial(render_sections, comparison), screen)
-        search_class_hints(book, HintOptions(), progress, warn, reports=False, statistics=True)
-        return class_summary(grades, kind, screen, with_fixes=True, verbose=verbose, comparison=comparison)
+            return draw(partial(render_sections, compare(grades, request.by)), terminal.screen())
+        search_class_hints(book, HintOptions(), terminal, reports=False, statistics=True)
+        return class_summary(grades, request, terminal.screen())
 
 
 def class_summary(
-    grades: Grades,
-    kind: OutputFormat,
-    screen: Screen | None = None,
-    done: "Progress | None" = None,
-    *,
-    with_fixes: bool = False,
-    verbose: bool = False,
-    comparison: Comparison | None = None,
+    grades: Grades, request: SummaryRequest, screen: Screen | None = None, done: "Progress | None" = None
 ) -> str:
-    """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded.
-
-    `with_fixes` shows the edits that would gain points, which takes a search for hints; `verbose` names all students who need
-    attention; `comparison` is added to JSON.
-    """
-    summary = summary_of(grades, with_fixes=with_fixes)
-    if kind is OutputFormat.JSON:
+    """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
+    summary = summary_of(grades, with_fixes=request.with_fixes)
+    if request.kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
+        comparison = compare(grades, request.by) if request.by is not None else None
         return render_class_json(summary, grades, run, comparison)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, summary, verbose=verbose), screen)
+    return draw(partial(render_class, summary, verbose=request.verbose), screen)

@@ -9,18 +9,18 @@ from zipfile import is_zipfile
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.lms.filling import FillOptions
-from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, OutputFormat
 from grader.text import enumerated, printable_path
-from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
-from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
-from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
+from grader.usecases import Terminal, Warn
+from grader.usecases.class_hints import HintOptions, search_class_hints
+from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
+from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
-from grader.usecases.feedback_zip import feedback_zip
+from grader.usecases.feedback_zip import FeedbackRequest, feedback_zip
 from grader.usecases.grade_files import FILLERS, fill_lms_file, grades_csv, preflight_lines
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
@@ -55,13 +55,13 @@ class ExportRequest:
         return [path for path in (self.output, self.feedback) if path is not None]
 
 
-def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tuple[bytes, ExitCode]:
+def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
     """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_options(request)
     _refuse_files(request)
     deadline = read_deadline(request.due)
     if request.target == "html":
-        _export_pages(request.gradebook, request.output, request.due, progress, warn)
+        _export_pages(request, terminal)
         return b"", ExitCode.PASSED
     with Gradebook(request.gradebook) as book:
         classes = tuple({run.source for run in book.runs()})
@@ -69,13 +69,13 @@ def export(request: ExportRequest, progress: ProgressDisplay, warn: Warn) -> tup
             refuse_symlinks(path, classes)
         grades = Grades(book, deadline)
         if request.due:
-            warn_of_due(request.due, grades.newest_rubric(), warn)
-        data = _data(request, grades, warn)
+            warn_of_due(request.due, grades.newest_rubric(), terminal.warn)
+        data = _data(request, grades, terminal.warn)
         if data is None:
-            warn("nothing was written, because of --strict: some rows or students are unmatched")
+            terminal.warn("nothing was written, because of --strict: some rows or students are unmatched")
             return b"", ExitCode.FAILED
         if request.feedback is not None:
-            save_bytes(request.feedback, _feedback(request, grades, deadline, progress, warn), classes)
+            save_bytes(request.feedback, _feedback(request, grades, deadline, terminal), classes)
     if request.output is None:
         return data, ExitCode.PASSED
     save_bytes(request.output, data, classes)
@@ -87,7 +87,7 @@ def _data(request: ExportRequest, grades: Grades, warn: Warn) -> bytes | None:
     if request.target == "csv":
         return (_BOM if request.excel else b"") + grades_csv(grades).encode()
     if request.target == "json":
-        return class_summary(grades, OutputFormat.JSON, with_fixes=True).encode()
+        return class_summary(grades, SummaryRequest(OutputFormat.JSON, with_fixes=True)).encode()
     if request.into is None:
         return b""
     options = _options(request, request.into, grades)
@@ -110,15 +110,13 @@ def _options(request: ExportRequest, file: Path, grades: Grades) -> FillOptions:
     )
 
 
-def _feedback(
-    request: ExportRequest, grades: Grades, due: datetime | None, progress: ProgressDisplay, warn: Warn
-) -> bytes:
+def _feedback(request: ExportRequest, grades: Grades, due: datetime | None, terminal: Terminal) -> bytes:
     into = request.into if request.target == "moodle" else None
     worksheet = (
         (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
     )
-    kind = Format(request.feedback_format)
-    return feedback_zip(request.target, grades, kind, due, worksheet, progress, warn)
+    asked = FeedbackRequest(request.target, Format(request.feedback_format), due, worksheet)
+    return feedback_zip(grades, asked, terminal)
 
 
 def _refuse_options(request: ExportRequest) -> None:
@@ -158,15 +156,17 @@ def _refuse_files(request: ExportRequest) -> None:
         raise InputError(f"cannot write {printable_path(feedback)}: it exists and is not a zip; name another file")
 
 
-def _export_pages(gradebook: Path, folder: Path | None, due: str | None, progress: ProgressDisplay, warn: Warn) -> None:
+def _export_pages(request: ExportRequest, terminal: Terminal) -> None:
     """Write a page for each student, and the class's page, into a folder. Raises GraderError."""
+    folder = request.output
     if folder is None:
         raise GraderError("export html writes a folder of pages: name it with --output DIR")
-    deadline = read_deadline(due)
-    with Gradebook(gradebook) as book:
+    deadline = read_deadline(request.due)
+    with Gradebook(request.gradebook) as book:
         refuse_report_folder(folder, (Format.HTML,), sorted({Path(run.source) for run in book.runs()}))
-        if due:
-            warn_of_due(due, Grades(book).newest_rubric(), warn)
-        search_class_hints(book, HintOptions(), progress, warn, reports=True, statistics=True)
-    with Processes(processors(), REPORT_SECONDS) as executor, progress("writing pages") as show:
-        write_reports(executor, gradebook, folder, (Format.HTML,), deadline, warn, show)
+        if request.due:
+            warn_of_due(request.due, Grades(book).newest_rubric(), terminal.warn)
+        search_class_hints(book, HintOptions(), terminal, reports=True, statistics=True)
+    run = ReportRun(request.gradebook, folder, (Format.HTML,), deadline)
+    with Processes(processors(), REPORT_SECONDS) as executor, terminal.class_progress("writing pages") as show:
+        write_reports(executor, run, terminal.warn, show)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
+from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
@@ -18,9 +19,9 @@ from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.report.formats import Format
 from grader.text import counted, first_lines, printable
-from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
-from grader.usecases.class_reports import REPORT_SECONDS, render_reports
+from grader.usecases import Terminal
+from grader.usecases.class_hints import HintOptions, search_class_hints
+from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_reports
 from grader.usecases.report_names import file_names, report_names
 
 _MAX_LISTED = 50  # students without a file
@@ -39,22 +40,21 @@ class Feedback:
     without: dict[str, str]
 
 
-def feedback_zip(
-    lms: str,
-    grades: Grades,
-    kind: Format,
-    due: datetime | None,
-    worksheet: tuple[bytes, FillOptions] | None,
-    progress: ProgressDisplay,
-    warn: Warn,
-) -> bytes:
-    """Return the zip for Moodle or Canvas; standard error lists who gets none. Raises InputError if no student gets a report.
+class FeedbackRequest(NamedTuple):
+    """The feedback for Moodle or Canvas. `worksheet` is Moodle's, or None; its participants get the reports."""
 
-    `worksheet` is Moodle's, or None; its participants get the reports.
-    """
-    search_class_hints(grades.book, HintOptions(), progress, warn, reports=True, statistics=False)
-    feedback = _feedback(grades, kind, due, progress)
-    files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, worksheet)
+    lms: str
+    kind: Format
+    due: datetime | None
+    worksheet: tuple[bytes, FillOptions] | None
+
+
+def feedback_zip(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> bytes:
+    """Return the zip for the LMS; standard error lists who gets none. Raises InputError if no student gets a report."""
+    search_class_hints(grades.book, HintOptions(), terminal, reports=True, statistics=False)
+    feedback = _feedback(grades, request, terminal)
+    lms, warn = request.lms, terminal.warn
+    files = _for_canvas(feedback) if lms == "canvas" else _for_moodle(feedback, request.worksheet)
     if not files:
         why = next(iter(feedback.without.values()), "no student has a result, a final mark or an excuse")
         raise InputError(f"no student would get a report in {lms.title()}: {why}")
@@ -67,15 +67,16 @@ def feedback_zip(
     return zip_of(files)
 
 
-def _feedback(grades: Grades, kind: Format, due: datetime | None, progress: ProgressDisplay) -> Feedback:
+def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> Feedback:
     """Return the reports of the students in `report_names`. They come from other processes, which a submission may crash."""
-    names = report_names(grades.book)
+    names, kind = report_names(grades.book), request.kind
     with (
         tempfile.TemporaryDirectory() as folder,
         Processes(processors(), REPORT_SECONDS) as executor,
-        progress("writing reports") as show,
+        terminal.class_progress("writing reports") as show,
     ):
-        without = render_reports(executor, grades.book.path, Path(folder), (kind,), due, names, show, feedback=True)
+        run = ReportRun(grades.book.path, Path(folder), (kind,), request.due, feedback=True)
+        without = render_reports(executor, run, names, show)
         written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
         reports = {key: path.read_bytes() for key, path in written.items()}
     (name,) = file_names([grades.newest_rubric().id]).values()

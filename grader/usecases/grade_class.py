@@ -18,13 +18,12 @@ from grader.classroom.run.class_check import check_roster
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
-from grader.report.screen import Screen
 from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases import Warn
-from grader.usecases.class_hints import HintOptions, ProgressDisplay, search_class_hints
+from grader.usecases import Terminal, Warn
+from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
-from grader.usecases.class_reports import REPORT_SECONDS, refuse_report_folder, write_reports
-from grader.usecases.class_summary import class_summary, read_deadline, warn_of_due
+from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
+from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
@@ -36,7 +35,8 @@ _MAX_LINES = 10
 class ClassRequest:
     """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
 
-    Without a `rubric` it is that of the last run into the gradebook. `ignore_files` are robots that the course handed out.
+    `output_format` is that of the summary. Without a `rubric` it is that of the last run into the gradebook.
+    `ignore_file` are robots that the course handed out.
     """
 
     path: Path
@@ -52,12 +52,13 @@ class ClassRequest:
     cluster: str | None
     add: bool
     max_size: int
-    parts: tuple[str, ...]
-    ignore_files: tuple[Path, ...]
+    part: tuple[str, ...]
+    ignore_file: tuple[Path, ...]
     reports: Path | None
-    report_formats: tuple[Format, ...]
+    report_format: tuple[Format, ...]
     csv: Path | None
     verbose: bool
+    output_format: OutputFormat
 
     @property
     def root(self) -> Path:
@@ -65,19 +66,18 @@ class ClassRequest:
         return self.path.resolve()
 
 
-def grade_class(
-    request: ClassRequest, kind: OutputFormat, screen: Screen, progress: ProgressDisplay, warn: Warn
-) -> str:
+def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     """Grade a class and return its summary. Raises InputError and RubricError."""
+    warn = terminal.warn
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
     rubric = rubric_of(request.rubric, request.gradebook, warn)
-    for name in request.parts:
+    for name in request.part:
         rubric.part(name)
     deadline = read_deadline(request.due)
     warn_of_due(request.due, rubric, warn)
-    handed_out = tuple(handed_out_hashes(request.ignore_files, rubric))
+    handed_out = tuple(handed_out_hashes(request.ignore_file, rubric))
     roster = roster_of(request.roster, request.gradebook, warn)
     _refuse_targets(request)
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
@@ -85,39 +85,50 @@ def grade_class(
     if request.roster is not None and not request.add:
         check_roster(intake)
     with Gradebook(request.gradebook, create=True) as book:
-        warn_of_parts(book, request.parts, rubric, warn)
+        warn_of_parts(book, request.part, rubric, warn)
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
-                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size,
-                request.parts, handed_out,
-            )  # fmt: skip
-            with progress("grading") as show:
+                root=str(request.root),
+                layout=intake.layout,
+                total=len(intake),
+                workers=workers,
+                force=request.force,
+                roster=roster,
+                deadline=due,
+                add=request.add,
+                max_size=request.max_size,
+                parts=request.part,
+                handed_out=handed_out,
+            )
+            with terminal.class_progress("grading") as show:
                 batch = Batch(book, rubric, settings, executor, show)
                 done = _run(batch, intake, warn)
             _warn_lines(batch.notes, warn)
             errored = f" ({done.errored} errored)" if done.errored else ""
             warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
-        with_fixes = _search_hints(request, kind, book, progress, warn)
+        with_fixes = _search_hints(request, book, terminal)
         if request.reports is not None:
-            with _processes(request.jobs, REPORT_SECONDS) as executor, progress("writing reports") as show:
-                formats = request.report_formats
-                write_reports(executor, request.gradebook, request.reports, formats, deadline, warn, show)
+            run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
+            with (
+                _processes(request.jobs, REPORT_SECONDS) as executor,
+                terminal.class_progress("writing reports") as show,
+            ):
+                write_reports(executor, run, warn, show)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
-        return class_summary(Grades(book, deadline), kind, screen, done, with_fixes=with_fixes, verbose=request.verbose)
+        summary = SummaryRequest(request.output_format, with_fixes, request.verbose)
+        return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
 
 
-def _search_hints(
-    request: ClassRequest, kind: OutputFormat, book: Gradebook, progress: ProgressDisplay, warn: Warn
-) -> bool:
+def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) -> bool:
     """Search the hints of reports and of the class; return whether all were searched that statistics need."""
     if request.force:
         remove_hints(book)
     options = HintOptions(request.jobs, request.timeout, request.max_size)
-    is_json, reports = kind is OutputFormat.JSON, request.reports is not None
-    statistics = is_json or (reports and Format.HTML in request.report_formats)
-    search_class_hints(book, options, progress, warn, reports=reports, statistics=statistics)
+    is_json, reports = request.output_format is OutputFormat.JSON, request.reports is not None
+    statistics = is_json or (reports and Format.HTML in request.report_format)
+    search_class_hints(book, options, terminal, reports=reports, statistics=statistics)
     return is_json
 
 
@@ -168,7 +179,7 @@ def _refuse_targets(request: ClassRequest) -> None:
     for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
     if reports is not None:
-        refuse_report_folder(reports, request.report_formats, (root,))
+        refuse_report_folder(reports, request.report_format, (root,))
     if csv is not None and not csv.resolve().parent.is_dir():
         raise missing_folder(csv)
     if csv is not None:
@@ -179,7 +190,7 @@ def _refuse_targets(request: ClassRequest) -> None:
 def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
     roster = [request.roster] if request.roster is not None else []
-    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_files])
+    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_file])
     if request.root in (csv.resolve(), *csv.resolve().parents):
         raise InputError(
             f"cannot write {printable_path(csv)}: the next run would take it for a submission; choose a file outside of the class"

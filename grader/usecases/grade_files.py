@@ -14,7 +14,7 @@ from grader.classroom.lms.filling import Filled, FillOptions, Preflight, RowNote
 from grader.classroom.lms.grades import FeedbackItem, LmsGrade, feedback_html, feedback_items
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, fill_offline
-from grader.classroom.lms.tables import SIZE_LIMIT, CellValue, write_table
+from grader.classroom.tables import SIZE_LIMIT, CellValue, write_table
 from grader.files.reading import read_capped
 from grader.grading.criterion import Criterion
 from grader.text import counted, printable

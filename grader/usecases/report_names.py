@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.lms.tables import neutral, rows_of_table, write_table
+from grader.classroom.tables import neutral, rows_of_table, write_table
 from grader.errors import InputError
 from grader.usecases.writing import save
 

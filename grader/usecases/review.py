@@ -1,6 +1,6 @@
 """Grade what needs manual grading at a terminal, one item at a time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -84,33 +84,55 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
     prompt = f"points, 0 to {format_points(criterion.points)} (? for help): "
     while (line := terminal.ask(prompt)) is not None:
         answer, _, comment = line.strip().partition(" ")
-        match answer.lower():
-            case "q" | "quit":
-                return False
-            case "s" | "skip" | "":
-                session.next()
+        if answer.lower() in ("q", "quit"):
+            return False
+        action = _ACTIONS.get(answer.lower())
+        if action is not None:
+            if action(session, terminal):
                 return True
-            case "b" | "back":
-                if session.back():
-                    return True
-                terminal.warn("this is the first item")
-                continue
-            case "u" | "undo":
-                if _undo(session, terminal):
-                    return True
-                continue
+            continue
         try:
-            points = read_points(answer, criterion.id, criterion.points) if answer != "?" else None
+            points = read_points(answer, criterion.id, criterion.points)
         except InputError as error:
             terminal.warn(str(error))
             continue
-        if points is not None:
-            text = _comment(session, comment.strip(), terminal)
-            if text is None:
-                continue
+        text = _comment(session, comment.strip(), terminal)
+        if text is not None:
             return _mark(session, points, text, terminal)
-        terminal.warn(_HELP)
     return False
+
+
+def _skip(session: ReviewSession, _: Terminal) -> bool:
+    session.next()
+    return True
+
+
+def _back(session: ReviewSession, terminal: Terminal) -> bool:
+    if session.back():
+        return True
+    terminal.warn("this is the first item")
+    return False
+
+
+def _undo(session: ReviewSession, terminal: Terminal) -> bool:
+    """Undo a mark of this review, and print what happened; return whether there was one."""
+    can_undo = session.can_undo
+    try:
+        terminal.warn(undo(session))
+    except InputError as error:
+        terminal.warn(str(error))
+    return can_undo
+
+
+def _help(_: ReviewSession, terminal: Terminal) -> bool:
+    terminal.warn(_HELP)
+    return False
+
+
+# What an answer does that is not points; each returns whether an item is to be shown.
+_ACTIONS: dict[str, Callable[[ReviewSession, Terminal], bool]] = {
+    "": _skip, "s": _skip, "skip": _skip, "b": _back, "back": _back, "u": _undo, "undo": _undo, "?": _help,
+}  # fmt: skip
 
 
 def _comment(session: ReviewSession, typed: str, terminal: Terminal) -> str | None:
@@ -124,22 +146,15 @@ def _comment(session: ReviewSession, typed: str, terminal: Terminal) -> str | No
     return comment
 
 
-def _undo(session: ReviewSession, terminal: Terminal) -> bool:
-    """Undo a mark of this review, and print the mark that counts now, or why it is not undone; return whether there was one."""
+def undo(session: ReviewSession) -> str:
+    """Undo a mark of this review; return which mark counts now, or that a newer one stays. Raises InputError."""
     if not session.can_undo:
-        terminal.warn("nothing to undo: this review has marked nothing")
-        return False
+        raise InputError("nothing to undo: this review has marked nothing")
     try:
         before = session.undo()
     except NewerMarkError as error:
-        terminal.warn(f"not undone: somebody has marked this since: {mark_text(error.mark)}")
-    except InputError as error:
-        terminal.warn(str(error))
-    else:
-        terminal.warn(
-            f"undone; the mark before it counts again: {mark_text(before)}" if before else "the mark is undone"
-        )
-    return True
+        return f"not undone: somebody has marked this since: {mark_text(error.mark)}"
+    return f"undone; the mark before it counts again: {mark_text(before)}" if before else "undone"
 
 
 def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Terminal) -> bool:

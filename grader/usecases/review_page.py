@@ -20,7 +20,7 @@ from grader.report.pages.review import Place, end_page, error_page, item_page, s
 from grader.report.review import mark_text
 from grader.usecases import Terminal
 from grader.usecases.local_server import LocalServer, Request, Response
-from grader.usecases.review import NOTHING, summary
+from grader.usecases.review import NOTHING, summary, undo
 from grader.usecases.review_pictures import item_pictures
 
 Album = tuple[EmbeddedPicture | NotShown, ...]
@@ -115,17 +115,8 @@ class ReviewPage:
                 if not session.back():
                     raise InputError("this is the first item")
             case "undo":
-                if not session.can_undo:
-                    raise InputError("nothing to undo: this review has marked nothing")
-                self._undo()
-
-    def _undo(self) -> None:
-        try:
-            before = self.session.undo()
-        except NewerMarkError as error:
-            self._notice = f"Not undone: somebody has marked this since: {mark_text(error.mark)}"
-        else:
-            self._notice = f"Undone; the mark before it counts again: {mark_text(before)}" if before else "Undone."
+                said = undo(session)
+                self._notice = f"{said[0].upper()}{said[1:]}"
 
     def _album(self, position: int, item: QueuedResult) -> "Future[Album]":
         """Return the pictures of an item. Another thread reads them, so that marks are not delayed."""

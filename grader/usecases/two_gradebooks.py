@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom.gradebook.changes import Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -19,18 +20,25 @@ from grader.usecases import Terminal
 from grader.usecases.exit_codes import ExitCode
 
 
-def diff(
-    gradebook: Path, other: Path | None, before: int | None, after: int | None, kind: OutputFormat, screen: Screen
-) -> str:
+class DiffRequest(NamedTuple):
+    """A gradebook and a newer one, or two runs of one gradebook; default: its last two."""
+
+    gradebook: Path
+    other: Path | None
+    before: int | None
+    after: int | None
+
+
+def diff(request: DiffRequest, kind: OutputFormat, screen: Screen) -> str:
     """Return whose grade changed between two runs, by how much, and why. Raises GraderError."""
-    if other is not None and (before or after):
+    if request.other is not None and (request.before or request.after):
         raise GraderError("--from and --to choose runs of one gradebook: give one gradebook, or omit them")
     with ExitStack() as opened:
-        book = opened.enter_context(Gradebook(gradebook))
-        if other is None:
-            sides = last_two(book, before, after)
+        book = opened.enter_context(Gradebook(request.gradebook))
+        if request.other is None:
+            sides = last_two(book, request.before, request.after)
         else:
-            sides = Snapshot(book), Snapshot(opened.enter_context(Gradebook(other)))
+            sides = Snapshot(book), Snapshot(opened.enter_context(Gradebook(request.other)))
         found = changes(*sides)
         runs = sides[0].newest_run, sides[1].newest_run
     if kind is OutputFormat.JSON:

@@ -5,13 +5,12 @@ from collections.abc import Iterable
 from decimal import Decimal
 from pathlib import Path
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.marks import AddedMark, Entry, add_mark
-from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, GradingResult, Verdict
+from grader.classroom.gradebook.result import GradingResult, Verdict
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.run.worker import Task, result_of
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
@@ -32,7 +31,7 @@ _CRITERIA = {
     'with = { question = "Why?", answer = "Because of the roots.", places = ["step 1"] }',
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
-_STATUSES = {sign: status for status, sign in STATUS_LETTERS.items()}
+_STATUSES: dict[str, Status] = {"p": "passed", "f": "failed", "s": "skipped", "?": "pending", "!": "errored"}
 ENVIRONMENT = clean_environment()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
@@ -59,13 +58,14 @@ def graded_as(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: s
     results = tuple(
         Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
         for criterion, sign in zip(rubric.criteria, signs, strict=True)
-        if sign != NOT_GRADED
+        if sign != "-"
     )
     verdict: Verdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
     from grader.grading.graded_submission import GradedSubmission
 
     report = Report(GradedSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
-    return result_of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
+    result = GradingResult(key, verdict, sha256_of(digest.encode()), "", reason=reason)
+    return result.with_report(report, b"")
 
 
 def record_run(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:

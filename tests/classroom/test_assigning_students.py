@@ -53,11 +53,11 @@ def test_a_team_cannot_submit_for_a_member_of_another(tmp_path: Path, name: str)
     batch(tmp_path, "--layout", "teams", roster=TEAMS)
     mark(tmp_path, "1")
     before = students(tmp_path)
-    assert (before["1"]["score"], before["1"]["marks_by_hand"]) == (65.5, 1)
+    assert (before["1"]["score"], before["1"]["manual_marks"]) == (65.5, 1)
     shutil.rmtree(tmp_path / "class/team2")
     batch(tmp_path, "--layout", "teams", roster=TEAMS)
     after = students(tmp_path)
-    assert (after["1"]["score"], after["1"]["marks_by_hand"]) == (65.5, 1)
+    assert (after["1"]["score"], after["1"]["manual_marks"]) == (65.5, 1)
     assert not after["1"]["is_final"]
     assert after[f"team1/{name}"] == before[f"team1/{name}"]
 
@@ -81,8 +81,8 @@ def test_a_similar_name_takes_over_nothing(tmp_path: Path, name: str, roster: st
     assert len(after) == 2
     shutil.rmtree(tmp_path / "class/alice")
     batch(tmp_path)
-    assert students(tmp_path)["alice"]["marks_by_hand"] == 1
-    assert sum(student["marks_by_hand"] for student in students(tmp_path).values()) == 1
+    assert students(tmp_path)["alice"]["manual_marks"] == 1
+    assert sum(student["manual_marks"] for student in students(tmp_path).values()) == 1
 
 
 def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
@@ -96,9 +96,9 @@ def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
     done = batch(tmp_path, roster=changed)
     assert "alice is ambiguous: it matches several students on the roster: left unassigned" in done.stderr
     after = students(tmp_path)
-    assert [after["7"][key] for key in ("score", "marks_by_hand", "status")] == [65.5, 1, "graded"]
+    assert [after["7"][key] for key in ("score", "manual_marks", "status")] == [65.5, 1, "graded"]
     assert before["score"] == 65.5
-    assert after["alice"]["marks_by_hand"] == 0
+    assert after["alice"]["manual_marks"] == 0
 
 
 def test_sections_with_their_own_rosters(tmp_path: Path) -> None:
@@ -263,7 +263,7 @@ def test_a_display_name_takes_over_nothing_later(tmp_path: Path, layout: str) ->
     done = batch(tmp_path, "--layout", layout)
     assert "has the name of bob, but another number: left unassigned" in done.stderr
     after = students(tmp_path)["bob"]
-    assert (after["score"], after["marks_by_hand"]) == (before["score"], 1)
+    assert (after["score"], after["manual_marks"]) == (before["score"], 1)
 
 
 def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
@@ -292,8 +292,8 @@ def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
     done = batch(tmp_path, "--layout", "teams", "--add", roster=roster)
     assert "now, with all" not in done.stderr
     found = students(tmp_path)
-    assert found["team2/alice"]["marks_by_hand"] == 1
-    assert found["team1/alice"]["marks_by_hand"] == 0
+    assert found["team2/alice"]["manual_marks"] == 1
+    assert found["team1/alice"]["manual_marks"] == 0
 
 
 def test_two_exact_claims_are_contested(tmp_path: Path) -> None:
@@ -330,7 +330,7 @@ def test_a_folder_without_the_prefix_takes_over_nothing(tmp_path: Path) -> None:
     submit(tmp_path / "class/alice")
     batch(tmp_path)
     found = students(tmp_path)
-    assert {key: (student["score"], student["marks_by_hand"]) for key, student in found.items()} == {
+    assert {key: (student["score"], student["manual_marks"]) for key, student in found.items()} == {
         "./alice": (90, 0),
         "./lab6-alice": (65.5, 1),
         "carl": (62, 0),

@@ -148,7 +148,7 @@ def test_the_class_gets_the_new_totals_without_force(top: Path) -> None:
         "dora": (None, None, None),  # nothing was submitted
         "emil": (5.5, 7, 1),  # and `tall` is not skipped any more: it fails
     }
-    assert students(top)["emil"]["marks_by_hand"] == 0
+    assert students(top)["emil"]["manual_marks"] == 0
     assert students(top)["emil"]["carried"] == []
     batch(top)
     assert scores(top) == marked

@@ -105,7 +105,7 @@ def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Pat
     assert (done.returncode, done.stderr) == (1, b"")
     report = json.loads(done.stdout)
     assert report["submission"]["path"] is None
-    assert report["submission"]["passed_over"][0]["path"] == "build/old.urdf"
+    assert report["submission"]["other_candidates"][0]["path"] == "build/old.urdf"
     assert report["results"][0]["message"].startswith("no URDF was submitted")
     assert report["score"] == 0
     refuse("inspect", str(tmp_path), words="has no URDF")

@@ -104,7 +104,7 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
             "name": "Ben Oh",
             "before": 3,
             "after": 3,
-            "because": ["manual marks changed"],
+            "reasons": ["manual marks changed"],
             "criteria": essay,
             "rubric": [],
         },
@@ -113,13 +113,13 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
             "name": "",
             "before": None,
             "after": 6,
-            "because": ["first submission"],
+            "reasons": ["first submission"],
             "criteria": [],
             "rubric": [],
         },
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
-    assert [change["because"] for change in back] == [["manual marks changed"], ["no longer there"]]
+    assert [change["reasons"] for change in back] == [["manual marks changed"], ["no longer there"]]
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
     assert both == "--from and --to choose runs of one gradebook: give one gradebook, or omit them"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
@@ -224,7 +224,7 @@ def test_other_parts(top: Path) -> None:
     batch(top, "--part", "report")
     found = as_json(top / "book.db")["students"]
     assert found
-    assert {tuple(student["because"]) for student in found} == {("graded on other parts",)}
+    assert {tuple(student["reasons"]) for student in found} == {("graded on other parts",)}
 
 
 def test_an_interrupted_run_is_not_compared_by_default(tmp_path: Path) -> None:

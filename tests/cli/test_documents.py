@@ -106,7 +106,7 @@ def test_a_report_names_pages_and_matches(tmp_path: Path) -> None:
     (step_8, *_) = as_json(path)["evidence"]
     exhibit = {"path": "report.pdf", "size": len(REPORT), "width": None, "height": None}
     assert step_8["files"] == [{**exhibit, "heading": "Task 1: Step 8", "page": 1}]
-    assert step_8["perhaps"] == []
+    assert step_8["possible"] == []
 
 
 def test_a_report_names_misspelt_pictures(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_report_names_misspelt_pictures(tmp_path: Path) -> None:
     assert "Needs manual grading: Part3_step3.png" in text
     report = as_json(path)
     listed = {
-        row["id"]: ([it["path"] for it in row["files"]], [it["path"] for it in row["perhaps"]])
+        row["id"]: ([it["path"] for it in row["files"]], [it["path"] for it in row["possible"]])
         for row in report["evidence"]
     }
     assert listed["task3-step3"] == (["Part3_step3.png"], [])
@@ -148,7 +148,7 @@ def test_evidence_does_not_contradict_itself(tmp_path: Path) -> None:
     files = {"Task3_desk.png": png(), "report.pdf": scan, "prelab.pdf": scan, "Task2_Step3.png": png()}
     path = submitted(tmp_path / "Ash", files)
     report = as_json(path)
-    listed = {row["id"]: [file["path"] for file in (*row["files"], *row["perhaps"])] for row in report["evidence"]}
+    listed = {row["id"]: [file["path"] for file in (*row["files"], *row["possible"])] for row in report["evidence"]}
     assert listed == {
         "task1-step8": ["report.pdf"],
         "task1-step18": [],
@@ -168,7 +168,7 @@ def test_the_list_of_evidence_agrees_with_the_criterion(tmp_path: Path) -> None:
     scan = pdf([PICTURE], [PICTURE])
     report = as_json(submitted(tmp_path / "Ash", {"report.pdf": scan, "Prelab/pictures.pdf": scan}))
     assert [row["id"] for row in report["evidence"]][-1] == "task3-step3"
-    listed = {row["id"]: [file["path"] for file in row["perhaps"]] for row in report["evidence"] if row["perhaps"]}
+    listed = {row["id"]: [file["path"] for file in row["possible"]] for row in report["evidence"] if row["possible"]}
     assert listed == {"task3-step3": ["report.pdf"]}
     (webcam,) = (row for row in report["results"] if row["id"] == "evidence-webcam")
     assert webcam["measured"] == ["report.pdf"]

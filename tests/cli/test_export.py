@@ -191,7 +191,7 @@ def test_the_late_penalty_is_a_line_of_its_own(tmp_path: Path) -> None:
     }
     reported = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
     words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
-    assert reported["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
+    assert reported["anna"]["late"] == {"days": 2, "points": -2.2, "reason": words}
     assert (reported["anna"]["score"], reported["anna"]["total"]) == (11, 8.8)
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
     jsonschema.validate(report, json.loads(grader("schema", "report").stdout))

@@ -14,7 +14,7 @@ from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
 from grader.report.formats import Format
-from grader.usecases.class_reports import write_reports
+from grader.usecases.class_reports import ReportRun, write_reports
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
 from tests.report.class_pages import ClassPageReader
 
@@ -235,9 +235,8 @@ def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
     """The others have theirs, the class's page has no link to it, and standard error says why."""
     lines: list[str] = []
     progress: list[Progress] = []
-    write_reports(
-        FailingWorkers(error), top / "book.db", top / "pages", [Format.HTML], None, lines.append, progress.append
-    )
+    run = ReportRun(top / "book.db", top / "pages", (Format.HTML,))
+    write_reports(FailingWorkers(error), run, lines.append, progress.append)
     assert [state.done for state in progress] == [0, 4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
@@ -249,12 +248,5 @@ def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
 def test_a_full_disk_ends_the_command(top: Path) -> None:
     """It concerns all pages: none is blamed on a student."""
     with pytest.raises(InputError, match="No space left"):
-        write_reports(
-            FailingWorkers(InputError("No space left")),
-            top / "book.db",
-            top / "pages",
-            [Format.HTML],
-            None,
-            print,
-            print,
-        )
+        run = ReportRun(top / "book.db", top / "pages", (Format.HTML,))
+        write_reports(FailingWorkers(InputError("No space left")), run, print, print)

@@ -58,7 +58,7 @@ def test_a_group_assignment_of_canvas(tmp_path: Path) -> None:
     assert [(row["id"], row["score"], row["total"], row["late"]["days"]) for row in data["students"]] == [
         ("ash", 6, 6, 0), ("birch", 6, 4.9, 1), ("cedar", 6, 6, 0),
     ]  # fmt: skip
-    assert data["students"][2]["late"]["because"] == "late for the LMS, on time with the extension 2 days"
+    assert data["students"][2]["late"]["reason"] == "late for the LMS, on time with the extension 2 days"
     assert data["late"] == {"count": 1, "lost": 1.1, "least": 1.1, "most": 1.1}
 
 
@@ -207,7 +207,7 @@ def test_who_is_marked(tmp_path: Path) -> None:
     assert mark("Müller") == (2, f"'Müller' is ambiguous: it may be {several}; use one of these ids")
     assert mark("Mueller") == (2, f"there is no student 'Mueller' in the gradebook; did you mean one of {several}?")
     assert mark("Ann")[0] == 2
-    assert [row["marks_by_hand"] for row in graded(tmp_path)["students"]] == [1, 0, 0]
+    assert [row["manual_marks"] for row in graded(tmp_path)["students"]] == [1, 0, 0]
 
 
 def test_a_time_of_submission_that_cannot_be_read(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
-from grader.usecases.class_summary import class_summary
+from grader.usecases.class_summary import SummaryRequest, class_summary
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     HOSTILE,
@@ -43,13 +43,13 @@ def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProc
 def student(top: Path, key: str) -> dict[str, Any]:
     """Return a student's grade from `grader export json`, which equals the view."""
     with Gradebook(top / "book.db") as book:
-        data = json.loads(class_summary(Grades(book), OutputFormat.JSON))
+        data = json.loads(class_summary(Grades(book), SummaryRequest(OutputFormat.JSON)))
         (found,) = [student for student in data["students"] if student["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key
         )
     numbers = [None if found[name] is None else Decimal(str(found[name])) * 10_000 for name in GRADE]
-    assert [score, out_of, pending, marks] == [*numbers, found["marks_by_hand"]]
+    assert [score, out_of, pending, marks] == [*numbers, found["manual_marks"]]
     return dict(found)
 
 
@@ -155,7 +155,7 @@ def test_a_mark_overrides_a_check(
     assert mark(top, key, criterion, points, "--comment", "seen").returncode == 0
     found = student(top, key)
     assert (found["score"], found["max_score"], found["pending"]) == (score, out_of, pending)
-    assert (found["marks_by_hand"], found["total"]) == (1, score)
+    assert (found["manual_marks"], found["total"]) == (1, score)
 
 
 @pytest.mark.usefixtures("hostile_checks")

@@ -39,9 +39,8 @@ def put(path: Path, key: str, criterion: str, entry: Entry, by: str, minute: int
     """Add an entry at a minute."""
     with Gradebook(path) as book:
         grade = Grades(book).find(key)
-        insert_mark(
-            book, grade.id, criterion, Mark(0, entry, by), by, grade.result, f"2026-11-20T12:{minute:02}:00+00:00"
-        )
+        mark = Mark(0, entry, by, f"2026-11-20T12:{minute:02}:00+00:00", grade.result)
+        insert_mark(book, grade.id, criterion, mark, by)
 
 
 def points(value: str, comment: str = "") -> Entry:
@@ -240,7 +239,7 @@ def test_both_gradebooks_may_be_in_use(top: Path) -> None:
     """Another process has them open, B with a write that is not yet in the file itself."""
     with Gradebook(top / "a.db") as one, Gradebook(top / "b.db") as other:
         grade = Grades(other).find("ash")
-        insert_mark(other, grade.id, "essay", Mark(0, points("3"), "Lee"), "Lee", grade.result)
+        insert_mark(other, grade.id, "essay", Mark(0, points("3"), "Lee", result=grade.result), "Lee")
         assert merge(top).returncode == 0
         assert Grades(one).find("ash").score == 9
 

@@ -15,6 +15,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, queued_result
 from grader.classroom.gradebook.marks import NewerMarkError
+from grader.cli.terminal import class_progress
 from grader.report.screen import Screen
 from grader.usecases import Terminal
 from grader.usecases.review import review as review_class
@@ -252,7 +253,7 @@ def test_back_and_undo(top: Path) -> None:
     """An item that this review has marked is shown with its mark; undo opens it again, with a new entry."""
     done = review(top, "b\n3 good\nb\nu\nu\n2\nq\n")
     assert done.stderr == (
-        "grader: this is the first item\ngrader: the mark is undone\ngrader: nothing to undo: this review has marked nothing\n"
+        "grader: this is the first item\ngrader: undone\ngrader: nothing to undo: this review has marked nothing\n"
     )
     positions = [line.split(":")[0] for line in done.stdout.splitlines() if " of 4  " in line]
     assert positions == [
@@ -277,7 +278,7 @@ def test_undo_of_a_criterion_that_is_no_longer_graded(top: Path) -> None:
             grade_without(top / "book.db", "anna", "essay")
         return line
 
-    terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None)
+    terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None, class_progress)
     assert review_class(top / "book.db", ReviewScope("essay", "Kim"), None, terminal).startswith("1 marked, ")
     assert lines == ["not undone: this criterion is no longer graded for this student"]
     assert [row[:3] for row in marks(top)] == [("anna", "essay", 3.0), ("emil", "essay", 2.0)]
@@ -311,6 +312,6 @@ def test_the_last_item_can_be_undone(top: Path) -> None:
     assert done.stdout.count("4 of 4") == 3
     assert done.stdout.count(end) == 4
     assert done.stdout.endswith(f"{end}1 marked, 3 left\n")
-    assert done.stderr == "grader: the mark is undone\n"
+    assert done.stderr == "grader: undone\n"
     assert [points for *_, points, _ in marks(top)] == [1, None, 0.5, 0.25]
     assert end not in review(top, "s\ns\ns\n").stdout

@@ -60,7 +60,7 @@ def test_as_json(top: Path) -> None:
         == as_json(top / "book.db")
         == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
     )
-    assert reported["needs_a_look"] == 2
+    assert reported["needs_attention"] == 2
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,7 @@ def test_many_files_hide_nothing(tmp_path: Path) -> None:
     assert "... and 28 more" in done.stdout.decode()
     assert "sha256" in done.stdout.decode().partition("Other candidate")[0]
     done = run(("grade", str(tmp_path / "work"), "--format", "json"))
-    assert len(json.loads(done.stdout)["submission"]["passed_over"]) == 40
+    assert len(json.loads(done.stdout)["submission"]["other_candidates"]) == 40
 
 
 def test_inputs_are_not_overwritten(tmp_path: Path) -> None:

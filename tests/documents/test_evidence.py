@@ -149,7 +149,7 @@ def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str
     """Return for each piece of evidence the files that are found, and those that are perhaps meant."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
     found = find_all_evidence(submission.proofs, names, submission.readable_documents)
-    return [([it.path for it in one.files], [it.path for it in one.perhaps]) for one in found]
+    return [([it.path for it in one.files], [it.path for it in one.possible]) for one in found]
 
 
 def test_a_file_is_offered_once() -> None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points, graded_on
+from grader.classroom.gradebook.result import criterion_points, points_of
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.grading.rubric_changes import RubricChange, concerning, rubric_changes
@@ -16,8 +16,8 @@ from grader.grading.validation import TOTAL
 from grader.text import format_points, shell_quoted
 
 _STATES = """
-SELECT student.id, student.key, student.name, result.statuses, result.verdict, result.digest, result.rubric, result.version,
-    submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
+SELECT student.id, student.key, student.name, result.id, result.verdict, result.parts, result.digest, result.rubric,
+    result.version, submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
 FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
     (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?)
 LEFT JOIN result ON result.id = submission.result ORDER BY student.key
@@ -82,7 +82,7 @@ class _StudentState(NamedTuple):
     rubric: Rubric | None
     version: str
     points: Mapping[str, Decimal | None]
-    parts: tuple[str, ...]
+    parts: str
     marks: Mapping[str, Decimal | None]
     times: SubmissionTimes = SubmissionTimes()
     deadline: str = ""
@@ -119,7 +119,7 @@ class _StudentState(NamedTuple):
         return {TOTAL, *(row.id for row in criteria if row.adjustment is not None)}
 
 
-_NOBODY = _StudentState("", "", "", "", None, "", {}, (), {})
+_NOBODY = _StudentState("", "", "", "", None, "", {}, "", {})
 _Comparison = Callable[[str, str, tuple[str, ...]], tuple[RubricChange, ...]]
 
 
@@ -165,10 +165,10 @@ def changes(before: Snapshot, after: Snapshot) -> list[Change]:
 def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
     marks: dict[int, dict[str, Decimal | None]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
-        marks.setdefault(student, {})[criterion] = None if units is None else Decimal(units) / UNITS_PER_POINT
+        marks.setdefault(student, {})[criterion] = None if units is None else points_of(units)
     rubric_of, deadline = cache(snapshot.book.rubric), snapshot.newest_run.deadline
     states: dict[str, _StudentState] = {}
-    for student, key, name, statuses, verdict, digest, sha256, version, *times in snapshot.book.rows(
+    for student, key, name, result, verdict, parts, digest, sha256, version, *times in snapshot.book.rows(
         _STATES, snapshot.run
     ):
         own = marks.get(student, {})
@@ -176,8 +176,8 @@ def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
             states[key] = _NOBODY._replace(name=name, marks=own)
             continue
         rubric = rubric_of(sha256)
-        points = criterion_points(rubric, statuses, {name: given for name, given in own.items() if given is not None})
-        parts = graded_on(rubric, statuses)
+        given = {name: points for name, points in own.items() if points is not None}
+        points = criterion_points(rubric, snapshot.book.outcomes(result), given)
         is_late, submitted, due, extension, days = times
         found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days)
         states[key] = _StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own, found, deadline)

@@ -1,20 +1,19 @@
 """The failures of a class, grouped by criterion and cause: measured values within the tolerance are one failure."""
 
+import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from math import acos, degrees, isfinite, radians
-from typing import Any, NamedTuple
+from math import acos, degrees, radians
+from typing import NamedTuple
 
-from grader.checks.outcome import Outcome
-from grader.grading.criterion import Criterion
+from grader.classroom.gradebook.result import StoredOutcome
 
-_MAX_MISTAKE = 200  # characters
-_DIGITS = 6  # of a measured value
+_FINEST = 1e-6  # the digits of a measured value
 _NEIGHBOURS = (0, -1, 1)
 
 
 class Failure(NamedTuple):
-    """One failed criterion as the gradebook stores it: its position, and the mistake in words.
+    """One failed criterion: its position, and the mistake in words.
 
     `measured` are the measured numbers and then the expected ones, empty if something else than numbers was compared.
     """
@@ -26,27 +25,12 @@ class Failure(NamedTuple):
     unit: str = ""
 
     @classmethod
-    def from_json(cls, values: list[Any]) -> "Failure":
-        """Return a failure as it was stored."""
-        position, mistake, measured, *more = values
-        return cls(position, mistake, tuple(measured), *more)
-
-
-def failure_of(criterion: Criterion, outcome: Outcome) -> Failure:
-    """Return the failure of a criterion, with the words that equal mistakes have in common."""
-    words = outcome.mistake or outcome.message
-    mistake = words if len(words) <= _MAX_MISTAKE else words[: _MAX_MISTAKE - 3] + "..."
-    measured, expected = _numbers(outcome.measured), _numbers(outcome.expected)
-    if outcome.tolerance is None or not measured:
-        return Failure(criterion.position, mistake)
-    return Failure(criterion.position, mistake, (*measured, *expected), outcome.tolerance, outcome.unit or "")
-
-
-def _numbers(value: object) -> tuple[float, ...]:
-    """Return a measured number or numbers, rounded; empty for anything else."""
-    values = value if isinstance(value, tuple) else (value,)
-    numbers = tuple(round(item, _DIGITS) for item in values if isinstance(item, float | int) and isfinite(item))
-    return numbers if len(numbers) == len(values) else ()
+    def of(cls, outcome: StoredOutcome) -> "Failure":
+        """Return the failure that an outcome of the gradebook is."""
+        if outcome.measured is None:
+            return cls(outcome.position, outcome.cause)
+        compared = json.loads(outcome.measured)
+        return cls(outcome.position, outcome.cause, tuple(compared["numbers"]), compared["tolerance"], compared["unit"])
 
 
 def grouped(failures: Mapping[Failure, int]) -> list[tuple[Failure, int]]:
@@ -79,7 +63,7 @@ def _cells(failure: Failure) -> Iterable[tuple[object, ...]]:
     position, mistake, measured, tolerance, unit = failure
     if not measured:
         return [(position, mistake)]
-    size = (radians(tolerance) if _is_direction(failure) else tolerance) or 10.0**-_DIGITS
+    size = (radians(tolerance) if _is_direction(failure) else tolerance) or _FINEST
     cell = sum(measured) // (size * len(measured))  # the sums of two groups that are the same differ by less
     return [(position, unit, len(measured), cell + step) for step in _NEIGHBOURS]
 

@@ -7,9 +7,9 @@ from decimal import Decimal
 from pathlib import PurePosixPath
 
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.graded_students import manual_units
 from grader.classroom.gradebook.hints import Mistaken, mistaken
-from grader.classroom.gradebook.patterns import manual_units
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import units_of
 from grader.grading.hints.record import StoredHint, hints_from_record
 from grader.grading.rubric import Rubric
 from grader.source import Edit
@@ -40,8 +40,9 @@ def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     """Return the changes that most students need, the most frequent first, as far as hints have been searched."""
     needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
     examples: dict[tuple[str, tuple[str, ...]], tuple[Mistaken, StoredHint, tuple[StoredHint, ...]]] = {}
+    marks = manual_units(book)
     for submission, example, hints in _with_hints(book, rubric):
-        given = _given(book, rubric, submission)
+        given = {row.id for row in rubric.criteria if marks[submission.student].get(row.id) == units_of(row.points)}
         for stored in hints:
             action, gained = stored.hint.action, tuple(stored.hint.gains)
             if action and not given.issuperset(gained):
@@ -65,12 +66,6 @@ def _with_hints(book: Gradebook, rubric: Rubric) -> Iterator[tuple[Mistaken, Mis
     for submission in submissions:
         if submission.robot in first:
             yield submission, first[submission.robot], hints[submission.robot]
-
-
-def _given(book: Gradebook, rubric: Rubric, submission: Mistaken) -> set[str]:
-    """Return the criteria whose points a manual mark gives."""
-    marks = manual_units(book, submission.student) if submission.has_marks else {}
-    return {row.id for row in rubric.criteria if marks.get(row.id) == int(row.points * UNITS_PER_POINT)}
 
 
 def _nameless(edit: Edit, example: Mistaken, rubric: Rubric) -> Edit:

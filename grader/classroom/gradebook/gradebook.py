@@ -3,13 +3,13 @@
 import os
 import sqlite3
 import time
-import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from grader.classroom.gradebook.result import StoredOutcome, decompressed
 from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.classroom.gradebook.stored import (
     STORED_SUBMISSIONS,
@@ -120,9 +120,23 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         with self.input_errors():
             yield from self.connection.execute(query, values)
 
+    def records(self, query: str, *values: Any) -> Iterator[dict[str, Any]]:
+        """Yield the rows of a query by the names of their columns."""
+        with self.input_errors():
+            found = self.connection.execute(query, values)
+            names = [name for name, *_ in found.description]
+            for row in found:
+                yield dict(zip(names, row, strict=True))
+
     def first(self, query: str, *values: Any) -> tuple[Any, ...] | None:
         """Return the first row of a query, or None."""
         return next(self.rows(query, *values), None)
+
+    def insert(self, table: str, values: Mapping[str, Any], *, unless_known: bool = False) -> int:
+        """Insert a row and return its id."""
+        head = f"INSERT{' OR IGNORE' * unless_known} INTO {table} ({', '.join(values)})"
+        row = self.connection.execute(f"{head} VALUES ({', '.join('?' * len(values))})", tuple(values.values()))
+        return int(row.lastrowid or 0)
 
     def nothing_graded(self) -> InputError:
         """Return the error for a gradebook without a run."""
@@ -171,11 +185,18 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         query = "SELECT criterion, text FROM model_answer WHERE rubric = ?"
         return with_answers(rubric, dict(self.rows(query, sha256))) if answers else rubric
 
-    def record(self, result: int) -> tuple[str, str]:
-        """Return the record of a result and the template that it is stored against (empty without one)."""
-        query = "SELECT record, coalesce(text, '') FROM result LEFT JOIN template ON sha256 = template WHERE id = ?"
-        ((record, template),) = self.rows(query, result)
-        return zlib.decompress(record).decode(), str(template)
+    def record(self, result: int) -> str:
+        """Return the record of a result."""
+        query = "SELECT record, text FROM result LEFT JOIN dictionary ON sha256 = dictionary WHERE id = ?"
+        ((record, dictionary),) = self.rows(query, result)
+        return decompressed(record, dictionary or b"")
+
+    def outcomes(self, result: int) -> dict[int, StoredOutcome]:
+        """Return the outcomes of a result by the position of the criterion, except those that passed."""
+        query = f"SELECT {', '.join(StoredOutcome._fields)} FROM outcome WHERE result = ?"
+        with self.input_errors():
+            rows = self.connection.execute(query, (result,)).fetchall()  # a class has many: faster than `rows`
+        return {row[0]: StoredOutcome._make(row) for row in rows}
 
 
 def _prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:

@@ -11,38 +11,24 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT, criterion_points, graded_on
-from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
+from grader.classroom.gradebook.result import criterion_points, points_of, storable
+from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.hints.record import with_hints
-from grader.grading.record import Template, from_record
+from grader.grading.record import from_record
 from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
 from grader.text import shell_quoted
 
-_COUNTS = ("id", "run", "result", "faults", "marks")  # columns that are taken as they are
-_NAMES = ("older_marks", "revalued_marks", "over_marks")  # of criteria, between spaces
-_REMOVED = "removed_marks"  # of criteria that are not in the rubric
+# Columns of the view `grade` that are taken as they are, those of criteria between spaces, points, and truth values.
+_PLAIN = ("id", "run", "result", "faults", "marks", "rubric", "verdict", "reason", "submitted", "section", "marker")
+_NAMES = ("older_marks", "revalued_marks", "over_marks")
 _POINTS = ("score", "out_of", "pending")
-_TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted", "section", "marker")
 _TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
-_OTHERS = (
-    "deadline",
-    "extension",
-    "days_late",
-    "is_on_roster",
-    "final",
-    "files",
-    "source",
-    "fingerprint",
-    "digest",
-)
-_COLUMNS = (*_COUNTS, *_NAMES, _REMOVED, *_POINTS, *_TEXTS, *_TRUTHS, *_OTHERS, *STUDENT_COLUMNS)
-_QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
 
 class Grades:
@@ -54,24 +40,20 @@ class Grades:
         self._newest_sha256 = newest.rubric if newest is not None else ""
         self._deadline = read_time(newest.deadline) if newest and newest.deadline and deadline is None else deadline
         self.rubric = cache(partial(book.rubric, answers=answers))
-        self._parts_of = cache(lambda rubric, statuses: graded_on(self.rubric(rubric), statuses))
-        self._template = cache(lambda rubric, text: Template(text, self.rubric(rubric)))
 
     def newest_rubric(self) -> Rubric:
         """Return the rubric of the newest run; raises InputError if there is no run."""
-        run = self.book.newest_run()
-        if run is None:
+        if not self._newest_sha256:
             raise self.book.nothing_graded()
-        return self.rubric(run.rubric)
+        return self.rubric(self._newest_sha256)
 
     @cached_property
     def parts(self) -> tuple[str, ...]:
         """The parts that the newest run has graded every submission on."""
         rubric = self.newest_rubric()
-        newest = "SELECT statuses FROM grade WHERE rubric = ? AND result IS NOT NULL ORDER BY result DESC LIMIT 1"
-        for (statuses,) in list(self.book.rows(newest, rubric.sha256)):
-            return graded_on(rubric, statuses)
-        return tuple(part.id for part in rubric.parts)
+        newest = "SELECT parts FROM grade WHERE rubric = ? AND result IS NOT NULL ORDER BY result DESC LIMIT 1"
+        row = self.book.first(newest, rubric.sha256)
+        return tuple(row[0].split()) if row is not None else tuple(part.id for part in rubric.parts)
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:
@@ -86,19 +68,25 @@ class Grades:
 
     def points(self, grade: StudentGrade) -> dict[str, Decimal]:
         """Return the points of each criterion that has a result or a manual mark."""
-        if not grade.rubric:
-            return {}
         marks = {name: mark.points for name, mark in self._manual_marks(grade).items()}
-        points = criterion_points(self.rubric(grade.rubric), grade.statuses, marks)
-        return {name: value for name, value in points.items() if value is not None}
+        return self._points(grade, marks)
 
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
-        if SETTLED not in grade.statuses:
-            return []
-        marks, criteria = self._manual_marks(grade), self.rubric(grade.rubric).criteria
-        settled = (row for row, status in zip(criteria, grade.statuses, strict=True) if status == SETTLED)
-        return [row.id for row in settled if row.adjustment is None and row.id not in marks]
+        outcomes = self.book.outcomes(grade.result).values() if grade.result is not None else ()
+        criteria = [self.rubric(grade.rubric).criteria[one.position] for one in outcomes if one.status == "settled"]
+        marks = self._manual_marks(grade) if criteria else {}
+        return [row.id for row in criteria if row.adjustment is None and row.id not in marks]
+
+    def automatic_points(self, grade: StudentGrade) -> dict[str, Decimal]:
+        """Return the points of each criterion that a check decided."""
+        return self._points(grade, {})
+
+    def _points(self, grade: StudentGrade, marks: Mapping[str, Decimal]) -> dict[str, Decimal]:
+        if grade.result is None:
+            return {}
+        points = criterion_points(self.rubric(grade.rubric), self.book.outcomes(grade.result), marks)
+        return {name: value for name, value in points.items() if value is not None}
 
     def all(self) -> Iterator[StudentGrade]:
         """Yield all grades, in the order of the keys."""
@@ -125,9 +113,7 @@ class Grades:
         if grade.result is None:
             raise InputError(f"{grade.student.key} has submitted nothing")
         rubric = self.rubric(grade.rubric)
-        record, template = self.book.record(grade.result)
-        sources = SubmissionSources(grade.files, rubric)
-        report = from_record(record, rubric, sources, self._template(grade.rubric, template))
+        report = from_record(self.book.record(grade.result), rubric, SubmissionSources(grade.files, rubric))
         hints = self.book.first("SELECT hints FROM hint WHERE result = ?", grade.result)
         report = with_hints(report, hints[0]) if hints is not None else report
         results = _with_marks(report, self._manual_marks(grade), self._comments(grade))
@@ -140,7 +126,7 @@ class Grades:
         query = "SELECT criterion, points, grader_name, comment FROM manual_mark WHERE student = ?"
         adjusted = {row.id for row in self.rubric(grade.rubric).criteria if row.adjustment is not None}
         return {
-            name: ManualMark(Decimal(points) / UNITS_PER_POINT, by, comment)
+            name: ManualMark(points_of(points), by, comment)
             for name, points, by, comment in self.book.rows(query, grade.id)
             if name not in adjusted
         }
@@ -150,50 +136,48 @@ class Grades:
         query = "SELECT criterion, comment, grader_name FROM current_mark WHERE student = ? AND kind = 'comment'"
         return {name: ManualComment(comment, by) for name, comment, by in self.book.rows(query, grade.id)}
 
+    def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
+        for row in self.book.records(f"SELECT * FROM grade {condition}", *values):
+            yield self._grade(row)
+
+    def _grade(self, row: dict[str, Any]) -> StudentGrade:
+        paths, names, attempt, earlier = json.loads(row["files"])
+        values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}
+        values |= {name: self._in_order(row["rubric"], row[name]) for name in _NAMES}
+        values |= {name: points_of(row[name] or 0) for name in _POINTS}
+        final = None if row["final"] is None else points_of(row["final"])
+        is_outdated = bool(row["rubric"]) and row["rubric"] != self._newest_sha256
+        is_current = bool(row["rubric"]) and not is_outdated
+        return StudentGrade(
+            **values,
+            removed_marks=tuple(sorted(row["removed_marks"].split())),
+            student=Student(*(row[name] for name in STUDENT_COLUMNS)),
+            is_on_roster=None if row["is_on_roster"] is None else bool(row["is_on_roster"]),
+            is_outdated=is_outdated,
+            has_other_parts=is_current and tuple(row["parts"].split()) != self.parts,
+            files=SubmissionFiles(
+                row["source"], tuple(paths), tuple(names), row["key"], row["fingerprint"], row["digest"]
+            ),
+            attempt=attempt,
+            earlier=tuple(earlier),
+            late=self._lateness(row, values["score"]),
+            final=final,
+        )
+
+    def _lateness(self, row: dict[str, Any], score: Decimal) -> Lateness:
+        """Return the lateness; a final mark and an excuse have no penalty."""
+        if not row["rubric"]:
+            return Lateness()
+        times = SubmissionTimes(
+            bool(row["is_late"]), row["submitted"], row["deadline"], row["extension"], row["days_late"]
+        )
+        late = lateness(self.rubric(row["rubric"]), times, score, self._deadline)
+        return replace(late, points=Decimal(0)) if row["final"] is not None or row["is_excused"] else late
+
     def _in_order(self, rubric: str, names: str) -> tuple[str, ...]:
         """Return the criteria in a text between spaces, in the order of the rubric."""
         found = names.split()
         return tuple(row.id for row in self.rubric(rubric).criteria if row.id in found) if found else ()
-
-    def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
-        for row in self.book.rows(f"{_QUERY} {condition}", *values):
-            yield self._grade(dict(zip(_COLUMNS, row, strict=True)))
-
-    def _grade(self, values: dict[str, Any]) -> StudentGrade:
-        counts = {name: values[name] for name in _COUNTS}
-        marked = {name: self._in_order(values["rubric"], values[name] or "") for name in _NAMES}
-        points = {name: Decimal(values[name] or 0) / UNITS_PER_POINT for name in _POINTS}
-        texts = {name: values[name] or "" for name in _TEXTS}
-        truths = {name: bool(values[name]) for name in _TRUTHS}
-        rubric, is_on_roster = texts["rubric"], values["is_on_roster"]
-        final = None if values["final"] is None else Decimal(values["final"]) / UNITS_PER_POINT
-        extension = float(values["extension"] or 0)
-        times = SubmissionTimes(
-            truths["is_late"], texts["submitted"], values["deadline"], extension, values["days_late"]
-        )
-        paths, names, attempt, earlier = json.loads(values["files"])
-        is_outdated = bool(rubric) and rubric != self._newest_sha256
-        fingerprint, digest = values["fingerprint"] or "", values["digest"] or ""
-        late = lateness(self.rubric(rubric), times, points["score"], self._deadline) if rubric else Lateness()
-        if final is not None or truths["is_excused"]:
-            late = replace(late, points=Decimal(0))
-        return StudentGrade(
-            **{**counts, **marked, **points, **texts, **truths, "faults": counts["faults"] or 0},
-            removed_marks=tuple(sorted(values[_REMOVED].split())),
-            student=Student(*(values[name] for name in STUDENT_COLUMNS)),
-            is_on_roster=None if is_on_roster is None else bool(is_on_roster),
-            is_outdated=is_outdated,
-            has_other_parts=bool(rubric)
-            and not is_outdated
-            and self._parts_of(rubric, texts["statuses"]) != self.parts,
-            files=SubmissionFiles(
-                values["source"] or "", tuple(paths), tuple(names), values["key"], fingerprint, digest
-            ),
-            attempt=attempt,
-            earlier=tuple(earlier),
-            late=late,
-            final=final,
-        )
 
 
 def _with_marks(

@@ -1,7 +1,6 @@
 """The proven hints in a gradebook: which submissions need them, which of these have the same, and which are stored."""
 
 import json
-import zlib
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -11,16 +10,13 @@ from grader.grading.graded_submission import GradedSubmission
 from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
 
-_COLUMNS = "id, key, result, digest, urdf, robot, statuses, source, files, is_gone, marks"
-_QUERY = f"""
-SELECT {", ".join(f"grade.{name}" for name in _COLUMNS.split(", "))}, hint.hints, result.record FROM grade
-JOIN result ON result.id = grade.result
-LEFT JOIN hint ON hint.result = grade.result
-WHERE grade.verdict = 'graded' AND grade.rubric = ? AND grade.version = ? ORDER BY grade.is_gone, grade.key
+_QUERY = """
+SELECT grade.id AS student, key, grade.result, digest, urdf, robot, parts, source, files, is_gone, hint.hints
+FROM grade LEFT JOIN hint ON hint.result = grade.result
+WHERE verdict = 'graded' AND rubric = ? AND version = ? ORDER BY is_gone, key
 """
 _RUBRICS = "SELECT DISTINCT rubric FROM grade WHERE result IS NOT NULL AND version = ? ORDER BY rubric"
 _ROBOT = ("urdf", "robot")  # what a check examines that depends on the URDF alone
-_FAILED = "f"
 
 
 class Mistaken(NamedTuple):
@@ -34,12 +30,11 @@ class Mistaken(NamedTuple):
     key: str
     result: int
     digest: str
-    statuses: str
+    parts: tuple[str, ...]
     root: str
     paths: tuple[str, ...]
     names: tuple[str, ...]
     is_gone: bool
-    has_marks: bool
     hints: str | None
     submission: GradedSubmission
     content: tuple[str, ...]
@@ -56,18 +51,37 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
     of_robot = [row.position for row in criteria if row.check.subject in _ROBOT]
     of_package = [row.position for row in criteria if row.check.subject not in _ROBOT]
     found = []
-    for row in book.rows(_QUERY, rubric.sha256, __version__):
-        student, key, result, digest, urdf, robot, statuses, root, files, is_gone, marks, hints, record = row
-        submission = submission_of(zlib.decompress(record).decode())
-        robot_statuses = "".join(statuses[position] for position in of_robot)
-        is_package_wrong = not submission.is_single and any(statuses[position] == _FAILED for position in of_package)
-        if not (is_package_wrong or _FAILED in robot_statuses):
+    for row in list(book.records(_QUERY, rubric.sha256, __version__)):
+        statuses = {position: outcome.status for position, outcome in book.outcomes(row["result"]).items()}
+        failed = {position for position, status in statuses.items() if status == "failed"}
+        if failed.isdisjoint(of_robot) and failed.isdisjoint(of_package):
             continue
-        paths, names, *_ = json.loads(files)
-        content = ("file", urdf, statuses) if submission.is_single and urdf else ("digest", digest, statuses)
-        same_robot = content if is_package_wrong or not robot else ("robot", robot, robot_statuses)
-        place = root, tuple(paths), tuple(names), bool(is_gone), bool(marks)
-        found.append(Mistaken(student, key, result, digest, statuses, *place, hints, submission, content, same_robot))
+        submission = submission_of(book.record(row["result"]))
+        is_package_wrong = not submission.is_single and not failed.isdisjoint(of_package)
+        if failed.isdisjoint(of_robot) and not is_package_wrong:
+            continue
+        urdf, robot, digest = row["urdf"], row["robot"], row["digest"]
+        files = ("file", urdf) if submission.is_single and urdf else ("digest", digest)
+        content = (*files, row["parts"], str(statuses))
+        same_robot = ("robot", robot, str({position: statuses.get(position) for position in of_robot}))
+        paths, names, *_ = json.loads(row["files"])
+        found.append(
+            Mistaken(
+                student=row["student"],
+                key=row["key"],
+                result=row["result"],
+                digest=digest,
+                parts=tuple(row["parts"].split()),
+                root=row["source"],
+                paths=tuple(paths),
+                names=tuple(names),
+                is_gone=bool(row["is_gone"]),
+                hints=row["hints"],
+                submission=submission,
+                content=content,
+                robot=content if is_package_wrong or not robot else same_robot,
+            )
+        )
     return found
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.marks import MARK_COLUMNS, Entry, Mark, mark_of_row
+from grader.classroom.gradebook.marks import Entry, Mark, mark_of
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.matching import NUMBERS, Clue, People, clues_of
 from grader.classroom.students import Student
@@ -134,10 +134,8 @@ def _students(book: Gradebook) -> dict[int, Student]:
 
 def _histories(book: Gradebook) -> "defaultdict[tuple[int, str], History]":
     found: defaultdict[tuple[int, str], History] = defaultdict(tuple)
-    for student, author, criterion, *row in book.rows(
-        f"SELECT student, author, criterion, {MARK_COLUMNS} FROM mark ORDER BY id"
-    ):
-        found[student, criterion] += (StoredMark(mark_of_row(*row), author),)
+    for row in book.records("SELECT * FROM mark ORDER BY id"):
+        found[row["student"], row["criterion"]] += (StoredMark(mark_of(row), row["author"]),)
     return found
 
 

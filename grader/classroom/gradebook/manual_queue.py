@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, newest_mark, newest_second
-from grader.classroom.gradebook.stored import storable
+from grader.classroom.gradebook.result import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.matching import plain_group, plain_name
 from grader.errors import InputError
@@ -72,9 +72,10 @@ _QUEUED = (
     "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ?1 AND final IS NULL AND NOT is_excused AND "
 )
 _MARKED = "EXISTS (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?3"
-_OPEN = f"substr(statuses, ?2, 1) = '?' AND NOT {_MARKED}) AND ?4 = ?4 ORDER BY key"
+_IS_PENDING = "EXISTS (SELECT 1 FROM outcome WHERE result = grade.result AND position = ?2 AND status = 'pending')"
+_OPEN = f"{_IS_PENDING} AND NOT {_MARKED}) AND ?4 = ?4 ORDER BY key"
 # Items that another person has marked or that need manual grading, without a second opinion of this grader.
-_OPEN_FOR_SECOND = f"""(substr(statuses, ?2, 1) = '?' OR {_MARKED})) AND NOT {_MARKED} AND grader_name = ?4) AND NOT EXISTS (
+_OPEN_FOR_SECOND = f"""({_IS_PENDING} OR {_MARKED})) AND NOT {_MARKED} AND grader_name = ?4) AND NOT EXISTS (
     SELECT 1 FROM second_mark WHERE student = grade.id AND criterion = ?3 AND grader_name = ?4 AND points IS NOT NULL
     AND second_mark.digest = grade.digest
 ) ORDER BY key"""
@@ -90,9 +91,9 @@ def manual_grading_queue(grades: Grades, scope: ReviewScope = EVERYTHING) -> lis
     query = _QUEUED + (_OPEN_FOR_SECOND if scope.second else _OPEN)
     return [
         QueuedCriterion(str(key), row.id)
-        for position, row in enumerate(rubric.criteria)
+        for row in rubric.criteria
         if scope.criterion in ("", row.id) and row.adjustment is None
-        for (key,) in grades.book.rows(query, rubric.sha256, position + 1, row.id, storable(scope.by))
+        for (key,) in grades.book.rows(query, rubric.sha256, row.position, row.id, storable(scope.by))
         if key in students
     ]
 

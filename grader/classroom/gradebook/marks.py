@@ -1,14 +1,13 @@
 """Manual marks of criteria and of whole submissions, stored in addition to the automatic points."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
-from typing import Literal, NamedTuple, cast
+from typing import Any, Literal, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT
-from grader.classroom.gradebook.stored import storable
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
@@ -18,8 +17,6 @@ from grader.names import did_you_mean
 from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
-MARK_COLUMNS = "id, kind, points, comment, grader_name, at, result"
-_NEW = "student, criterion, kind, points, comment, author, grader_name, at, result"
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
@@ -119,8 +116,8 @@ def add_mark(
         before = _seen(book, grade, criterion, entry, by, shown)
         mark = Mark(0, entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            mark = before._replace(entry=before.entry._replace(comment=entry.comment))
-        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
 def restore_mark(
@@ -130,10 +127,10 @@ def restore_mark(
 
     The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
     """
-    mark = Mark(0, mark, by, result=grade.result) if isinstance(mark, Entry) else mark
+    mark = Mark(0, mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
     with _writing(book):
         before = _seen(book, grade, criterion, mark.entry, by, shown)
-        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account(), mark.result), before)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
 def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Mark:
@@ -169,16 +166,21 @@ def _seen(
     return before
 
 
-def insert_mark(
-    book: Gradebook, student: int, criterion: str, mark: Mark, author: str, result: int | None, at: str = ""
-) -> int:
+def insert_mark(book: Gradebook, student: int, criterion: str, mark: Mark, author: str) -> int:
     """Add a row to the table of marks, without a transaction; return its id. Without a time it is made now."""
-    entry, name = mark.entry, storable(mark.by)
-    units = None if entry.points is None else int(entry.points * UNITS_PER_POINT)
-    at = at or datetime.now(UTC).isoformat(timespec="seconds")
-    row = (student, criterion, entry.kind, units, storable(entry.comment), storable(author), name, at, result)
-    added = book.connection.execute(f"INSERT INTO mark ({_NEW}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
-    return int(added.lastrowid or 0)
+    entry = mark.entry
+    row = {
+        "student": student,
+        "criterion": criterion,
+        "kind": entry.kind,
+        "points": None if entry.points is None else units_of(entry.points),
+        "comment": storable(entry.comment),
+        "author": storable(author),
+        "grader_name": storable(mark.by),
+        "at": mark.at or datetime.now(UTC).isoformat(timespec="seconds"),
+        "result": mark.result,
+    }
+    return book.insert("mark", row)
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
@@ -188,31 +190,28 @@ def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
 
 def newest_second(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> Mark | None:
     """Return the newest second opinion of a grader on a criterion of the student's newest submission."""
-    query = (
-        f"SELECT {MARK_COLUMNS} FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
-    )
-    row = book.first(query, grade.id, criterion, storable(by), grade.files.digest)
-    return mark_of_row(*row) if row is not None else None
+    query = "SELECT * FROM second_mark WHERE student = ? AND criterion = ? AND grader_name = ? AND digest = ?"
+    found = book.records(query, grade.id, criterion, storable(by), grade.files.digest)
+    return next(map(mark_of, found), None)
 
 
 def marks_of(book: Gradebook, student: int, criterion: str, most: int) -> list[Mark]:
     """Return the newest marks of a student's criterion, the newest first, without second opinions."""
-    query = f"SELECT {MARK_COLUMNS} FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
-    return [mark_of_row(*row) for row in book.rows(query, student, criterion, most)]
+    query = "SELECT * FROM mark WHERE student = ? AND criterion = ? AND kind <> 'second' ORDER BY id DESC LIMIT ?"
+    return list(map(mark_of, book.records(query, student, criterion, most)))
 
 
 def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
     """Return the marks of a student that count, by criterion; that of the whole submission is named TOTAL."""
-    query = f"SELECT criterion, {MARK_COLUMNS} FROM current_mark WHERE student = ?"
-    return {criterion: mark_of_row(*row) for criterion, *row in book.rows(query, student)}
+    rows = book.records("SELECT * FROM current_mark WHERE student = ?", student)
+    return {row["criterion"]: mark_of(row) for row in rows}
 
 
-def mark_of_row(
-    identity: int, kind: str, units: int | None, comment: str, by: str, at: str, result: int | None
-) -> Mark:
-    """Return a row of MARK_COLUMNS."""
-    points = None if units is None else Decimal(units) / UNITS_PER_POINT
-    return Mark(identity, Entry(cast("Kind", kind), points, comment), by, at, result)
+def mark_of(row: Mapping[str, Any]) -> Mark:
+    """Return a row of the table of marks."""
+    points = None if row["points"] is None else points_of(row["points"])
+    entry = Entry(row["kind"], points, row["comment"])
+    return Mark(row["id"], entry, row["grader_name"], row["at"], row["result"])
 
 
 def account() -> str:

@@ -18,7 +18,7 @@ Choice = Literal["first", "second"]
 Conflict = tuple[
     str, str, int, int
 ]  # key, criterion, and the ids of the newest marks: another mark is another conflict
-# What a result refers to: the tables that belong to a rubric, each with its column, and the template.
+# What a result refers to: the tables that belong to a rubric, each with its column, and the dictionary.
 _OF_RUBRIC = (("rubric", "sha256"), ("criterion", "rubric"), ("model_answer", "rubric"))
 
 
@@ -81,14 +81,14 @@ def _append(book: Gradebook, item: MergeItem, choice: Choice | None, results: "_
     """Write the new entries of an item, and the mark that counts if that is not the last one; return the number of entries."""
     own, theirs = item.newest
     counts = {"first": own, "second": theirs, None: item.counts}[choice]
-    entries = [(entry, results.of(item.student, entry.mark.result)) for entry in item.new]
-    for entry, result in entries:
-        insert_mark(book, item.student, item.criterion, entry.mark, entry.author, result, entry.mark.at)
+    for entry in item.new:
+        mark = entry.mark._replace(result=results.of(item.student, entry.mark.result))
+        insert_mark(book, item.student, item.criterion, mark, entry.author)
     if counts is None or is_newest(counts, (*item.first, *item.new)):
-        return len(entries)
+        return len(item.new)
     result = counts.mark.result if counts is own else results.of(item.student, counts.mark.result)
-    insert_mark(book, item.student, item.criterion, counts.mark, account(), result)
-    return len(entries) + 1
+    insert_mark(book, item.student, item.criterion, counts.mark._replace(result=result, at=""), account())
+    return len(item.new) + 1
 
 
 class _Results:
@@ -100,9 +100,6 @@ class _Results:
     def __init__(self, first: Gradebook, second: Gradebook) -> None:
         self._first, self._second = first, second
         self._found: dict[int, int] = {}
-        self._columns = [
-            name for (_, name, *_) in first.rows("PRAGMA table_info(result)") if name not in ("id", "student")
-        ]
 
     def of(self, student: int, result: int | None) -> int | None:
         """Return the id in the first gradebook of a result in the second one."""
@@ -113,8 +110,7 @@ class _Results:
         return self._found[result]
 
     def _find_or_copy(self, student: int, result: int) -> int:
-        values = next(self._second.rows(f"SELECT {', '.join(self._columns)} FROM result WHERE id = ?", result))
-        row = dict(zip(self._columns, values, strict=True))
+        row = next(self._second.records("SELECT * FROM result WHERE id = ?", result))
         same = "student = ? AND rubric = ? AND digest = ? AND (digest <> '' OR record = ?)"  # without files it has no digest
         key = student, row["rubric"], row["digest"], row["record"]
         found = self._first.first(f"SELECT max(id) FROM result WHERE {same}", *key)
@@ -122,12 +118,12 @@ class _Results:
             return int(found[0])
         for table, column in _OF_RUBRIC:
             self._copy(table, column, row["rubric"])
-        self._copy("template", "sha256", row["template"])
-        names, marks = ", ".join(("student", *row)), ", ".join("?" * (len(row) + 1))
-        added = self._first.connection.execute(f"INSERT INTO result ({names}) VALUES ({marks})", (student, *values))
-        return int(added.lastrowid or 0)
+        self._copy("dictionary", "sha256", row["dictionary"])
+        number = self._first.insert("result", row | {"id": None, "student": student})
+        for outcome in self._second.records("SELECT * FROM outcome WHERE result = ?", result):
+            self._first.insert("outcome", outcome | {"result": number})
+        return number
 
     def _copy(self, table: str, column: str, value: Any) -> None:
-        for row in self._second.rows(f"SELECT * FROM {table} WHERE {column} = ?", value):
-            marks = ", ".join("?" * len(row))
-            self._first.connection.execute(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", row)
+        for row in self._second.records(f"SELECT * FROM {table} WHERE {column} = ?", value):
+            self._first.insert(table, row, unless_known=True)

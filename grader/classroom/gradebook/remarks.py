@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, current_marks
-from grader.classroom.gradebook.result import EARNED
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.validation import TOTAL
 from grader.text import by_name, counted_points, enumerated
@@ -65,7 +64,8 @@ def remarks_of(grades: Grades, grade: StudentGrade) -> Remarks:
     rows = [row for row in rubric.criteria if row.adjustment is None] if rubric is not None else []
     criteria = {row.id: marks[row.id] for row in rows if row.id in marks}
     counting = {name: mark for name, mark in criteria.items() if mark.points is not None}
-    is_automatic = any(grade.statuses[row.position] in EARNED and row.id not in counting for row in rows)
+    automatic = grades.automatic_points(grade)
+    is_automatic = any(row.id in automatic and row.id not in counting for row in rows)
     if grade.final is not None:
         is_automatic, counting = False, {TOTAL: marks[TOTAL]}
     names = sorted({mark.by for mark in counting.values() if mark.by})

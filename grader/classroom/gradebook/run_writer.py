@@ -5,15 +5,15 @@ from datetime import UTC, datetime
 from typing import Any
 
 from grader import __version__
+from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT, GradingResult
+from grader.classroom.gradebook.result import GradingResult, storable, units_of
 from grader.classroom.gradebook.stored import (
     PROFILE_COLUMNS,
     Enrolment,
     StoredSubmission,
     files_json,
     profile_of,
-    storable,
 )
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
@@ -21,7 +21,10 @@ from grader.grading.rubric import Rubric
 
 _FIND = f"SELECT id, {', '.join(PROFILE_COLUMNS)} FROM student WHERE key = ?"
 _UPDATE = f"UPDATE student SET {', '.join(f'{name} = ?' for name in PROFILE_COLUMNS)} WHERE id = ?"
-_NEWEST = "SELECT id, rubric, version, digest, template, record, urdf, robot FROM result WHERE student = ? ORDER BY id DESC LIMIT 1"
+_NEWEST = """
+SELECT id, rubric, version, digest, dictionary, record, urdf, robot FROM result WHERE student = ?
+ORDER BY id DESC LIMIT 1
+"""
 
 
 class RunWriter:
@@ -31,22 +34,22 @@ class RunWriter:
         self, book: Gradebook, source: str, layout: str, rubric: Rubric, deadline: str = "", assignment: str = ""
     ) -> None:
         self._book, self._rubric = book, rubric.sha256
-        self._template: str | None = None
+        self._dictionary: str | None = None
         with book.transaction():
             _save_rubric(book, rubric)
             (last_mark,) = book.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()
             row = {"started": _now(), "source": storable(source), "layout": layout, "rubric": rubric.sha256}
             row |= {"version": __version__, "last_mark": last_mark}
             row |= {"deadline": deadline, "assignment": storable(assignment)}
-            self.run = _insert(book, "run", row)
+            self.run = book.insert("run", row)
 
-    def use_template(self, template: str) -> None:
-        """Store the next records as differences from a template; an empty one means none."""
-        self._template = sha256_of(template.encode()) if template else None
-        if template:
+    def use_dictionary(self, dictionary: bytes) -> None:
+        """Record that the next records are compressed with a dictionary; an empty one means none."""
+        self._dictionary = sha256_of(dictionary) if dictionary else None
+        if dictionary:
             with self._book.transaction():
-                query = "INSERT OR IGNORE INTO template VALUES (?, ?)"
-                self._book.connection.execute(query, (self._template, template))
+                query = "INSERT OR IGNORE INTO dictionary VALUES (?, ?)"
+                self._book.connection.execute(query, (self._dictionary, dictionary))
 
     def add_handed_out(self, hashes: Iterable[str]) -> None:
         """Record hashes of URDFs and robots that the course handed out."""
@@ -58,13 +61,16 @@ class RunWriter:
         """Add a result, unless the student's newest one is the same; return its id."""
         newest = self._book.connection.execute(_NEWEST, (student,)).fetchone()
         hashes = result.urdf, result.robot
-        same = (self._rubric, __version__, result.digest, self._template, result.record, *hashes)
+        same = (self._rubric, __version__, result.digest, self._dictionary, result.record, *hashes)
         if newest is not None and newest[1:] == same:
             return int(newest[0])
-        values = {**result._asdict(), "reason": storable(result.reason), "undecided": storable(result.undecided)}
-        del values["key"], values["fingerprint"]  # the other fields are columns
-        row = {"student": student, "rubric": self._rubric, "version": __version__, "template": self._template}
-        return _insert(self._book, "result", row | values)
+        row = {"student": student, "rubric": self._rubric, "version": __version__, "dictionary": self._dictionary}
+        columns = ("digest", "verdict", "parts", "score", "out_of", "pending", "record", "urdf", "robot")
+        values = {name: getattr(result, name) for name in columns}
+        number = self._book.insert("result", row | values | {"reason": storable(result.reason)})
+        rows = [(number, *outcome) for outcome in result.outcomes]
+        self._book.connection.executemany("INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?)", rows)
+        return number
 
     def add_submission(self, student: int, result: int, submission: ClassSubmission, fingerprint: str) -> None:
         """Record that this run found a submission, and which result it has."""
@@ -105,7 +111,7 @@ def save_student(book: Gradebook, student: Student, enrolment: Enrolment | None)
     """Add or update a student; return the id. Empty fields, and an `enrolment` of None, keep what is stored."""
     found = book.connection.execute(_FIND, (student.key,)).fetchone()
     if found is None:
-        return _insert(book, "student", dict(zip(PROFILE_COLUMNS, profile_of(student, enrolment), strict=True)))
+        return book.insert("student", dict(zip(PROFILE_COLUMNS, profile_of(student, enrolment), strict=True)))
     number, *before = found
     after = profile_of(student, enrolment, before)
     if after != tuple(before):
@@ -114,24 +120,27 @@ def save_student(book: Gradebook, student: Student, enrolment: Enrolment | None)
 
 
 def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
-    sha256, execute = rubric.sha256, book.connection.execute
-    row = (sha256, rubric.id, rubric.title, storable(str(rubric.path)), rubric.data)
-    execute("INSERT OR IGNORE INTO rubric VALUES (?, ?, ?, ?, ?)", row)
-    for position, criterion in enumerate(rubric.criteria):
-        units = int(criterion.points * UNITS_PER_POINT)
-        kinds = int(criterion.bonus), int(criterion.adjustment is not None)
-        execute(
-            "INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?, ?, ?)", (sha256, criterion.id, position, units, *kinds)
-        )
+    own = {"rubric": rubric.sha256}
+    row: dict[str, Any] = {
+        "sha256": rubric.sha256,
+        "id": rubric.id,
+        "title": rubric.title,
+        "path": storable(str(rubric.path)),
+    }
+    book.insert("rubric", row | {"text": rubric.data}, unless_known=True)
+    for criterion in rubric.criteria:
+        row = {
+            "id": criterion.id,
+            "position": criterion.position,
+            "points": units_of(criterion.points),
+            "is_bonus": criterion.bonus,
+            "is_adjusted": criterion.adjustment is not None,
+            "is_manual": criterion.check.function in MANUAL_CHECKS,
+        }
+        book.insert("criterion", own | row, unless_known=True)
         if criterion.answer:
-            answer = (sha256, criterion.id, storable(criterion.answer))
-            execute("INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)", answer)
-
-
-def _insert(book: Gradebook, table: str, values: dict[str, Any]) -> int:
-    """Insert a row and return its id."""
-    query = f"INSERT INTO {table} ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})"
-    return int(book.connection.execute(query, tuple(values.values())).lastrowid or 0)
+            query = "INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)"
+            book.connection.execute(query, (rubric.sha256, criterion.id, storable(criterion.answer)))
 
 
 def _now() -> str:

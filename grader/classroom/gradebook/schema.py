@@ -19,6 +19,7 @@ CREATE TABLE criterion (
     points INTEGER NOT NULL,
     is_bonus INTEGER NOT NULL,
     is_adjusted INTEGER NOT NULL,  -- manual marks do not count
+    is_manual INTEGER NOT NULL,    -- only a person decides it
     PRIMARY KEY (rubric, id)
 ) WITHOUT ROWID;
 
@@ -29,9 +30,9 @@ CREATE TABLE model_answer (
     PRIMARY KEY (rubric, criterion)
 ) WITHOUT ROWID;
 
-CREATE TABLE template (
+CREATE TABLE dictionary (          -- the record that most others of a rubric resemble: zlib's preset dictionary
     sha256 TEXT PRIMARY KEY,
-    text TEXT NOT NULL
+    text BLOB NOT NULL
 ) WITHOUT ROWID;
 
 CREATE TABLE handed_out (          -- hashes of URDFs and robots that the course handed out
@@ -77,18 +78,28 @@ CREATE TABLE result (
     digest TEXT NOT NULL,
     verdict TEXT NOT NULL CHECK (verdict IN ('graded', 'unreadable', 'errored')),
     reason TEXT NOT NULL,
+    parts TEXT NOT NULL,           -- ids between spaces
     score INTEGER NOT NULL,
     out_of INTEGER NOT NULL,
     pending INTEGER NOT NULL,
-    statuses TEXT NOT NULL,        -- a letter for each criterion, see gradebook/result.py
-    failures TEXT NOT NULL,        -- JSON: each failed criterion's position with what was measured, in a few words
-    template TEXT REFERENCES template,  -- the record holds only what differs from it
-    record BLOB NOT NULL,          -- the report as compressed JSON
-    undecided TEXT NOT NULL,       -- why most of its undecided automatic points need manual grading
+    dictionary TEXT REFERENCES dictionary,
+    record BLOB NOT NULL,          -- the report as compressed JSON, see grading/record.py
     urdf TEXT NOT NULL,            -- the hash of the URDF
     robot TEXT NOT NULL            -- the hash of its normal form, empty if there is no robot
 );
 CREATE INDEX result_of_student ON result (student);
+
+-- A criterion without an outcome passed: most do, and a class would have three times the rows.
+CREATE TABLE outcome (
+    result INTEGER NOT NULL REFERENCES result,
+    position INTEGER NOT NULL,     -- of the criterion in the rubric
+    -- `settled`: it did not pass, but loses nothing, because an earlier mistake alone is the cause, or it is adjusted
+    status TEXT NOT NULL CHECK (status IN ('failed', 'skipped', 'settled', 'pending', 'errored', 'ungraded')),
+    points INTEGER,                -- NULL if it is undecided
+    cause TEXT NOT NULL,           -- what equal mistakes, or equal reasons for manual grading, have in common
+    measured TEXT,                 -- JSON, see gradebook/failures.py; NULL unless numbers were compared
+    PRIMARY KEY (result, position)
+) WITHOUT ROWID;
 
 -- The proven hints of a result: it has one rubric, version and digest, so they are never outdated.
 CREATE TABLE hint (
@@ -131,6 +142,11 @@ BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
 CREATE TRIGGER result_not_replaced BEFORE INSERT ON result WHEN EXISTS (SELECT 1 FROM result WHERE id = new.id)
 BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
 
+CREATE TRIGGER outcome_stays BEFORE DELETE ON outcome
+BEGIN SELECT raise(ABORT, 'a result is never deleted'); END;
+CREATE TRIGGER outcome_unchanged BEFORE UPDATE ON outcome
+BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
+
 CREATE TRIGGER mark_stays BEFORE DELETE ON mark
 BEGIN SELECT raise(ABORT, 'a manual mark is never deleted'); END;
 CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
@@ -155,61 +171,66 @@ SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WH
 -- The manual marks of criteria.
 CREATE VIEW manual_mark AS SELECT * FROM current_mark WHERE kind = 'points' AND criterion <> 'total';
 
+CREATE VIEW newest_submission AS
+SELECT * FROM submission
+WHERE run = (SELECT max(run) FROM submission AS newer WHERE newer.student = submission.student);
+
 -- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names
 -- the criteria whose mark was given for another submission, `revalued` those that had another maximum then, and `over` those
 -- whose mark exceeds the maximum.
 CREATE VIEW override AS
 SELECT student,
     count(*) AS marks,
-    sum(points - iif(status IN ('p', 'c'), maximum, 0)) AS score,
-    sum(iif(status = '-' AND NOT is_bonus, maximum, 0)) AS out_of,
-    sum(iif(status = '?', maximum, 0)) AS pending,
-    sum(status = '!') AS faults,
+    sum(points - iif(status IS NULL, maximum, coalesce(automatic, 0))) AS score,
+    sum(iif(status = 'ungraded' AND NOT is_bonus, maximum, 0)) AS out_of,
+    sum(iif(status = 'pending', maximum, 0)) AS pending,
+    sum(status IS 'errored') AS faults,
     group_concat(iif(is_older, id, NULL), ' ') AS older,
     group_concat(iif(is_revalued AND NOT is_older, id, NULL), ' ') AS revalued,
     group_concat(iif(points > maximum, id, NULL), ' ') AS over
 FROM (
     SELECT manual_mark.student, manual_mark.points, criterion.id, criterion.points AS maximum, criterion.is_bonus,
-        substr(result.statuses, criterion.position + 1, 1) AS status,
+        outcome.status, outcome.points AS automatic,
         marked.id <> result.id AND (marked.digest = '' OR marked.digest <> result.digest) AS is_older,
         marked.id <> result.id AND before.points IS NOT criterion.points AS is_revalued
     FROM manual_mark
     CROSS JOIN result AS marked ON marked.id = manual_mark.result
     LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = manual_mark.criterion
-    CROSS JOIN submission ON submission.student = manual_mark.student
-        AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = manual_mark.student)
-    CROSS JOIN result ON result.id = submission.result
+    CROSS JOIN newest_submission AS newest ON newest.student = manual_mark.student
+    CROSS JOIN result ON result.id = newest.result
     CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = manual_mark.criterion
         AND NOT criterion.is_adjusted
+    LEFT JOIN outcome ON outcome.result = result.id AND outcome.position = criterion.position
 )
 GROUP BY student;
 
 -- The current grade of every student: the automatic points with the manual marks. A final mark (`final`) replaces the total.
 CREATE VIEW grade AS
-SELECT student.*, submission.run, submission.result, result.rubric, result.version, result.digest,
+SELECT student.*, newest.run, newest.result, coalesce(result.rubric, '') AS rubric, result.version,
+    coalesce(result.digest, '') AS digest,
     coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
+    coalesce(result.parts, '') AS parts,
     result.score + coalesce(override.score, 0) AS score,
     result.out_of + coalesce(override.out_of, 0) AS out_of,
     result.pending - coalesce(override.pending, 0) AS pending,
-    length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
+    (SELECT count(*) FROM outcome WHERE outcome.result = newest.result AND status = 'errored')
+        - coalesce(override.faults, 0) AS faults,
     coalesce(override.marks, 0) AS marks, coalesce(override.older, '') AS older_marks,
     coalesce(override.revalued, '') AS revalued_marks, coalesce(override.over, '') AS over_marks,
     coalesce((SELECT group_concat(criterion, ' ') FROM manual_mark AS mark WHERE mark.student = student.id AND NOT EXISTS
         (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '') AS removed_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
-    whole.kind IN ('points', 'excused') AND whole.result IS NOT submission.result
-        AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest AS final_is_older,
-    coalesce(submission.is_gone, 0) AS is_gone,
-    result.statuses, coalesce(result.failures, '[]') AS failures,
-    result.undecided, result.urdf, result.robot,
-    coalesce(submission.files, '[[], [], 0, []]') AS files, submission.fingerprint,
-    coalesce(submission.is_late, 0) AS is_late, coalesce(submission.submitted, '') AS submitted,
-    run.source
+    coalesce(whole.kind IN ('points', 'excused') AND whole.result IS NOT newest.result
+        AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest, 0)
+        AS final_is_older,
+    coalesce(newest.is_gone, 0) AS is_gone, result.urdf, result.robot,
+    coalesce(newest.files, '[[], [], 0, []]') AS files, coalesce(newest.fingerprint, '') AS fingerprint,
+    coalesce(newest.is_late, 0) AS is_late, coalesce(newest.submitted, '') AS submitted,
+    coalesce(run.source, '') AS source
 FROM student
-LEFT JOIN submission ON submission.student = student.id
-    AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id)
-LEFT JOIN result ON result.id = submission.result
-LEFT JOIN run ON run.id = submission.run
+LEFT JOIN newest_submission AS newest ON newest.student = student.id
+LEFT JOIN result ON result.id = newest.result
+LEFT JOIN run ON run.id = newest.run
 LEFT JOIN override ON override.student = student.id
 LEFT JOIN current_mark AS whole ON whole.student = student.id AND whole.criterion = 'total';
 """

@@ -6,9 +6,9 @@ from decimal import Decimal
 from statistics import fmean, median
 from typing import Literal, NamedTuple
 
+from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.patterns import COLUMNS, GRADED, Pattern, manual_units, pattern_of, units_of
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.criterion import Criterion
 
@@ -48,16 +48,15 @@ class Comparison(NamedTuple):
 def compare(grades: Grades, by: Grouping) -> Comparison:
     """Return the sections of a class, or the students of each marker, side by side. Raises InputError if nothing was graded."""
     rubric, book = grades.newest_rubric(), grades.book
-    rows = book.rows(f"SELECT id, {COLUMNS} {GRADED}", rubric.sha256)
-    patterns = {row[0]: pattern_of(rubric, tuple(row[1:]), manual_units(book, row[0])) for row in list(rows)}
+    students = {student.id: student for student in graded_students(book, rubric)}
     groups: dict[str, list[StudentGrade]] = defaultdict(list)
     for grade in grades.all():
         groups[getattr(grade, by)].append(grade)
-    most = max((pattern.out_of for pattern in patterns.values()), default=int(rubric.points * UNITS_PER_POINT))
-    sections = tuple(_section(name, groups[name], patterns, most, rubric.criteria) for name in sorted(groups))
+    most = max((student.out_of for student in students.values()), default=units_of(rubric.points))
+    sections = tuple(_section(name, groups[name], students, most, rubric.criteria) for name in sorted(groups))
     return Comparison(
         by,
-        Decimal(most) / UNITS_PER_POINT,
+        points_of(most),
         rubric.criteria,
         sections,
         _differing([section for section in sections if section.name]),
@@ -65,10 +64,14 @@ def compare(grades: Grades, by: Grouping) -> Comparison:
 
 
 def _section(
-    name: str, grades: Sequence[StudentGrade], patterns: dict[int, Pattern], most: int, criteria: Sequence[Criterion]
+    name: str,
+    grades: Sequence[StudentGrade],
+    students: dict[int, GradedStudent],
+    most: int,
+    criteria: Sequence[Criterion],
 ) -> Section:
-    found = [patterns[grade.id] for grade in grades if grade.id in patterns]
-    totals = [pattern.grade(most) / UNITS_PER_POINT for pattern in found if pattern.counts]
+    found = [students[grade.id] for grade in grades if grade.id in students]
+    totals = [student.grade(most) / UNITS_PER_POINT for student in found if student.counts]
     late = [grade for grade in grades if grade.late.days and not grade.is_decided]
     return Section(
         name,
@@ -82,10 +85,10 @@ def _section(
     )
 
 
-def _share(criterion: Criterion, patterns: Sequence[Pattern]) -> float | None:
+def _share(criterion: Criterion, students: Sequence[GradedStudent]) -> float | None:
     """Return the mean share of a criterion's points that was earned; None if it is decided for no student."""
-    earned = [units for pattern in patterns if (units := pattern.earned[criterion.position]) is not None]
-    return fmean(earned) / (units_of(criterion) or 1) if earned else None
+    earned = [units for student in students if (units := student.earned[criterion.position]) is not None]
+    return fmean(earned) / full_units(criterion) if earned else None
 
 
 def _differing(sections: Sequence[Section]) -> tuple[int, ...]:

@@ -7,22 +7,21 @@ from decimal import Decimal
 from math import sqrt
 from typing import NamedTuple
 
-from grader.classroom.gradebook.failures import grouped
+from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.patterns import Pattern, failure_counts, patterns_of, undecided_reasons, units_of
-from grader.classroom.gradebook.result import SETTLED, UNITS_PER_POINT
+from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20
-_MARKED = "m"  # in place of a status letter, for a criterion with a manual mark
 _VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
 
 
 @dataclass(frozen=True, slots=True)
 class CriterionStatistics:
-    """The results of a criterion. The check passed for `passed` of `decided` students, `marked` have a manual mark.
+    """The results of a criterion. The check passed for `passed` of `decided` students, `manual_marks` have one.
 
     For `carried` students it failed because of an earlier mistake alone: they have the points.
 
@@ -34,7 +33,7 @@ class CriterionStatistics:
     criterion: Criterion
     decided: int
     passed: int
-    marked: int
+    manual_marks: int
     carried: int
     failed: int
     skipped: int
@@ -100,34 +99,41 @@ class ClassStatistics:
     failures: tuple[CommonFailure, ...]
 
 
+class _Pattern(NamedTuple):
+    """The results that some students have in common; `total` are the points of all criteria."""
+
+    statuses: tuple[str, ...]
+    earned: tuple[int | None, ...]
+    marked: tuple[int, ...]
+    total: int
+
+
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
-    patterns = list(patterns_of(book, rubric))
-    most = max((pattern.out_of for pattern in patterns), default=int(rubric.points * UNITS_PER_POINT))
-    scores: Counter[int] = Counter()
-    for pattern in patterns:
-        if pattern.counts:
-            scores[pattern.grade(most)] += pattern.students
+    students = list(graded_students(book, rubric))
+    most = max((student.out_of for student in students), default=units_of(rubric.points))
+    scores = Counter(student.grade(most) for student in students if student.counts)
     values, decided = sorted(scores.items()), scores.total()
-    graded = sum(pattern.students for pattern in patterns)
     mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
-    graded_letters = {(index, status) for pattern in patterns for index, status in enumerate(pattern.statuses)}
-    letters = f"pfs?!{SETTLED}"
-    criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in letters)]
-    failures = grouped(failure_counts(book, rubric))[:_MAX_FAILURES]
+    # Most students have the same results as others: the figures of criteria add up these few rows.
+    worth = [row.position for row in rubric.criteria if row.points]
+    patterns = Counter(_pattern(student, worth) for student in students)
+    graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
+    criteria = [row for row in rubric.criteria if row.position in graded]
+    causes = grouped(Counter(failure for student in students for failure in student.failures))
     verdicts = list(book.rows(_VERDICTS))
     return ClassStatistics(
         verdicts={str(verdict): int(count) for verdict, is_excused, count, _ in verdicts if not is_excused},
         excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
         final=sum(final for *_, final in verdicts),
-        final_graded=sum(pattern.students for pattern in patterns if pattern.final is not None),
-        out_of=_points(most),
-        graded=graded,
-        pending=sum(pattern.students for pattern in patterns if pattern.pending),
-        undecided=graded - decided,
-        points=_totals(patterns),
-        reasons=undecided_reasons(book, rubric),
+        final_graded=sum(student.final is not None for student in students),
+        out_of=points_of(most),
+        graded=len(students),
+        pending=sum(student.pending > 0 for student in students),
+        undecided=len(students) - decided,
+        points=_totals(students),
+        reasons=_reasons(students),
         mean=mean,
         deviation=sqrt(squares / decided) if decided else 0.0,
         lowest=_ranked_score(values, 0),
@@ -135,32 +141,72 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         highest=_ranked_score(values, decided - 1),
         bins=_bins(values, most),
         criteria=tuple(_criterion(criterion, patterns) for criterion in criteria or rubric.criteria),
-        failures=tuple(CommonFailure(rubric.criteria[kind.position], kind.mistake, count) for kind, count in failures),
+        failures=tuple(
+            CommonFailure(rubric.criteria[cause.position], cause.mistake, count)
+            for cause, count in causes[:_MAX_FAILURES]
+        ),
     )
 
 
-def _totals(patterns: Iterable[Pattern]) -> PointTotals:
+class Member(NamedTuple):
+    """The figures in which a graded student is counted.
+
+    `tenth` is None for a grade that is not in the statistics; `lost` are the positions of criteria with fewer points
+    than the maximum, `mistakes` those of the common mistakes.
+    """
+
+    tenth: int | None
+    lost: tuple[int, ...]
+    mistakes: tuple[int, ...]
+
+
+def members(book: Gradebook, rubric: Rubric, found: ClassStatistics) -> Mapping[str, Member]:
+    """Return the figures in which each student is counted in the statistics of a rubric, by key."""
+    students, most = list(graded_students(book, rubric)), units_of(found.out_of)
+    counts = Counter(failure for student in students for failure in student.failures)
+    causes = groups_of(counts)
+    numbers = {cause: number for number, (cause, _) in enumerate(grouped(counts)[: len(found.failures)])}
+    full = [full_units(row) for row in rubric.criteria]
+    members = {}
+    for student in sorted(students, key=lambda student: student.key):
+        own = dict.fromkeys(causes[failure] for failure in student.failures)
+        members[student.key] = Member(
+            tenth_of(student.grade(most), most) if student.counts else None,
+            tuple(at for at, earned in enumerate(student.earned) if earned is not None and earned < full[at]),
+            tuple(numbers[cause] for cause in own if cause in numbers),
+        )
+    return members
+
+
+def _reasons(students: Iterable[GradedStudent]) -> tuple[tuple[str, int], ...]:
+    """Return the reason for most points of each student that need manual grading, the most frequent first, counted."""
+    waiting = [student.reasons for student in students if student.reasons and student.pending]
+    found = Counter(max(reasons, key=lambda reason: (reasons[reason], reason)) for reasons in waiting)
+    return tuple(sorted(found.items(), key=lambda item: (-item[1], item[0])))
+
+
+def _totals(students: Iterable[GradedStudent]) -> PointTotals:
     earned = pending = lost = 0
-    for pattern in patterns:
-        earned += pattern.score * pattern.students
-        pending += pattern.pending * pattern.students
-        without_bonus = pattern.score - pattern.bonus
-        lost += max(0, pattern.decided - without_bonus) * pattern.students  # a mark may exceed the maximum
-    return PointTotals(_points(earned), _points(lost), _points(pending))
+    for student in students:
+        earned += student.score
+        pending += student.pending
+        lost += max(0, student.decided - (student.score - student.bonus))  # a mark may exceed the maximum
+    return PointTotals(points_of(earned), points_of(lost), points_of(pending))
 
 
-def _points(units: int) -> Decimal:
-    return Decimal(units) / UNITS_PER_POINT
+def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
+    total = sum(student.earned[position] or 0 for position in worth)
+    return _Pattern(tuple(student.statuses), tuple(student.earned), student.marked, total)
 
 
-def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionStatistics:
+def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
     """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
-    statuses: Counter[str] = Counter()
+    found: Counter[str] = Counter()
+    position = criterion.position
     count = x = r = xx = rr = xr = 0
-    for pattern in patterns:
-        number = pattern.students
-        statuses[_MARKED if criterion.id in pattern.marks else pattern.statuses[criterion.position]] += number
-        earned = pattern.earned[criterion.position]
+    for pattern, number in patterns.items():
+        found["manual_marks" if position in pattern.marked else pattern.statuses[position]] += number
+        earned = pattern.earned[position]
         if earned is not None:
             rest = pattern.total - (earned if criterion.points else 0)
             count += number
@@ -170,11 +216,19 @@ def _criterion(criterion: Criterion, patterns: Iterable[Pattern]) -> CriterionSt
             rr += rest * rest * number
             xr += earned * rest * number
     variances = (count * xx - x * x) * (count * rr - r * r)
-    correlation = (count * xr - x * r) / sqrt(variances) if variances else None
-    share = x / (count * (units_of(criterion) or 1)) if count else None
-    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{SETTLED}fs?!")
-    counts = count, passed, marked, carried, failed, skipped, pending, errored
-    return CriterionStatistics(criterion, *counts, share, correlation)
+    return CriterionStatistics(
+        criterion,
+        decided=count,
+        passed=found["passed"],
+        manual_marks=found["manual_marks"],
+        carried=found["settled"],
+        failed=found["failed"],
+        skipped=found["skipped"],
+        pending=found["pending"],
+        errored=found["errored"],
+        share=x / (count * full_units(criterion)) if count else None,
+        discrimination=(count * xr - x * r) / sqrt(variances) if variances else None,
+    )
 
 
 def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
@@ -182,7 +236,7 @@ def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
     for score, count in values:
         rank -= count
         if rank < 0:
-            return _points(score)
+            return points_of(score)
     return Decimal(0)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from grader.classroom.gradebook.result import storable
 from grader.classroom.students import ClassSubmission, Student
 
 
@@ -25,11 +26,10 @@ PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
 _VALUES = attrgetter(*STUDENT_COLUMNS)
 STORED_SUBMISSIONS = f"""
-SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.statuses, submission.fingerprint,
-    submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
+SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.parts,
+    submission.fingerprint, submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
     {", ".join(f"student.{name}" for name in PROFILE_COLUMNS)}
-FROM student JOIN submission ON submission.student = student.id AND submission.run =
-    (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id)
+FROM student JOIN newest_submission AS submission ON submission.student = student.id
 JOIN result ON result.id = submission.result
 JOIN run ON run.id = submission.run
 ORDER BY student.key
@@ -54,7 +54,7 @@ class StoredSubmission(NamedTuple):
     version: str
     digest: str
     verdict: str
-    statuses: str
+    parts: str  # ids between spaces
     fingerprint: str
     files: str  # JSON, see files_json
     is_late: int
@@ -92,11 +92,6 @@ class StoredSubmission(NamedTuple):
             and self.submitted == submission.submitted
             and profile_of(submission.student, enrolment, self.profile) == self.profile
         )
-
-
-def storable(text: str) -> str:
-    """Return text that SQLite can store: lone surrogates are written as escapes."""
-    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def files_json(submission: ClassSubmission) -> str:

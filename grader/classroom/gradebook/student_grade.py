@@ -109,7 +109,6 @@ class StudentGrade:
     rubric: str
     verdict: str
     reason: str
-    statuses: str
     submitted: str
     student: Student
     is_on_roster: bool | None

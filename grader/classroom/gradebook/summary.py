@@ -10,7 +10,7 @@ from grader.classroom.gradebook.fixes import CommonFix, common_fixes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import points_of
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.classroom.gradebook.student_grade import Reason
 from grader.grading.record import submission_of
@@ -35,12 +35,12 @@ class MarkedTwice(NamedTuple):
     criterion: str
     first: Decimal
     second: Decimal
-    maximum: Decimal
+    max_points: Decimal
 
     @property
     def difference(self) -> Decimal:
         """The difference in percent of the maximum."""
-        return 100 * abs(self.first - self.second) / self.maximum
+        return 100 * abs(self.first - self.second) / self.max_points
 
 
 class Agreement(NamedTuple):
@@ -51,7 +51,7 @@ class Agreement(NamedTuple):
 
     items: int
     same: int
-    mean_difference: float
+    mean_difference_percent: float
     largest: tuple[MarkedTwice, ...]
 
 
@@ -59,7 +59,7 @@ def agreement(book: Gradebook, rubric: Rubric) -> Agreement:
     """Return the agreement on the criteria of a rubric that have points."""
     maxima = {criterion.id: criterion.points for criterion in rubric.criteria if criterion.points}
     items = [
-        MarkedTwice(str(key), name, Decimal(first) / UNITS_PER_POINT, Decimal(second) / UNITS_PER_POINT, maxima[name])
+        MarkedTwice(str(key), name, points_of(first), points_of(second), maxima[name])
         for key, name, first, second in book.rows(_PAIRS)
         if name in maxima
     ]
@@ -119,7 +119,7 @@ def _groups(found: dict[Reason, list[AttentionItem]]) -> Iterator[AttentionGroup
             yield AttentionGroup(reason.value, tuple(items))
 
 
-_QUERY = "SELECT result, statuses, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
+_QUERY = "SELECT result, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
 
 
 def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
@@ -127,14 +127,14 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
     needed = {"URDF": ("urdf", "robot"), "package": ("package",)}
     subjects = {row.check.subject for row in rubric.criteria}
     graded = {kind for kind, names in needed.items() if subjects.intersection(names)}
-    package = [row.position for row in rubric.criteria if row.check.subject == "package"]
+    package = {row.position for row in rubric.criteria if row.check.subject == "package"}
     # A record takes long to read, so those of most classes are not: with a URDF and a package of the lab, or a URDF on its own.
     found = [
         result
-        for result, statuses, urdf, files in list(book.rows(_QUERY, rubric.sha256))
-        if not urdf or not (any(statuses[at] == "p" for at in package) or _is_single(files))
+        for result, urdf, files in list(book.rows(_QUERY, rubric.sha256))
+        if not urdf or not (_is_single(files) or package - book.outcomes(result).keys())
     ]
-    lacking = (submission_of(book.record(result)[0]).lacks[:1] for result in found)
+    lacking = (submission_of(book.record(result)).lacks[:1] for result in found)
     return Counter(kind for kinds in lacking for kind in kinds if kind in graded)
 
 

@@ -1,14 +1,14 @@
 """The submissions of a class, each assigned to a student on the roster: which are unmatched, and who has submitted nothing."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.intake.groups import CanvasGroups, GroupClaim, add_doubts, share
 from grader.classroom.intake.layouts.layout import Submissions, path_key
+from grader.classroom.intake.matches import Matches
 from grader.classroom.intake.names import is_course_folder
 from grader.classroom.intake.roster import Roster
-from grader.classroom.matching import CERTAIN, Clue, plain_word
+from grader.classroom.matching import plain_word
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import enumerated, first_lines, printable_path
 
@@ -109,35 +109,14 @@ def assign(
         if names := [printable_path(folder) for folder in folders]:
             notes += (f"{enumerated(names, _MAX_NAMED)} may be a template of the course: graded like a student's",)
         return Intake(layout, ignored, submissions, contested=submissions.contested, notes=notes)
-    entries = roster.entries
-    matches = _match(submissions, roster)
-    own = {owner: index for index, owner in matches.owners.items()}
-    claimants = matches.claimants
-    for index in matches.unmatched:
-        if members := roster.members(submissions.student(index)):
-            claimants.setdefault(tuple(members), []).append(index)
-    shared = share(submissions, roster, claimants, own, matches.contested, matches.notes, holds_students)
-    courses = [
-        index for index in matches.unmatched if index not in shared and is_course_folder(submissions.path(index))
-    ]
-    taken = {plain_word(entry.student.key) for entry in entries}
-    keys = {
-        index: submissions.student(index).key
-        for index in range(len(submissions))
-        if index not in matches.owners and index not in shared and index not in courses
-    }
-    # An unmatched submission must not get the key of a student on the roster.
-    keys |= {index: path_key(submissions.path(index)) for index, key in keys.items() if plain_word(key) in taken}
-    owners = matches.owners.items()
-    placed = [
-        _Placed(entries[owner].student.key, i, owner, is_certain=i not in matches.uncertain) for i, owner in owners
-    ]
-    placed += [_Placed(key, index) for index, key in keys.items()]
-    placed += [
-        _Placed(entries[owner].student.key, i, owner, is_shared=True) for i, of in shared.items() for owner in of
-    ]
-    present = {owner for _, _, owner, *_ in placed} | matches.contested
-    absent = [index for index in range(len(entries)) if index not in present]
+    matches = Matches(submissions, roster)
+    matches.share(holds_students)
+    outside = [index for index in matches.unmatched if index not in matches.shared]
+    courses = [index for index in outside if is_course_folder(submissions.path(index))]
+    keys = _keys(submissions, roster, {*matches.owners, *matches.shared, *courses})
+    placed = _place(matches, roster, keys)
+    present = {one.owner for one in placed} | matches.contested
+    absent = [index for index in range(len(roster.entries)) if index not in present]
     if submissions.is_anonymous:  # any of its submissions may be theirs
         matches.contested.update(absent)
         absent = []
@@ -146,13 +125,31 @@ def assign(
         (*_course_line(map(submissions.path, courses)), *ignored),
         submissions,
         roster,
-        sorted(placed),
+        placed,
         () if submissions.is_anonymous else tuple(sorted(keys.values())),
-        tuple(entries[index].student for index in absent),
-        tuple(entries[index].student for index in sorted(matches.contested)),
+        tuple(roster.entries[index].student for index in absent),
+        tuple(roster.entries[index].student for index in sorted(matches.contested)),
         (*roster.notes, *notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
         len(matches.ambiguous),
     )
+
+
+def _keys(submissions: Submissions, roster: Roster, assigned: Container[int]) -> dict[int, str]:
+    """Return the keys of unassigned submissions: never that of a student on the roster."""
+    taken = {plain_word(entry.student.key) for entry in roster.entries}
+    keys = {index: submissions.student(index).key for index in range(len(submissions)) if index not in assigned}
+    return keys | {index: path_key(submissions.path(index)) for index, key in keys.items() if plain_word(key) in taken}
+
+
+def _place(matches: Matches, roster: Roster, keys: dict[int, str]) -> list[_Placed]:
+    """Return all submissions in the order of their students' keys; that of a group once for each member."""
+    key_of = [entry.student.key for entry in roster.entries]
+    placed = [_Placed(key, index) for index, key in keys.items()]
+    for index, owner in matches.owners.items():
+        placed.append(_Placed(key_of[owner], index, owner, is_certain=index not in matches.uncertain))
+    for index, members in matches.shared.items():
+        placed += [_Placed(key_of[member], index, member, is_shared=True) for member in members]
+    return sorted(placed)
 
 
 def _course_line(folders: Iterable[str]) -> Iterator[str]:
@@ -161,73 +158,3 @@ def _course_line(folders: Iterable[str]) -> Iterator[str]:
     if names:
         one = len(names) == 1
         yield f"{enumerated(names, _MAX_NAMED)} {'is a folder' if one else 'are folders'} of the course, not of a student"
-
-
-class _Matches(NamedTuple):
-    """The owners of submissions by index, the unmatched submissions, the contested students, the uncertain submissions.
-
-    `claimants` are the files of Canvas that are named like a group, by the positions of its members.
-    """
-
-    owners: dict[int, int]
-    unmatched: list[int]
-    contested: set[int]
-    uncertain: set[int]
-    notes: list[str]
-    claimants: dict[tuple[int, ...], list[int]]
-    ambiguous: set[int]
-
-
-def _match(submissions: Submissions, roster: Roster) -> _Matches:
-    matches = _Matches({}, [], set(), set(), [], {}, set())
-    groups = CanvasGroups(roster)
-    doubts: list[tuple[str, GroupClaim]] = []
-    otherwise: list[str] = []
-    claims: dict[int, list[tuple[Clue, int]]] = {}  # by owner, the submissions that may be theirs
-    for index in range(0 if submissions.is_anonymous else len(submissions)):
-        student = submissions.student(index)
-        match = roster.match(student)
-        claim = groups.claim(student, match.position)
-        if claim is not None and claim.doubt:
-            doubts.append((student.key, claim))
-        if claim is not None and claim.owner is None:
-            if not claim.doubt:
-                matches.claimants.setdefault(claim.members, []).append(index)
-        elif match.position is not None:
-            if claim is None and match.clue is Clue.CANVAS and groups.is_named_otherwise(student, match.position):
-                otherwise.append(student.key)
-            claims.setdefault(match.position, []).append((match.clue, index))
-        elif match.doubt:
-            matches.notes.append(f"{student.key} {match.doubt}: left unassigned")
-            matches.contested.update(match.several)
-            matches.ambiguous.update({index} if match.several else ())
-        else:
-            matches.unmatched.append(index)
-    add_doubts(doubts, matches.claimants, roster, matches.contested, matches.notes)
-    if otherwise:
-        matches.notes.append(
-            f"{enumerated(otherwise, _MAX_NAMED)}: not named like the student with this id on the roster; if this is a group"
-            " assignment, add a column `group` to the roster, and the submission counts for each member"
-        )
-    for owner, claimants in claims.items():
-        clues, indices = zip(*sorted(claimants), strict=True)
-        first, *others = (submissions.student(index).key for index in indices)
-        key = roster.entries[owner].student.key
-        if others and (clues[0] > CERTAIN or clues[1] == clues[0]):
-            names = ", ".join((first, *others))
-            matches.contested.add(owner)
-            matches.ambiguous.update(indices)
-            matches.notes.append(
-                f"{names} may each belong to {key}: left unassigned; {key} keeps an earlier submission"
-            )
-            continue
-        matches.owners[indices[0]] = owner
-        if clues[0] > CERTAIN:
-            matches.uncertain.add(indices[0])
-        matches.notes.extend(
-            f"{other} may belong to {key} as well, but {first} counts: left unassigned" for other in others
-        )
-    for student in submissions.contested:
-        matches.contested.update(roster.candidates(student))
-    matches.contested.difference_update(matches.owners.values())
-    return matches

@@ -1,10 +1,7 @@
 """Read a roster from a CSV file: an instructor's own, a gradebook from Canvas, or a grading worksheet from Moodle."""
 
-import csv
-import io
 import re
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from operator import attrgetter, itemgetter
 from pathlib import Path
 
@@ -12,6 +9,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_values import RowReader
 from grader.classroom.matching import plain_word
 from grader.classroom.students import CANVAS_TEST_STUDENT
+from grader.classroom.tables import SIZE_LIMIT, read_table
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.text import counted, first_lines, printable_path
@@ -43,7 +41,6 @@ _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in al
 _WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle", "identifier"})
 _ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
-_LIMIT = 16 * 1024 * 1024  # bytes
 _MAX_MISTAKES = 20
 _UNIQUE = {
     "key": "id",
@@ -62,7 +59,7 @@ def read_roster(path: Path) -> Roster:
     the university's id, login, address, name, or LMS id. Raises InputError with a line for each mistake in the file.
     """
     shown = printable_path(path)
-    rows = _rows(_text_of(read_capped(path, _LIMIT, advice=""), shown), shown)
+    rows = _rows(read_capped(path, SIZE_LIMIT, advice=""), shown)
     _, header = next(rows, (1, []))
     fields = _fields(header, shown) if header else []
     mistakes: list[tuple[int, str]] = []
@@ -129,30 +126,14 @@ def _notes(reader: RowReader, shown: str) -> Iterator[str]:
         )
 
 
-def _text_of(data: bytes, shown: str) -> str:
-    encodings = ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252")
-    for encoding in encodings:
-        with suppress(UnicodeError):
-            if "\0" not in (text := data.decode(encoding)):
-                return text
-    raise InputError(f"{shown} is not a text file: save it as CSV in UTF-8")
-
-
-def _rows(text: str, shown: str) -> Iterator[tuple[int, list[str]]]:
+def _rows(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line where each row begins that is not empty, and its cells with spaces normalised."""
-    text = re.sub(r"\Asep=[;,]\r?\n", "", text)
-    header = next((line for line in text.splitlines() if line.strip(' ,;\t"')), "")
-    unquoted = re.sub(r'"[^"]*"', "", header)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=unquoted.count), strict=True)
     line = 1
-    try:
-        for row in reader:
-            cells = [" ".join(_AS_TEXT.sub(r"\1", cell.strip()).split()) for cell in row]
-            if any(cells):
-                yield line, cells
-            line = reader.line_num + 1
-    except csv.Error as error:
-        raise InputError(f"line {line} of {shown} cannot be read as CSV: {error}") from None
+    for row in read_table(data, shown, is_from_person=True).rows:
+        cells = [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
+        if any(cells) and cells != ["sep=", ""]:  # by which Excel recognises the separator
+            yield line, cells
+        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
 
 
 def _fields(header: list[str], shown: str) -> list[str]:

@@ -15,18 +15,15 @@ from decimal import Decimal
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
 from grader.classroom.lms.filling import (
     Filled,
+    Filling,
     FillOptions,
     LmsStudent,
-    Preflight,
     check_maximum,
-    fill_rows,
     first_of_each,
-    with_points,
-    with_value,
 )
 from grader.classroom.lms.grades import LmsGrade, read_points
-from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import CANVAS_TEST_STUDENT, Student
+from grader.classroom.tables import Table, TableRow, read_table
 from grader.errors import InputError
 from grader.text import format_points
 
@@ -71,20 +68,20 @@ def fill_gradebook(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
     possible = points.value(grade.index) if points is not None else ""
     if not options.any_maximum and points is not None:
         check_maximum(f"Canvas' Points Possible of {grade.header!r}", [possible], options.out_of)
-    preflight = Preflight(grade.header)
+    filling = Filling(table, grade.header, [_student(row, columns) for row in table.rows if _is_student(row)])
 
-    def fill_row(row: TableRow, _: LmsGrade, total: Decimal, who: str) -> TableRow | str:
+    def fill_row(row: TableRow, _: LmsGrade, total: Decimal) -> TableRow | str:
         no_grade = _NO_GRADE.get(row.value(grade.index).casefold())
-        return no_grade or with_points(table, row, grade.index, total, who, preflight, possible)
+        return no_grade or filling.with_points(row, grade.index, total, possible)
 
-    def fill_excuse(row: TableRow, who: str) -> TableRow | str:
+    def fill_excuse(row: TableRow) -> TableRow | str:
         if row.value(grade.index).casefold() == "n/a":
             return _NO_GRADE["n/a"]
-        return with_value(table, row, grade.index, _EXCUSE, who, preflight)
+        return filling.with_value(row, grade.index, _EXCUSE)
 
-    students = [_student(row, columns) for row in table.rows if _is_student(row)]
     kept = [*first_of_each(table.titles, _IDENTITY), grade.index] if options.only else None
-    filled = fill_rows(table, students, grades, preflight, fill_row, fill_excuse=fill_excuse, kept=kept)
+    filled = filling.fill(grades, fill_row, fill_excuse=fill_excuse, kept=kept)
+    preflight = filling.preflight
     preflight.unknown = [note for note in preflight.unknown if note.who.casefold() not in CANVAS_TEST_STUDENT]
     preflight.warnings += _warnings(table, columns, options)
     return filled

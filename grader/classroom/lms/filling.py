@@ -10,16 +10,16 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.tables import Table, TableRow
 from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
 from grader.classroom.students import Student
+from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 from grader.text import format_points
 
 _MAX_NAMED = 5
 _NOT_GRADED_YET = frozenset({"", "-", "needs grading"})  # the last in Blackboard
-FillRow = Callable[[TableRow, LmsGrade, Decimal, str], "TableRow | str | RowNote"]
-FillExcuse = Callable[[TableRow, str], TableRow | str]
+FillRow = Callable[[TableRow, LmsGrade, Decimal], "TableRow | str | RowNote"]
+FillExcuse = Callable[[TableRow], TableRow | str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,77 +105,87 @@ class Filled(NamedTuple):
     preflight: Preflight
 
 
-def fill_rows(
-    table: Table,
-    students: Iterable[LmsStudent],
-    grades: Sequence[LmsGrade],
-    preflight: Preflight,
-    fill_row: FillRow,
-    *,
-    fill_excuse: FillExcuse | None = None,
-    kept: Sequence[int] | None = None,
-) -> Filled:
-    """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
+class Filling:
+    """An LMS file that is filled with grades; `preflight` collects what importing it does."""
 
-    `fill_row` gets a row, the grade, its total and the student's name; it returns the new row, the same row if nothing changes, or the
-    reason why the grade cannot be written, or a note that the LMS would refuse it. `fill_excuse` does the same for an excuse, in an
-    LMS that supports excuses.
-    """
-    by_row = {student.row: student for student in students}
-    matched = match_rows(list(by_row.values()), grades, preflight)
-    rows = []
-    for row in table.rows:
-        if row.number not in by_row:
-            rows.append(row)
-        elif row.number in matched:
-            who, grade = by_row[row.number].who, matched[row.number]
-            new: TableRow | str | RowNote = grade.why_not or "has no grade"
-            if (grade.total is not None or grade.is_excused) and len(row.cells) != len(table.titles):
-                new = f"the row has {len(row.cells)} cells and the header {len(table.titles)}"
-            elif grade.is_excused and fill_excuse is not None:
-                new = fill_excuse(row, who)
-            elif grade.total is not None:
-                new = fill_row(row, grade, grade.total, who)
-            if isinstance(new, str):
-                preflight.ungraded.append(RowNote(row.number, who, new))
-                continue
-            if isinstance(new, RowNote):
-                preflight.refused.append(new)
-                continue
-            if grade.is_excused:
-                preflight.excused.append(who)
-            if grade.is_older:
-                preflight.older.append(RowNote(row.number, grade.who, "excuse" if grade.is_excused else "final mark"))
-            preflight.unchanged += new is row
-            preflight.filled += new is not row
-            rows.append(new)
-    filled = replace(table, rows=tuple(rows))
-    return Filled((filled if kept is None else filled.with_columns(kept)).encoded(), preflight)
+    def __init__(self, table: Table, header: str, students: Iterable[LmsStudent]) -> None:
+        """`header` is that of the grade's column."""
+        self.table, self.preflight = table, Preflight(header)
+        self._students = {student.row: student for student in students}
+
+    def fill(
+        self,
+        grades: Sequence[LmsGrade],
+        fill_row: FillRow,
+        *,
+        fill_excuse: FillExcuse | None = None,
+        kept: Sequence[int] | None = None,
+    ) -> Filled:
+        """Return the table with the grades in it; of its columns only those in `kept`, unless it is None.
+
+        `fill_row` gets a row, the grade, and its total; it returns the new row, the same row if nothing changes, or the
+        reason why the grade cannot be written, or a note that the LMS would refuse it. `fill_excuse` does the same for
+        an excuse, in an LMS that supports excuses.
+        """
+        matched = match_rows(list(self._students.values()), grades, self.preflight)
+        rows = []
+        for row in self.table.rows:
+            if row.number not in self._students:
+                rows.append(row)
+            elif row.number in matched:
+                grade = matched[row.number]
+                new = self._filled(row, grade, fill_row, fill_excuse)
+                if isinstance(new, TableRow):
+                    self._count(row, new, grade)
+                    rows.append(new)
+                elif isinstance(new, RowNote):
+                    self.preflight.refused.append(new)
+                else:
+                    self.preflight.ungraded.append(self.note(row, new))
+        filled = replace(self.table, rows=tuple(rows))
+        return Filled((filled if kept is None else filled.with_columns(kept)).encoded(), self.preflight)
+
+    def note(self, row: TableRow, why: str) -> RowNote:
+        """Return a note about a row."""
+        return RowNote(row.number, self._students[row.number].who, why)
+
+    def with_points(self, row: TableRow, column: int, total: Decimal, like: str) -> TableRow:
+        """Return a row with the total, written `like` another number, in a column; another old grade is a conflict."""
+        old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
+        return row if read_points(old) == read_points(new) else self.with_value(row, column, new)
+
+    def with_value(self, row: TableRow, column: int, new: str) -> TableRow:
+        """Return a row with a value in a column, the same row if it has it; another old value is a conflict."""
+        old = row.value(column)
+        if old.casefold() == new.casefold():
+            return row
+        if old.casefold() not in _NOT_GRADED_YET:
+            self.preflight.conflicts.append(Conflict(row.number, self._students[row.number].who, old, new))
+        return self.table.changed(row, column, new)
+
+    def _filled(
+        self, row: TableRow, grade: LmsGrade, fill_row: FillRow, fill_excuse: FillExcuse | None
+    ) -> TableRow | str | RowNote:
+        titles = self.table.titles
+        if (grade.total is not None or grade.is_excused) and len(row.cells) != len(titles):
+            return f"the row has {len(row.cells)} cells and the header {len(titles)}"
+        if grade.is_excused and fill_excuse is not None:
+            return fill_excuse(row)
+        return fill_row(row, grade, grade.total) if grade.total is not None else grade.why_not or "has no grade"
+
+    def _count(self, row: TableRow, new: TableRow, grade: LmsGrade) -> None:
+        found = self.preflight
+        if grade.is_excused:
+            found.excused.append(self._students[row.number].who)
+        if grade.is_older:
+            found.older.append(RowNote(row.number, grade.who, "excuse" if grade.is_excused else "final mark"))
+        found.unchanged += new is row
+        found.filled += new is not row
 
 
 def first_of_each(titles: Sequence[str], wanted: Container[str]) -> list[int]:
     """Return where each of the wanted titles is first."""
     return [index for index, title in enumerate(titles) if title in wanted and title not in titles[:index]]
-
-
-def with_points(
-    table: Table, row: TableRow, column: int, total: Decimal, who: str, preflight: Preflight, like: str
-) -> TableRow:
-    """Return a row with the total, written `like` another number, in a column; a grade that is overwritten is a conflict."""
-    old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
-    if read_points(old) == read_points(new):
-        return row
-    return with_value(table, row, column, new, who, preflight)
-
-
-def with_value(table: Table, row: TableRow, column: int, new: str, who: str, preflight: Preflight) -> TableRow:
-    """Return a row with a value in a column, the same row if it has it; a value that is overwritten is a conflict."""
-    old = row.value(column)
-    if old.casefold() == new.casefold():
-        return row
-    if old.casefold() not in _NOT_GRADED_YET:
-        preflight.conflicts.append(Conflict(row.number, who, old, new))
-    return table.changed(row, column, new)
 
 
 def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from itertools import accumulate
 
-from grader.classroom.lms.tables import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.classroom.students import Student
+from grader.classroom.tables import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.files.reading import sha256_of
 from grader.grading.report import Result
 from grader.text import format_points

@@ -13,18 +13,17 @@ from decimal import Decimal
 
 from grader.classroom.lms.filling import (
     Filled,
+    Filling,
     FillOptions,
     LmsStudent,
     Preflight,
     RowNote,
     check_maximum,
-    fill_rows,
-    with_points,
 )
 from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
-from grader.classroom.lms.tables import Table, TableRow, neutral, read_table
 from grader.classroom.students import Student
+from grader.classroom.tables import Table, TableRow, neutral, read_table
 from grader.text import format_points
 
 _TAG = re.compile(r"<[^>]*+>")  # gradingtable.php puts the name of a suspended student into a span, with a picture
@@ -42,19 +41,19 @@ def fill_worksheet(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
     maxima = sorted({row.value(columns.maximum) for row in student_rows(table) if len(row.cells) == len(table.titles)})
     if not options.any_maximum:
         check_maximum(f"Moodle's {table.titles[columns.maximum]!r}", maxima, options.out_of)
-    preflight = Preflight(table.titles[columns.grade])
+    filling = Filling(table, table.titles[columns.grade], students_of(table, columns))
 
-    def fill_row(row: TableRow, grade: LmsGrade, total: Decimal, who: str) -> TableRow | str | RowNote:
+    def fill_row(row: TableRow, grade: LmsGrade, total: Decimal) -> TableRow | str | RowNote:
         maximum = read_points(row.value(columns.maximum))
         if row.value(columns.changeable).casefold() in _NO:
             return "has a grade that is locked in Moodle"
         if maximum is not None and rounded_down(total) > maximum:
             why = f"{points_text(total)} points are above the maximum of {format_points(maximum)}"
-            return RowNote(row.number, who, f"{why}: raise the maximum there, or give a final mark")
-        row = with_points(table, row, columns.grade, total, who, preflight, row.value(columns.maximum))
-        return _with_comment(table, row, columns, who, grade, preflight)
+            return filling.note(row, f"{why}: raise the maximum there, or give a final mark")
+        row = filling.with_points(row, columns.grade, total, row.value(columns.maximum))
+        return _with_comment(filling, row, columns.feedback, neutral(grade.feedback))
 
-    filled = fill_rows(table, students_of(table, columns), grades, preflight, fill_row)
+    filled, preflight = filling.fill(grades, fill_row), filling.preflight
     preflight.warnings += _warnings(table, columns, options.out_of, maxima, preflight)
     if columns.feedback is None and any(grade.feedback for grade in grades):
         preflight.warnings.append("the file has no known column for feedback comments: no comment is written")
@@ -72,17 +71,15 @@ def students_of(table: Table, columns: MoodleColumns) -> list[LmsStudent]:
     return [_student(row, columns) for row in student_rows(table)]
 
 
-def _with_comment(
-    table: Table, row: TableRow, columns: MoodleColumns, who: str, grade: LmsGrade, preflight: Preflight
-) -> TableRow:
-    old, new = row.value(columns.feedback), neutral(grade.feedback)
-    if columns.feedback is None or not new or old == new:
+def _with_comment(filling: Filling, row: TableRow, column: int | None, new: str) -> TableRow:
+    old = row.value(column)
+    if column is None or not new or old == new:
         return row
     if old and not is_own_feedback(old):
         why = "has a comment in Moodle that was written or changed by a person"
-        preflight.kept_feedback.append(RowNote(row.number, who, why))
+        filling.preflight.kept_feedback.append(filling.note(row, why))
         return row
-    return table.changed(row, columns.feedback, new)
+    return filling.table.changed(row, column, new)
 
 
 def _student(row: TableRow, columns: MoodleColumns) -> LmsStudent:

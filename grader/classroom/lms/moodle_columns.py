@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from grader.classroom.lms.grades import read_points
-from grader.classroom.lms.tables import Table, TableRow
+from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 
 # Headers in lower case, as the language packs have them (assign.php, assignfeedback_comments.php): English, German, French, Spanish,

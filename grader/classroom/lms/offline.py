@@ -19,17 +19,15 @@ from decimal import Decimal
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
 from grader.classroom.lms.filling import (
     Filled,
+    Filling,
     FillOptions,
     LmsStudent,
-    Preflight,
     check_maximum,
-    fill_rows,
     first_of_each,
-    with_points,
 )
 from grader.classroom.lms.grades import LmsGrade, read_points
-from grader.classroom.lms.tables import TableRow, read_table
 from grader.classroom.students import Student
+from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError
 from grader.text import enumerated, format_points
 
@@ -94,18 +92,20 @@ def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, 
     grade = find_assignment([column for column in columns if column.title], options, form.lms, form.example)
     if not options.any_maximum:
         check_maximum(f"{form.lms}'s maximum of {grade.title!r}", [grade.maximum], options.out_of)
-    preflight = Preflight(grade.header)
-
-    def fill_row(row: TableRow, _: LmsGrade, total: Decimal, who: str) -> TableRow | str:
-        maximum = read_points(grade.maximum)
-        if form.above and maximum is not None and total > maximum:
-            preflight.warnings.append(f"row {row.number}, {who}: {format_points(total)} points: {form.above}")
-        return with_points(table, row, grade.index, total, who, preflight, "")
-
     rows = [row for row in table.rows[1:] if any(cell.value.strip() for cell in row.cells)]
     students = [_student(row, titles, form) for row in rows]
+    filling = Filling(table, grade.header, students)
+    preflight = filling.preflight
+
+    def fill_row(row: TableRow, _: LmsGrade, total: Decimal) -> TableRow | str:
+        maximum = read_points(grade.maximum)
+        if form.above and maximum is not None and total > maximum:
+            note = filling.note(row, form.above)
+            preflight.warnings.append(f"row {row.number}, {note.who}: {format_points(total)} points: {note.why}")
+        return filling.with_points(row, grade.index, total, "")
+
     kept = [*first_of_each(titles, {form.login, form.sis, form.email, *_NAMES, *form.kept}), grade.index]
-    filled = fill_rows(table, students, grades, preflight, fill_row, kept=kept if options.only else None)
+    filled = filling.fill(grades, fill_row, kept=kept if options.only else None)
     previews = {student.row for student in students if _PREVIEW_USER.fullmatch(student.student.login)}
     preflight.unknown = [note for note in preflight.unknown if note.row not in previews]
     preflight.warnings += _warnings(columns, grade, options, form)

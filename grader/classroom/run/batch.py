@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult, graded_on
+from grader.classroom.gradebook.result import GradingResult, storable
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
-from grader.classroom.gradebook.stored import Enrolment, StoredSubmission, storable
+from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json
@@ -84,8 +84,8 @@ class Batch:
         self._sha256 = rubric.sha256  # which is computed
         used = {criterion.part for criterion in rubric.criteria}
         wanted = settings.parts or used
-        self._parts = tuple(part.id for part in rubric.parts if part.id in wanted and part.id in used)
-        self._queue = Queue(executor, settings.workers, self._context, rubric)
+        self._parts = " ".join(part.id for part in rubric.parts if part.id in wanted and part.id in used)
+        self._queue = Queue(executor, settings.workers, self._context)
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self._writer: RunWriter | None = None
         self.progress = Progress(settings.total)
@@ -116,14 +116,8 @@ class Batch:
                 self.notes.append(f"{path} may belong to {stored.key}, who had another submission: left unassigned")
                 contested.add(stored.key)
                 self._report(("unchanged",))
-                continue
-            stored = stored if stored is not None and self._is_valid(stored) else None
-            if stored is not None and self._is_unchanged(submission, stored):
-                self._report(("unchanged",))
             else:
-                self._at_work[submission.student.key] = (submission, stored)
-                digest = stored.digest if stored is not None else ""
-                self._queue.put(Task(submission.student.key, submission.paths, submission.names, digest))
+                self._put(submission, stored)
             while self._queue.is_full:
                 self._collect(writer, all_in=False)
         while len(self._queue):
@@ -132,37 +126,47 @@ class Batch:
             students.recognise(student)
         with book.transaction():
             for stored in students.gone():
-                if stored.key not in contested:
-                    writer.add_gone(stored)
-                if (
-                    stored.enrolment.is_on_roster
-                    and settings.roster is not None
-                    and settings.roster.entry(stored.key) is None
-                ):
-                    writer.remove_from_roster(stored.student_id)
+                self._add_gone(writer, stored, is_contested=stored.key in contested)
             for student in (*intake.absent, *(intake.contested if settings.roster is not None else ())):
                 save_student(book, student, self._enrolment(student))
         writer.finish()
         return self.progress
 
+    def _put(self, submission: ClassSubmission, stored: StoredSubmission | None) -> None:
+        """Let a submission be graded, unless it has a valid result and has not changed."""
+        stored = stored if stored is not None and self._is_valid(stored) else None
+        if stored is not None and self._is_unchanged(submission, stored):
+            self._report(("unchanged",))
+            return
+        self._at_work[submission.student.key] = (submission, stored)
+        digest = stored.digest if stored is not None else ""
+        self._queue.put(Task(submission.student.key, submission.paths, submission.names, digest))
+
+    def _add_gone(self, writer: RunWriter, stored: StoredSubmission, *, is_contested: bool) -> None:
+        """Record that a stored submission was not found, and whether its student has left the roster."""
+        roster = self._settings.roster
+        if not is_contested:
+            writer.add_gone(stored)
+        if stored.enrolment.is_on_roster and roster is not None and roster.entry(stored.key) is None:
+            writer.remove_from_roster(stored.student_id)
+
     def _context(self) -> ClassContext:
         """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
-        rubric, settings, template = self._rubric, self._settings, ""
+        rubric, settings, dictionary = self._rubric, self._settings, b""
         if rubric.solution is not None and rubric.compares_with_reference:
             _ = rubric.solution.robot  # raises InputError: without it nothing can be graded
         with suppress(InputError):  # most records resemble that of the reference solution
             if rubric.solution is not None:
                 reference = rubric.solution.submission
-                template = to_record(grade(rubric, reference))
+                dictionary = to_record(grade(rubric, reference)).encode()
                 self._writer.add_handed_out(filter(None, robot_hashes(reference)))
-        self._writer.use_template(template)
-        return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size, settings.parts)
+        self._writer.use_dictionary(dictionary)
+        return ClassContext(settings.root, rubric.data, str(rubric.path), dictionary, settings.max_size, settings.parts)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
         """Return whether a result may be kept: it is of the same rubric, parts and grader, and not errored."""
-        is_same = (stored.rubric, stored.version) == (self._sha256, __version__)
-        is_same = is_same and graded_on(self._rubric, stored.statuses) == self._parts
+        is_same = (stored.rubric, stored.version, stored.parts) == (self._sha256, __version__, self._parts)
         return is_same and stored.verdict != "errored" and not self._settings.force
 
     def _is_unchanged(self, submission: ClassSubmission, stored: StoredSubmission) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.hints import Mistaken, mistaken, save_hints
-from grader.classroom.gradebook.result import Verdict, graded_on
+from grader.classroom.gradebook.result import Verdict
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
@@ -83,7 +83,7 @@ class HintSearch:
     ) -> Iterator[tuple[Future[str | None], Mistaken]]:
         rubric = self._rubric
         for one in submissions:
-            task = one, graded_on(rubric, one.statuses), rubric.data, str(rubric.path), self._max_size
+            task = one, one.parts, rubric.data, str(rubric.path), self._max_size
             yield executor.submit(search_hints, *task), one
 
     def _save(self, submission: Mistaken, future: "Future[str | None]") -> Verdict:

@@ -9,7 +9,6 @@ from functools import cache
 from grader.classroom.gradebook.result import GradingResult
 from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.worker import ClassContext, Task, failed, grade_all
-from grader.grading.rubric import Rubric
 
 _GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
 _MAX_GROUP = 64
@@ -23,8 +22,8 @@ class Queue:
     A submission whose grading is lost is tried alone, then without its documents; if that is lost as well, it is `errored`.
     """
 
-    def __init__(self, executor: Executor, workers: int, context: Callable[[], ClassContext], rubric: Rubric) -> None:
-        self._executor, self._workers, self._rubric = executor, workers, rubric
+    def __init__(self, executor: Executor, workers: int, context: Callable[[], ClassContext]) -> None:
+        self._executor, self._workers = executor, workers
         self._context = cache(context)
         self._waiting: deque[Task] = deque()
         self._alone: deque[tuple[Task, int]] = deque()
@@ -99,5 +98,6 @@ class Queue:
                 self._alone.append((tasks[0]._replace(no_documents=str(error)), 1))
             else:
                 reason = str(error) if is_lost else f"{type(error).__name__}: {error}"
-                return [failed(self._rubric, self._context().parts, tasks[0], "errored", reason)]
+                result = GradingResult(tasks[0].key, "errored", "", "", reason=reason)
+                return [failed(self._context(), tasks[0], result)]
             return []

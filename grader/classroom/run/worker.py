@@ -1,25 +1,13 @@
 """The work of a worker process: grade submissions one by one. Everything here is plain data that can be sent to any process."""
 
-import json
 import time
-import zlib
-from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.failures import Failure, failure_of
-from grader.classroom.gradebook.result import (
-    NOT_GRADED,
-    SETTLED,
-    STATUS_LETTERS,
-    UNITS_PER_POINT,
-    GradingResult,
-    Verdict,
-)
+from grader.classroom.gradebook.result import GradingResult, Verdict
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
@@ -29,7 +17,6 @@ from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import is_another_robot, robot_of
-from grader.grading.record import Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.robot.normal_form import robot_hash
@@ -46,7 +33,7 @@ class ClassContext(NamedTuple):
     root: str
     rubric: bytes
     rubric_path: str
-    template: str = ""  # records are stored as differences from this one
+    dictionary: bytes = b""  # with which records are compressed
     max_size: int = URDF_LIMIT  # bytes of a URDF
     parts: tuple[str, ...] = ()  # ids; default: all
 
@@ -70,37 +57,37 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[GradingResul
 
 
 def _grade_one(context: ClassContext, task: Task) -> GradingResult:
-    rubric, template = _rubric(context.rubric, context.rubric_path, context.template)
-    seen = fingerprint(context.root, task.paths, time.time_ns(), context.max_size)
-    digest = ""
+    rubric = _rubric(context.rubric, context.rubric_path)
+    result = GradingResult(
+        task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns(), context.max_size)
+    )
     try:
         opened = open_submission(context.root, task.paths, task.names, task.key, context.max_size)
-        digest = opened.digest
-        if digest == task.graded:
-            return GradingResult(task.key, "unchanged", digest, seen)
+        result = result._replace(digest=opened.digest)
+        if opened.digest == task.graded:
+            return result
         submission = opened.submission(rubric, task.no_documents)
         if submission.students:
-            return failed(rubric, context.parts, task, "unreadable", several_students(submission), digest, seen)
+            raise InputError(several_students(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
-        digest = digest or unreadable_digest(context.root, task.paths)
-        if digest and digest == task.graded:
-            return GradingResult(task.key, "unchanged", digest, seen)
-        return failed(rubric, context.parts, task, "unreadable", str(error), digest, seen)
+        result = result._replace(digest=result.digest or unreadable_digest(context.root, task.paths))
+        is_unchanged = result.digest and result.digest == task.graded
+        return (
+            result if is_unchanged else failed(context, task, result._replace(verdict="unreadable", reason=str(error)))
+        )
     except MemoryError:
         if not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
-        return failed(rubric, context.parts, task, "errored", NO_MEMORY, digest, seen)
+        return failed(context, task, result._replace(verdict="errored", reason=NO_MEMORY))
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         reason = f"the grader itself failed: {type(error).__name__}: {error}"
-        return failed(rubric, context.parts, task, "errored", reason, digest, seen)
+        return failed(context, task, result._replace(verdict="errored", reason=reason))
     fault, reason = report.fault, _why_unreadable(submission)
     verdict: Verdict = "errored" if fault else "unreadable" if reason else "graded"
-    graded = result_of(report, task, verdict, fault or reason, digest, seen, template)
-    if is_another_robot(
-        rubric, robot_of(submission.urdf)
-    ):  # what the course handed out for the lab before is no identical work
-        return graded
+    graded = result._replace(verdict=verdict, reason=fault or reason).with_report(report, context.dictionary)
+    if is_another_robot(rubric, robot_of(submission.urdf)):
+        return graded  # what the course handed out for the lab before is no identical work
     urdf, robot = robot_hashes(submission)
     return graded._replace(urdf=urdf, robot=robot)
 
@@ -140,53 +127,20 @@ def several_students(submission: Submission) -> str:
     return f"it contains the submissions of {count} students, {named}: left unassigned (--layout teams grades each)"
 
 
-def failed(
-    rubric: Rubric, parts: tuple[str, ...], task: Task, verdict: Verdict, reason: str, digest: str = "", seen: str = ""
-) -> GradingResult:
+def failed(context: ClassContext, task: Task, result: GradingResult) -> GradingResult:
     """Return the result of a submission that could not be graded: every criterion is undecided, and says why."""
-    status: Status = "errored" if verdict == "errored" else "pending"
+    rubric, reason = _rubric(context.rubric, context.rubric_path), result.reason
+    status: Status = "errored" if result.verdict == "errored" else "pending"
     message = reason if status == "errored" else f"{reason}; needs manual grading"
-    chosen = tuple(part.id for part in rubric.parts if not parts or part.id in parts)
+    chosen = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
     criteria = [criterion for criterion in rubric.criteria if criterion.part in chosen]
     results = tuple(Result(criterion, Outcome(status, message)) for criterion in criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
-    report = Report(GradedSubmission(name, unread=reason if verdict == "unreadable" else ""), rubric, chosen, results)
-    return result_of(report, task, verdict, reason, digest, seen)
-
-
-def result_of(
-    report: Report,
-    task: Task,
-    verdict: Verdict,
-    reason: str,
-    digest: str,
-    seen: str,
-    template: Template | None = None,
-) -> GradingResult:
-    """Return a report as plain data; `seen` is the fingerprint of the files."""
-    statuses = [NOT_GRADED] * len(report.rubric.criteria)
-    failures: list[Failure] = []
-    causes: Counter[str] = Counter()
-    for result in report.results:
-        criterion, outcome = result.criterion, result.outcome
-        is_settled = outcome.status != "passed" and result.why_given
-        statuses[criterion.position] = SETTLED if is_settled else STATUS_LETTERS[outcome.status]
-        if outcome.status == "failed" and not is_settled:
-            failures.append(failure_of(criterion, outcome))
-        elif result.is_open and criterion.check.function not in MANUAL_CHECKS:
-            causes[outcome.mistake or f"{criterion.check.name} could not be decided"] += int(
-                criterion.points * UNITS_PER_POINT
-            )
-    undecided = max(causes, key=lambda cause: (causes[cause], cause), default="")
-    score, out_of, pending = (
-        int(points * UNITS_PER_POINT) for points in (report.score, report.max_score, report.pending)
-    )
-    record = zlib.compress(to_record(report, template).encode(), 1)
-    told = "".join(statuses), json.dumps(failures), record, reason, undecided
-    return GradingResult(task.key, verdict, digest, seen, score, out_of, pending, *told)
+    unread = reason if result.verdict == "unreadable" else ""
+    report = Report(GradedSubmission(name, unread=unread), rubric, chosen, results)
+    return result.with_report(report, context.dictionary)
 
 
 @lru_cache(maxsize=4)
-def _rubric(data: bytes, path: str, template: str) -> tuple[Rubric, Template]:
-    rubric = read_rubric(data, Path(path))
-    return rubric, Template(template, rubric)
+def _rubric(data: bytes, path: str) -> Rubric:
+    return read_rubric(data, Path(path))

@@ -11,8 +11,7 @@ from grader import __version__
 from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.identical import IdenticalWork
-from grader.classroom.gradebook.members import members
-from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics, members
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.drawing.curves import SIDE, TOP
 from grader.drawing.picture import Picture, picture_of

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from grader.classroom.gradebook.members import Member
+from grader.classroom.gradebook.statistics import Member
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.grading.criterion import Criterion

@@ -1,6 +1,5 @@
 """Failures are grouped by criterion and cause: measured values within the tolerance are one failure; other failures by words."""
 
-import json
 from collections.abc import Mapping
 from itertools import pairwise
 from math import cos, radians, sin
@@ -10,7 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome, Value
-from grader.classroom.gradebook.failures import Failure, failure_of, grouped
+from grader.classroom.gradebook.failures import Failure, grouped
+from grader.classroom.gradebook.result import GradingResult, StoredOutcome
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report, Result
 from tests.samples import LAB6
 
 CRITERION = next(row for row in LAB6.criteria if row.id == "left-wheel-forward")
@@ -19,7 +21,15 @@ CRITERION = next(row for row in LAB6.criteria if row.id == "left-wheel-forward")
 def failure(message: str, measured: Value = None, expected: Value = None, unit: str | None = "m") -> Failure:
     """Return the failure that a gradebook stores and gives back."""
     outcome = Outcome("failed", message, measured, expected, None if measured is None else 0.002, unit)
-    return Failure.from_json(json.loads(json.dumps(failure_of(CRITERION, outcome))))
+    return failure_of(outcome)
+
+
+def failure_of(outcome: Outcome) -> Failure:
+    """Return the failure that a gradebook makes of an outcome."""
+    report = Report(GradedSubmission("a"), LAB6, ("task1",), (Result(CRITERION, outcome),))
+    outcomes = GradingResult("a", "graded", "", "").with_report(report, b"").outcomes
+    (found,) = [StoredOutcome(*row) for row in outcomes if row[0] == CRITERION.position]
+    return Failure.of(found)
 
 
 def counts(*failures: Failure) -> list[tuple[str, int]]:
@@ -44,7 +54,7 @@ def test_directions_are_compared_by_their_angle() -> None:
     def pointing(degrees: float) -> Failure:
         direction = (0.0, -cos(radians(degrees)), sin(radians(degrees)))
         outcome = Outcome("failed", f"{degrees}", direction, (0.0, 1.0, 0.0), 1.0, "deg")
-        return failure_of(CRITERION, outcome)
+        return failure_of(outcome)
 
     assert counts(pointing(0), pointing(0), pointing(0.046)) == [("0", 3)]
     assert counts(pointing(0), pointing(0), pointing(10)) == [("0", 2), ("10", 1)]

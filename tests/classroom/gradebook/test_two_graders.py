@@ -23,6 +23,7 @@ from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.review import ReviewSession
 from grader.classroom.students import Student
+from grader.cli.terminal import class_progress
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
 from grader.report.screen import Screen
@@ -310,7 +311,7 @@ def _ignore(_: str) -> None:
     """Print nothing."""
 
 
-TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignore)
+TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignore, class_progress)
 
 
 @pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.exhaustive)])

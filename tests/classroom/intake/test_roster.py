@@ -121,12 +121,12 @@ def test_an_extension_is_days_or_a_date(tmp_path: Path) -> None:
         ("id,name\n1\n", "line 2 of .* has 1 cell, but the first line has 2"),
         ("id,name\n1,Ann,extra\n", "line 2 of .* has 3 cells, but the first line has 2"),
         ("id,name,points\n,,7\n", "line 2 of .* has no id, login, name or email address: add one of them"),
-        ("id,name\n1,Ann\n2,'Bea\n3,\"Cal\n", "line 4 of .* cannot be read as CSV"),
+        ("id,name\n1,Ann\n2,'Bea\n3,\"Cal\n", "a quotation mark in row 4 is never closed"),
         ("id,due\n1,12/7/26\n", "line 2 of .* has the date '12/7/26': write it as"),
         ("id,late\n1,maybe\n", "line 2 of .* has 'maybe' for late: write yes, no"),
-        (b"\xff\xfe\x00", "is not a text file"),
-        (b"i\0d\0,\0", "is not a text file"),
-        (b"id\n\x81\n", "is not a text file"),
+        (b"\xff\xfe\x00", "is not text in utf-16"),
+        (b"i\0d\0,\0", "contains a NUL character"),
+        (b"id\n\x81\n", "is not text in UTF-8 or Windows-1252"),
     ],
 )
 def test_invalid_rosters(tmp_path: Path, text: str | bytes, message: str) -> None:
@@ -136,11 +136,16 @@ def test_invalid_rosters(tmp_path: Path, text: str | bytes, message: str) -> Non
     assert "\n" not in str(caught.value)
 
 
+def test_a_comma_in_a_header(tmp_path: Path) -> None:
+    """The most frequent delimiter of the first line counts, because a person may write a comma in a title."""
+    assert only(tmp_path, "Note, old;id;login\n;7;ann\n").student.login == "ann"
+
+
 def test_a_file_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A missing file and a huge one are errors of one line."""
     with pytest.raises(InputError, match="cannot read"):
         read_roster(tmp_path / "none.csv")
-    monkeypatch.setattr("grader.classroom.intake.roster_file._LIMIT", 10)
+    monkeypatch.setattr("grader.classroom.intake.roster_file.SIZE_LIMIT", 10)
     with pytest.raises(InputError, match=r"larger than 10 bytes, the limit$"):
         read(tmp_path, PLAIN)
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from grader.classroom.lms.canvas import fill_gradebook
 from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
+from grader.classroom.tables import read_table
 from grader.errors import InputError
 
 HEADER = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)"

@@ -14,8 +14,8 @@ from grader.checks.outcome import Outcome
 from grader.classroom.lms.filling import Filled, FillOptions, RowNote
 from grader.classroom.lms.grades import LIMIT, FeedbackItem, LmsGrade, feedback_html, feedback_items, is_own_feedback
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.tables import neutral
 from grader.classroom.students import Student
+from grader.classroom.tables import neutral
 from grader.errors import InputError
 from grader.grading.report import ManualMark, Result
 from tests.classroom.gradebooks import lab

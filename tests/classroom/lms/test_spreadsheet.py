@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lms.tables import neutral, write_table
+from grader.classroom.tables import neutral, write_table
 
 
 def read(text: str) -> list[list[str]]:

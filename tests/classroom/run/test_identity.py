@@ -42,7 +42,7 @@ def test_a_roster_may_come_later(top: Path) -> None:
     done = batch(top, roster=BOTH)
     assert "alice is 101 now, with all manual marks" in done.stderr
     assert "0 graded, 2 unchanged" in done.stderr
-    assert {key: (student["score"], student["marks_by_hand"]) for key, student in students(top).items()} == {
+    assert {key: (student["score"], student["manual_marks"]) for key, student in students(top).items()} == {
         "101": (93.5, 1),
         "102": (62, 0),
     }
@@ -52,7 +52,7 @@ def test_a_roster_may_be_omitted_and_come_again(top: Path) -> None:
     """Marks stay with their students, whatever the keys in between."""
     for roster in (BOTH, "", BOTH, BOTH):
         assert batch(top, roster=roster).returncode == 0
-    assert students(top)["101"]["marks_by_hand"] == 1
+    assert students(top)["101"]["manual_marks"] == 1
     assert len(students(top)) == 2
 
 
@@ -87,7 +87,7 @@ def test_an_lms_number_is_stronger_than_a_path(tmp_path: Path) -> None:
     first.rename(second)
     done = batch(tmp_path, "--layout", "canvas", roster="id,name,canvas id\n101,Alice Ash,7\n")
     assert "ashalice_7 is 101 now" in done.stderr
-    assert {key: student["marks_by_hand"] for key, student in students(tmp_path).items()} == {"101": 1}
+    assert {key: student["manual_marks"] for key, student in students(tmp_path).items()} == {"101": 1}
 
 
 def test_a_folders_key_that_the_roster_gives_to_another(top: Path) -> None:
@@ -98,7 +98,7 @@ def test_a_folders_key_that_the_roster_gives_to_another(top: Path) -> None:
     shutil.rmtree(top / "class" / "101")
     done = batch(top, roster=BOTH)
     assert "alice is 101 now" in done.stderr
-    assert {key: student["marks_by_hand"] for key, student in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
+    assert {key: student["manual_marks"] for key, student in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
     assert students(top)["101"]["score"] == 93.5
     assert "no longer in the class folder (1): ./101" in done.stdout
 
@@ -116,7 +116,7 @@ def test_removed_submissions_have_no_grade(top: Path) -> None:
     (top / "away").rename(top / "class" / "alice")
     assert "alice" not in batch(top).stdout
     assert students(top)["alice"]["is_final"]
-    assert students(top)["alice"]["marks_by_hand"] == 3
+    assert students(top)["alice"]["manual_marks"] == 3
 
 
 def test_another_class_folder_removes_nobody(top: Path) -> None:

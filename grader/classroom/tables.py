@@ -84,18 +84,20 @@ class Table:
         return replace(row, cells=(*row.cells[:column], Cell(raw, value), *row.cells[column + 1 :]))
 
 
-def read_table(data: bytes, shown: str) -> Table:
+def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:
     """Return the rows of a CSV file; `shown` is its name in messages.
 
-    It is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. The delimiter is the first comma, semicolon or tab outside
-    quotes. Raises InputError for a file that is too large or not CSV.
+    It is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. The delimiter is the first comma, semicolon or tab
+    outside quotes in the first line, or the most frequent one in the file of a person, who may write a comma in a
+    title. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
     bom, encoding, text = _decoded(data, shown)
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
-    found = re.match(rf'(?:"(?:[^"]++|"")*+"|[^"{DELIMITERS}])*+([{DELIMITERS}])', text)
-    delimiter = found[1] if found else ","
+    header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
+    found = re.findall(f"[{DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
+    delimiter = max(found, key=found.count) if is_from_person else found[0]
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 

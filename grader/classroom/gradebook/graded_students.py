@@ -1,0 +1,115 @@
+"""The graded students of a class, each with the points of every criterion: all figures of the class count them."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from grader.checks.manual import MANUAL_CHECKS
+from grader.classroom.gradebook.failures import Failure
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.result import StoredOutcome, units_of
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
+
+_GRADED = """
+SELECT id, key, result, score, out_of, pending, final FROM grade
+WHERE verdict = 'graded' AND NOT is_excused AND rubric = ? ORDER BY id
+"""
+_MARKS = "SELECT student, criterion, points FROM manual_mark"
+
+
+@dataclass(slots=True)
+class GradedStudent:
+    """A student with a graded submission, in ten-thousandths of a point, with manual marks.
+
+    `statuses` and `earned` are by the position of the criterion; `earned` is None if it is undecided or adjusted. A
+    criterion without points has 1 if it passed, so that it has a share and a discrimination as well. `marked` are the
+    positions of manual marks. `final` is a final mark, which replaces the grade. `decided` are the points of the
+    maximum that are decided, `bonus` is the extra credit in the score. `undecided` are the automatic points that need
+    grading, of `automatic`, and `reasons` why, with their points.
+    """
+
+    id: int
+    key: str
+    score: int
+    out_of: int
+    pending: int
+    final: int | None
+    statuses: list[str]
+    earned: list[int | None]
+    marked: tuple[int, ...] = ()
+    decided: int = 0
+    undecided: int = 0
+    automatic: int = 0
+    bonus: int = 0
+    reasons: Counter[str] = field(default_factory=Counter)
+    failures: list[Failure] = field(default_factory=list)
+
+    @property
+    def counts(self) -> bool:
+        """Return whether there is a grade: a final mark, or decided points, and not most automatic ones undecided."""
+        return self.final is not None or (self.decided > 0 and 2 * self.undecided <= self.automatic)
+
+    def grade(self, most: int) -> int:
+        """Return the final mark, else the share of the decided points times the maximum, with extra credit."""
+        share = round((self.score - self.bonus) * most / self.decided) if self.decided else 0
+        return self.final if self.final is not None else share + self.bonus
+
+
+def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
+    """Yield the students whose newest submission was graded with a rubric, without those who are excused."""
+    marks = manual_units(book)
+    full: list[int | None] = [full_units(row) for row in rubric.criteria]
+    automatic = sum(units_of(row.maximum) for row in rubric.criteria if _is_automatic(row))
+    bonus = [row.position for row in rubric.criteria if row.bonus and row.points]
+    adjusted = [row.position for row in rubric.criteria if row.adjustment is not None]
+    for number, key, result, score, out_of, pending, final in list(book.rows(_GRADED, rubric.sha256)):
+        statuses = ["passed"] * len(full)
+        student = GradedStudent(
+            number, key, score, out_of, pending, final, statuses, full[:], decided=out_of, automatic=automatic
+        )
+        for position, outcome in book.outcomes(result).items():
+            _add_outcome(student, rubric.criteria[position], outcome, marks[number])
+        for row in rubric.criteria if marks[number] else ():
+            if row.id in marks[number] and row.adjustment is None:
+                student.marked += (row.position,)
+                student.earned[row.position] = marks[number][row.id]
+        student.bonus = sum(student.earned[position] or 0 for position in bonus)
+        for position in adjusted:
+            student.earned[position] = None
+        yield student
+
+
+def manual_units(book: Gradebook) -> defaultdict[int, dict[str, int]]:
+    """Return the manual marks of each student by criterion, in ten-thousandths of a point."""
+    marks: defaultdict[int, dict[str, int]] = defaultdict(dict)
+    for student, criterion, units in book.rows(_MARKS):
+        marks[student][criterion] = units
+    return marks
+
+
+def full_units(criterion: Criterion) -> int:
+    """Return what a criterion is worth in `earned`."""
+    return units_of(criterion.points) or 1
+
+
+def _add_outcome(
+    student: GradedStudent, criterion: Criterion, outcome: StoredOutcome, marks: Mapping[str, int]
+) -> None:
+    mark, maximum, position = marks.get(criterion.id), units_of(criterion.maximum), criterion.position
+    student.statuses[position], student.earned[position] = outcome.status, outcome.points
+    if outcome.status == "settled":
+        student.earned[position] = full_units(criterion)
+    elif outcome.status == "failed" and not criterion.bonus and mark != units_of(criterion.points):
+        student.failures.append(Failure.of(outcome))
+    elif outcome.status == "ungraded" and _is_automatic(criterion):
+        student.automatic -= maximum
+    elif outcome.status == "pending" and mark is None:
+        student.decided -= maximum
+        if _is_automatic(criterion):
+            student.undecided += maximum
+            student.reasons[outcome.cause] += units_of(criterion.points)
+
+
+def _is_automatic(criterion: Criterion) -> bool:
+    return criterion.check.function not in MANUAL_CHECKS
