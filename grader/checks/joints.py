@@ -1,4 +1,4 @@
-"""Checks of the joint that moves a link, which is the last joint above it that is not fixed: limits, axis, mimic, dynamics."""
+"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis, mimic, dynamics."""
 
 from math import degrees, hypot, isfinite
 
@@ -230,7 +230,7 @@ def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[
 
 
 def _check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
-    """Raise NotDecided or MissingElement where an element of a joint, or whether it has one, is not known because of xacro."""
+    """Raise NotDecided or MissingElement where xacro leaves open an element of a joint, or whether it has one."""
     part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
     if part is not None:
         part.check()

@@ -1,4 +1,4 @@
-"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one budget of time."""
+"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one time limit."""
 
 import os
 import re
@@ -108,7 +108,7 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def pictures(self, file: File) -> list[tuple[int, bytes]]:
-        """Return the pictures in a Word or PDF file, each with the number of its position in the text. Raises InputError."""
+        """Return the pictures in a Word or PDF file, each with its position in the text. Raises InputError."""
         return list(embedded_pictures.unpacked(self._convert(file, embedded_pictures)))
 
     def _convert(self, file: File, script: ModuleType = converter) -> bytes:

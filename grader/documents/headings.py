@@ -1,4 +1,4 @@
-"""The headings of a document: lines that name a task, a step or a question, and where the passage below each of them ends."""
+"""The headings of a document: lines that name a task, a step or a question, and where the passage below each ends."""
 
 import re
 from bisect import bisect_right
@@ -139,7 +139,7 @@ def _label(words: list[str]) -> Label:
 
 
 def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
-    """Return the pattern that a line or name begins with, in any order of its words, and the number after or between them."""
+    """Return the pattern that a line or name begins with, words in any order, and the number after or between."""
     words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
     tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
     for pattern in patterns:
@@ -163,7 +163,7 @@ def _are_alike(words: list[str], wanted: list[str]) -> bool:
 
 
 def _question_words(text: str) -> list[str]:
-    """Return the words of a heading from those on that may name a question: "2. Task 1 - Answer to Q3" begins with "question"."""
+    """Return the words of a heading from the question on: "2. Task 1 - Answer to Q3" begins with "question"."""
     tokens = WORDS.findall(text.lower())
     while tokens:
         has_number = len(tokens) > 1 and tokens[1].isdecimal()
