@@ -33,9 +33,9 @@ _OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
 # below.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
 _NO_PACKAGES = frozenset(
-    {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test", "tests",
-     "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build", "benchmark",
-     "benchmarks", "exercise", "exercises", "htmlcov", "tasks"}
+    {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
+     "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
+     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks"}
 )  # fmt: skip
 _SET_PACKAGES = rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"
 _MAX_GUESSES = 10

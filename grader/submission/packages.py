@@ -16,8 +16,8 @@ _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+")
 _WORDS = frozenset(
     {
-        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived", "previous", "prev",
-        "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
+        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived",
+        "previous", "prev", "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
     }
 )  # fmt: skip
 

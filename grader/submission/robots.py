@@ -28,10 +28,10 @@ _LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read firs
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
     {
-        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc", ".docx",
-        ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi", ".zip", ".tar",
-        ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend", ".pyc", ".so", ".a",
-        ".o", ".exe", ".dll", ".bin", ".db", ".db3",
+        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc",
+        ".docx", ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi",
+        ".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend",
+        ".pyc", ".so", ".a", ".o", ".exe", ".dll", ".bin", ".db", ".db3",
     }
 )  # fmt: skip
 
