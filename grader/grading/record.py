@@ -37,13 +37,13 @@ def to_record(report: Report, template: Template | None = None) -> str:
     data = {
         "version": report.version,
         "submission": [
-            submission.id, submission.path, submission.sha256, submission.package,
-            submission.other_candidates, submission.ignored, submission.has_urdf, submission.verdict, submission.is_single,
-            submission.unread, submission.lacks,
+            submission.id, submission.path, submission.sha256, submission.package, submission.other_candidates,
+            submission.ignored, submission.has_urdf, submission.verdict, submission.is_single, submission.unread,
+            submission.lacks,
         ],
         "parts": report.parts,
         "results": [_result(same, result) for result in report.results],
-        "problems": [(problem.code, problem.severity, problem.message, problem.location) for problem in report.problems],
+        "problems": [(it.code, it.severity, it.message, it.location) for it in report.problems],
         "exhibits": [exhibits.files for exhibits in report.exhibits],
         "perhaps": [exhibits.perhaps for exhibits in report.exhibits],
         "evidence": [exhibits.evidence.id for exhibits in report.exhibits],
@@ -131,7 +131,7 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON cannot hold as what it can: a location or exhibit as a list, a read-only mapping as a dictionary."""
+    """Return what JSON cannot hold as what it can: a location or exhibit as a list, a read-only mapping as a dict."""
     if isinstance(value, Location):
         place = (value.path, value.line, value.column)
         return (*place, value.calls) if value.calls else place

@@ -1,4 +1,4 @@
-"""Mutants of a package: a file deleted or renamed, and mistakes in package.xml, setup.py, launch files and RViz files."""
+"""Mutants of a package: a file deleted or renamed, mistakes in package.xml, setup.py, launch files and RViz files."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator

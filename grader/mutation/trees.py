@@ -1,4 +1,4 @@
-"""The element tree of a URDF, for rewriting a robot: its poses, frames and joints, and its text, written in many ways that mean the same."""
+"""The element tree of a URDF, to rewrite a robot: poses, frames and joints, and its text in ways that mean the same."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence

@@ -23,7 +23,7 @@ _USE = re.compile(r"\bglob\.glob\b")
 
 
 class Token(NamedTuple):
-    """A token: string, name (also a number), op, or the literal text between the quotes of a string; with its offsets."""
+    """A token: string, name (also a number), op, or the literal text between the quotes of a string; its offsets."""
 
     kind: str
     text: str
@@ -32,7 +32,7 @@ class Token(NamedTuple):
 
 
 class PythonFile:
-    """A Python file; offsets are those of the text as it is in the file, which may have other line breaks than Python sees."""
+    """A Python file; offsets are in the text as the file has it, which may have other line breaks than Python sees."""
 
     def __init__(self, source: Source) -> None:
         self.source = source

@@ -25,7 +25,7 @@ Include = Callable[[str, Context], str]
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """A visitor of actions that adds its findings. `when` is whether an action is executed: True, False or None for unknown."""
+    """A visitor of actions that adds its findings. `when` is whether an action is executed, None if this is unknown."""
 
     findings: Findings
     include: Include

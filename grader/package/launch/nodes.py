@@ -19,7 +19,9 @@ _NODE_ARGUMENTS = frozenset(
 _RVIZ = "rviz2"
 # The errors where robot_description is given a call whose last method is missing.
 _UNFINISHED = {
-    "xacro.process_file": "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)",
+    "xacro.process_file": (
+        "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)"
+    ),
     "builtins.open": "robot_description is given an open file, not its contents: add .read() to open(...)",
 }
 # The launch files of the ROS 2 package urdf_launch; what they start is known.
