@@ -1,4 +1,4 @@
-"""The kinds of problems that a URDF can have, with what ROS 2 does about them. `docs/problems.md` is generated from it."""
+"""The kinds of problems that a URDF can have, and what ROS 2 does about them. Source of `docs/problems.md`."""
 
 from grader.problems import drops, kinds_in, notes, rejects, warns
 from grader.xml import catalogue as xml_catalogue

@@ -53,7 +53,7 @@ class Problems:
         return LazyLocation(self.source, self._indices[element])
 
     def parts(self, element: Element) -> UnresolvedParts:
-        """Return what xacro left unresolved of a link, joint or material, by the tag of its child; "@name" for its own attribute."""
+        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for an attribute."""
         if not self.unresolved:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}

@@ -1,4 +1,4 @@
-"""Joints as urdfdom reads them (`joint.cpp`), where every defect rejects the whole file, and the names that they refer to."""
+"""Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the names they refer to."""
 
 from itertools import islice
 
@@ -172,7 +172,8 @@ def check_references(robot: Robot, problems: Problems) -> None:
             if name and not robot.has_link(name):
                 guess = problems.did_you_mean(name, links)
                 guess = guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
-                message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist; ROS 2 rejects the file{guess}"
+                message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
+                message += f"; ROS 2 rejects the file{guess}"
                 problems.add(catalogue.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
         if joint.mimic is not None and not robot.has_joint(joint.mimic.joint):
             guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])

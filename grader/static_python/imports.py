@@ -27,7 +27,9 @@ _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
         "OpaqueFunction", "RegisterEventHandler", "SetEnvironmentVariable", "SetLaunchConfiguration", "TimerAction",
         "EmitEvent",
     ),
-    "launch.conditions": ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"),
+    "launch.conditions": (
+        "IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals",
+    ),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnShutdown", "OnExecutionComplete"),
     "launch.launch_description_sources": (
         "PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource",
@@ -37,7 +39,9 @@ _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
         "PythonExpression", "TextSubstitution", "ThisLaunchFileDir",
     ),
     "launch_ros": (),
-    "launch_ros.actions": ("Node", "LifecycleNode", "ComposableNodeContainer", "PushRosNamespace", "SetParameter", "SetRemap"),
+    "launch_ros.actions": (
+        "Node", "LifecycleNode", "ComposableNodeContainer", "PushRosNamespace", "SetParameter", "SetRemap",
+    ),
     "launch_ros.descriptions": ("ComposableNode", "ParameterValue", "ParameterFile"),
     "launch_ros.parameter_descriptions": ("ParameterValue", "ParameterFile"),
     "launch_ros.substitutions": ("FindPackageShare", "FindPackagePrefix", "FindPackage", "ExecutableInPackage"),

@@ -94,7 +94,7 @@ def parts_of(robots: tuple[RobotFile, ...]) -> frozenset[str]:
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if its first element is another."""
+    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another element is first."""
     if not file.size:
         return None
     for count in (START, _LONG_START):

@@ -1,4 +1,4 @@
-"""The folders of several students in one repository, told from the parts and versions of one student's submission by their names."""
+"""The folders of several students in one repository, told by name from parts and versions of one student's work."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -97,7 +97,7 @@ def students_in(
 def students_beside(
     folder: str, folders: Collection[str], packages: Mapping[str, str], lab: Collection[str], wanted: str
 ) -> tuple[str, tuple[str, ...]]:
-    """Return the folder of the student whose work is in a folder, and those beside it that may be other students'; none if none are.
+    """Return the folder of the student whose work is in a folder, and those beside it that may be others'; or none.
 
     `folders` are all of the submission; the other arguments are those of `students_in`.
     """
@@ -122,7 +122,7 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
 
 
 def person_in(name: str, lab: Collection[str] = ()) -> str:
-    """Return whose a folder is, by its name; empty if that names a part or a version of a submission. `lab` are words to ignore."""
+    """Return whose a folder is, by its name; empty for a part or version of a submission. `lab` are words to ignore."""
     words = _words(name)
     if _is_numbered(words):
         return "".join(words)
@@ -144,7 +144,7 @@ def _words(name: str) -> list[str]:
 
 
 def _owners(folder: str, packages: Mapping[str, str], lab: Collection[str], wanted: str) -> Iterator[tuple[str, str]]:
-    """Yield who a folder is of, as its path tells, with the folder that tells it: that of a package tells nothing but its name."""
+    """Yield whose a folder is, with the folder on its path that tells it: a package's only if it is renamed."""
     for path in accumulate(folder.split("/") if folder else (), "{}/{}".format):
         name = path.rpartition("/")[2]
         package = packages.get(path)

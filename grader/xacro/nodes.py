@@ -86,7 +86,7 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 
 
 def _decoded(data: bytes, budget: Budget) -> str:
-    """Return the text of a file, which xacro reads as UTF-8 whatever its declaration says; its tags and attributes are charged."""
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge its tags."""
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(_OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data))
     try:

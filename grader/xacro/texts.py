@@ -33,7 +33,7 @@ INSTALLED = "/install"  # where the packages are for $(find package): in a folde
 
 
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file; None if unknown."""
+    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class Texts:
         own: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`own` are functions that need the document, such as load_yaml; `is_own` says whether a package was submitted."""
+        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
         self.arguments = arguments
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
@@ -105,7 +105,7 @@ class Texts:
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
-        """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
+        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a similar one takes long."""
         known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)

@@ -1,4 +1,4 @@
-"""The kinds of problems that the XML of a URDF can have, with what ROS 2 does about them. `docs/problems.md` is generated from it."""
+"""The kinds of problems that a URDF's XML can have, and what ROS 2 does about them. Source of `docs/problems.md`."""
 
 from grader.problems import Kind, notes, rejects, warns
 

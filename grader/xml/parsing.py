@@ -33,7 +33,7 @@ _PLAIN_START = re.compile(
 
 
 class Unresolved(NamedTuple):
-    """What was not expanded of an element, with the reason why it cannot be determined; empty where xacro refuses it."""
+    """What was not expanded of an element, with why it cannot be determined; empty where xacro refuses it."""
 
     attributes: Mapping[str, str]  # those that are left as they are written
     content: str | None = None  # why there may be more attributes and children; None if there are no more

@@ -1,4 +1,4 @@
-"""Edits after which a broken XML text can be read: a search over few operations near the place where the parser stops."""
+"""Edits that make a broken XML text readable: a search over few operations near the place where the parser stops."""
 
 import re
 from collections.abc import Iterator
@@ -69,7 +69,7 @@ Operation = tuple[str, *tuple[Change, ...]]
 
 
 class Way(NamedTuple):
-    """What is wrong, the changes of a text that correct it, each from an offset to another one, and the text after them."""
+    """What is wrong, the changes of a text that correct it, each from offset to offset, and the text after them."""
 
     name: str
     changes: list[Change]
@@ -77,7 +77,7 @@ class Way(NamedTuple):
 
 
 def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
-    """Yield edits after which a text can be read, the most plausible first; nothing where none brings the parser further."""
+    """Yield edits that make a text readable, the most plausible first; none where none brings the parser further."""
     search = _SyntaxSearch(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))
     if first:
@@ -127,7 +127,7 @@ class _SyntaxSearch:
     def _ranked(
         self, text: str, stop: PieceScan, operations: Iterator[Operation]
     ) -> Iterator[tuple[tuple[int, int], Way]]:
-        """Yield the ways that bring the parser further, each with how far it is from the end, and the faults for urdfdom."""
+        """Yield the ways that bring the parser further, with their distance to the end and the faults for urdfdom."""
         for name, *changes in islice(operations, _MAX_TRIES):
             after = text
             for start, end, new in reversed(changes):
@@ -205,7 +205,7 @@ class _Operations:
         return f"{piece.form} {form}", (piece.start, piece.end, new)
 
     def _tags(self) -> Iterator[Operation]:
-        """Yield what may be wrong with the tags that are open at an error, with the tag there, or with those before it."""
+        """Yield what may be wrong with the tags that are open at an error, the tag there, or those before it."""
         wrong, tags = self.wrong, self.tags
         for top in self.open[:1]:
             yield self._tag(top, "empty")
@@ -230,7 +230,7 @@ class _Operations:
             yield "open", (wrong.start, wrong.start, f"<robot>{self.line}")
 
     def _closings(self) -> Iterator[Change]:
-        """Yield the closing of tags before the first tags that may not be in them, and of those in the one that is closed."""
+        """Yield the closing of tags before the first tags that may not be in them, and of those in the closed one."""
         places: dict[int, list[TextPiece]] = {}
         names = [piece.name for piece in self.open]
         inner = self.open[: names.index(self.wrong.name) if self.wrong.name in names else None]

@@ -1,4 +1,4 @@
-"""What can be read of a text that TinyXML2 refuses: every element but the broken ones as it stands, and what was assumed."""
+"""What can be read of a text that TinyXML2 refuses: every element but the broken ones as is, and the assumptions."""
 
 import re
 from typing import Literal, NamedTuple

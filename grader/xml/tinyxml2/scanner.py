@@ -1,4 +1,4 @@
-"""A text read by TinyXML2's rules (`tinyxml2.cpp`: Identify, ParseDeep): its first <robot> as XML, or why there is none."""
+"""A text read by TinyXML2's rules (`tinyxml2.cpp`: Identify, ParseDeep): its first <robot> as XML, or why none."""
 
 import re
 from functools import cached_property
