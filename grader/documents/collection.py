@@ -27,8 +27,10 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and
 # answers.
 _OTHER = re.compile(
-    r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
-    r"|grader \d\S*, \S+: "
+    r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
+    r"|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )"  # "# 24.5 / 30 points: lab6", the report in Markdown
+    r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
+    r"|grader \d\S*, \S+: "  # "grader 1.0, lab6: my_robot.urdf", the report as text
 )
 
 

@@ -26,6 +26,7 @@ _ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
 _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
 _ANSWERS = frozenset({"answer", "answers"})
 _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
+# "Task 1", "t_1"; "Step 15", "Steps 3, 4 & 5", "Step 1-2".
 _TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
 # What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.

@@ -8,7 +8,15 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-_TOKEN = re.compile(r"""<!--.*?-->|<[?!][^>]*>|</[^>]*>|<([^\s/>]+)(?:"[^"]*"|'[^']*'|[^>"'])*>""", re.DOTALL)
+_TOKEN = re.compile(
+    r"""
+      <!--.*?-->
+    | <[?!][^>]*>                                # <?xml version="1.0"?>, <!DOCTYPE robot>
+    | </[^>]*>
+    | <([^\s/>]+)(?:"[^"]*"|'[^']*'|[^>"'])*>    # <link name="a>b">, <origin xyz='0 0 1'/>
+    """,
+    re.DOTALL | re.VERBOSE,
+)
 _ATTRIBUTE = re.compile(r"""\s([^\s="'<>/]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _NAMED_BY = ("name", "reference")
 

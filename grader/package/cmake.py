@@ -12,7 +12,17 @@ from dataclasses import dataclass, field
 from grader.errors import InputError
 from grader.files.tree import Tree
 
-_TOKEN = re.compile(r'#\[(=*)\[.*?(?:\]\1\]|\Z)|#[^\n]*|"((?:\\.|[^"\\])*)"|([()])|((?:\\.|[^\s()"#])+)', re.DOTALL)
+# The syntax of cmake-language(7).
+_TOKEN = re.compile(
+    r"""
+      \#\[(=*)\[.*?(?:\]\1\]|\Z)    # a comment of several lines: #[[ ... ]], #[=[ ... ]=]
+    | \#[^\n]*
+    | "((?:\\.|[^"\\])*)"           # "my \"robot\".urdf"
+    | ([()])
+    | ((?:\\.|[^\s()"\#])+)         # install, share/${PROJECT_NAME}
+    """,
+    re.DOTALL | re.VERBOSE,
+)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _SOURCE = "${CMAKE_CURRENT_SOURCE_DIR}/"
 _MAX_SIZE = 128 * 1024  # bytes

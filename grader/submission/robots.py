@@ -15,7 +15,16 @@ _MAX_ROBOTS = 400  # found by their content alone
 # What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always
 # linear.
 _PROLOG = re.compile(
-    rb"(?:\xef\xbb\xbf)?(?>\s+|<\?[^>]*>|<!--.*?-->|<!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>)*+", re.DOTALL | re.IGNORECASE
+    rb"""
+    (?:\xef\xbb\xbf)?                             # the byte-order mark that Windows editors write
+    (?>
+        \s+
+      | <\?[^>]*>                                 # <?xml version="1.0"?>, <?xml version="1.0">
+      | <!--.*?-->
+      | <!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>         # <!DOCTYPE robot>, <!DOCTYPE robot [ ... ]>
+    )*+
+    """,
+    re.DOTALL | re.IGNORECASE | re.VERBOSE,
 )
 _ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")

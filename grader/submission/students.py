@@ -9,7 +9,10 @@ from grader.submission.labs import without_archive
 
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
-_DATE = re.compile(r"(?<!\d)(?:(?:19|20)\d\d[-_.]?[01]\d[-_.]?[0-3]\d|[0-3]?\d[-_.][01]?\d[-_.](?:20)?\d\d)(?!\d)")
+_DATE = re.compile(
+    r"(?<!\d)(?:(?:19|20)\d\d[-_.]?[01]\d[-_.]?[0-3]\d"  # 2025-03-14, 20250314
+    r"|[0-3]?\d[-_.][01]?\d[-_.](?:20)?\d\d)(?!\d)"  # 14.3.2025, 14_03_25
+)
 _MIN_NUMBER = 4  # digits of a number that is part of a login, and not of a version
 _MIN_ID = 7  # digits of a name that is a number only, such as that of a student at the university
 

@@ -15,7 +15,12 @@ _COMPARED = 256  # names of attributes that lxml compares for one part: each wit
 
 # xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
 _DECLARATION = re.compile(
-    r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
+    r"""
+    ^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1
+    (?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*        # encoding="latin-1", standalone='yes'
+    \s*\?>
+    """,
+    re.VERBOSE,
 )
 MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")

@@ -22,8 +22,15 @@ from grader.xacro.scopes import (
     literal,
 )
 
+# The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
 PIECE = re.compile(
-    r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
+    r"""
+      (?P<escape>\$\$+[{(])               # $${, $$(: not evaluated
+    | \$\{(?P<expression>[^}]*)\}
+    | \$\((?P<substitution>[^)]*)\)       # $(find my_robot), $(arg side)
+    | (?P<text>[^$]+|\$[^{($]+|\$\Z)      # wheel, $5, and a $ at the end
+    """,
+    re.VERBOSE,
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")

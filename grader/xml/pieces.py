@@ -13,7 +13,8 @@ _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
 _VALUE = r"""\s+[\w:.\-]+\s*=\s*(?:"[^"<>]*"|'[^'<>]*')\s*"""
-_LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")  # a tag without its <
+# A tag without its <: link name="base"> and /link>.
+_LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")
 
 
 class TextPiece(NamedTuple):

@@ -16,6 +16,7 @@ from grader.package.package import SETUP
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
+# What is before the name of a package: get_package_share_directory(', FindPackageShare(", $(find-pkg-share and a space.
 _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at

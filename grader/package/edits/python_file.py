@@ -10,10 +10,17 @@ from grader.source import Edit, Source
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.parse import Code, SyntaxFault, parse
 
+# Not `tokenize`: it stops at the mistakes that are searched for here.
 _TOKEN = re.compile(
-    r'''(?P<comment>\#[^\n]*)
-    |(?P<string>[rRbBfFuU]{0,2}(?:"""(?:\\.|[^\\])*?"""|\'\'\'(?:\\.|[^\\])*?\'\'\'|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))
-    |(?P<name>\w+)|(?P<op>[^\s\w])''',
+    r"""
+      (?P<comment>\#[^\n]*)
+    | (?P<string>[rRbBfFuU]{0,2}(?:
+          "{3}(?:\\.|[^\\])*?"{3} | '{3}(?:\\.|[^\\])*?'{3}    # over several lines
+        | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'            # "launch", r'\d', f'{name}.urdf'
+      ))
+    | (?P<name>\w+)                                            # setup, 0
+    | (?P<op>[^\s\w])                                          # also a quote that is not closed
+    """,
     re.DOTALL | re.VERBOSE,
 )
 _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
