@@ -179,6 +179,7 @@ def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status,
     """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a slash before them."""
     node = model.node.get("TF Prefix")
     own = node.text or "" if node is not None else ""
+    # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash, robot_state_publisher none.
     found, prefixes = f"{own}/" if own else "", _frames(opened, "")
     if found in prefixes:
         return "passed", ""

@@ -97,7 +97,7 @@ def _read_axis(element: Element, axis: Element | None, kind: str, problems: Prob
     if unit(direction) is None:
         message = "this axis has length 0; ROS 2 loads it, but every pose below this joint is undefined"
         problems.add(catalogue.ZERO_AXIS, message, axis, "xyz")
-    elif abs(sum(component * component for component in direction) - 1.0) > 0.02:
+    elif abs(sum(component * component for component in direction) - 1.0) > 0.02:  # 0.71 0.71 0 is rounded only
         message = "only the direction of an axis counts: ROS 2 normalizes it"
         problems.add(catalogue.SCALED_AXIS, message, axis, "xyz")
     return direction
@@ -122,6 +122,7 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
 
 def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -> None:
     for attribute, angle in ends.items():
+        # Degrees are round numbers: 10 and 15 are also taken for degrees, 31.4 (five turns in radians) is not.
         if FULL_TURN < abs(angle) <= _MAX_DEGREES and angle % 5 == 0:
             message = f"{attribute} is in radians, and {angle:g} is more than a full turn: is it in degrees?"
             problems.add(catalogue.LIMIT_IN_DEGREES, message, limit, attribute)
