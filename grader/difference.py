@@ -66,7 +66,8 @@ def steps(own: Node, like: Node) -> list[Step]:
             else []
         )
         if alike:
-            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]  # type: ignore[arg-type]
+            assert step.like is not None
+            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]
             spare = [node for node in spare if node is not alike[0]]
         else:
             left.append(step)

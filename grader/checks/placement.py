@@ -86,7 +86,7 @@ def centre_at(
     axis: Direction = _UP,
     angle: NonNegative = _ANY_AXIS,
 ) -> Outcome:
-    """A link's visual is centred on a point (metres) in another link's frame; if rigid, only fixed joints are between.
+    """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed joints are between.
 
     Args:
         link: The link that is examined.

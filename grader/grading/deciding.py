@@ -131,7 +131,8 @@ class _Grading:
             return Result(criterion, pending(f"{reason}; needs manual grading", cause))
         except (KeyboardInterrupt, OutOfTime):
             raise
-        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
+        # A faulty check, even one that exits, affects only its own criterion.
+        except BaseException as error:  # noqa: BLE001
             from traceback import format_exc  # needed only for a fault of the grader
 
             return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())

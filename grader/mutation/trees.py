@@ -21,7 +21,7 @@ _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree, without comments; meshes that xacro has found by $(find package) are those of package://."""
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones."""
     copy = etree.fromstring(etree.tostring(root, with_tail=False))
     for element in list(copy.iter(etree.Comment, etree.ProcessingInstruction)):
         above = element.getparent()

@@ -65,7 +65,8 @@ class Expander:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
         self.budget = budget
-        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108  texts is set below
+        # `texts` is set below, so that the lambda is needed.
+        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []

@@ -51,8 +51,8 @@ _WAYS = {
     "backslash": ("a backslash in a tag", "replace the backslash with /"),
     "comma": ("a comma between attributes", "separate the attributes with spaces"),
 }
-# What is replaced by what in a malformed tag: <- base --> for "comment", <link name=base> and <link name="base> for '"',
-# <link name: "base"> for "=".
+# What is replaced by what in a malformed tag: <- base --> for "comment", <link name=base> and <link name="base> for the
+# double quote, <link name: "base"> for "=".
 _IN_TAG = {
     "comment": (r"\A<[!\-\u2013\u2014\s]+(.*?)[!\-\u2013\u2014\s]*>?\Z", r"<!-- \1 -->"),
     "version": (r"\A<[\s?]*xml\b.*", _XML),
