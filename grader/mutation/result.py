@@ -139,7 +139,7 @@ class MutantResults(NamedTuple):
 
 
 class EquivalentResults(NamedTuple):
-    """How many rewritings of the reference were graded, by family, those that lose points, and why one was not used."""
+    """Rewritings of the reference: how many were graded, by family, which lose points, and why a family is unused."""
 
     tried: Mapping[str, int]
     unused: Mapping[str, str]
