@@ -31,7 +31,7 @@ class Node(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step from a tree to another: what happens to `own`, a node of the first tree, as in `like`, a node of the other one.
+    """One step from a tree to another: what happens to `own`, a node of the first tree, as in `like` of the other one.
 
     set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`. retag: the node gets the
     tag of `like`. add: `like` is added to `own`. remove: `own` goes. move: `own` becomes a child of `parent`.
@@ -46,7 +46,7 @@ class Step(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Two lists of nodes: those that belong together, those of the first one alone, and those of the second one alone."""
+    """Two lists of nodes: those that belong together, those of the first alone, and those of the second alone."""
 
     both: list[tuple[Node, Node]]
     extra: list[Node]
@@ -54,7 +54,7 @@ class Pairs(NamedTuple):
 
 
 def steps(own: Node, like: Node) -> list[Step]:
-    """Return the steps from a tree to another one: what is to move, the values, then what is to be added and removed."""
+    """Return the steps from a tree to another: what is to move, the values, then what is to be added and removed."""
     found = [*_steps(own, like)]
     spare = [step.own for step in found if step.verb == "remove"]
     moved: list[Step] = []
@@ -66,7 +66,8 @@ def steps(own: Node, like: Node) -> list[Step]:
             else []
         )
         if alike:
-            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]  # type: ignore[arg-type]
+            assert step.like is not None
+            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]
             spare = [node for node in spare if node is not alike[0]]
         else:
             left.append(step)
@@ -101,7 +102,7 @@ def _values(own: Node, like: Node) -> Iterator[Step]:
 
 
 def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
-    """Pair nodes: by tag and all keys, then each of them, then by tag and likeness, then those whose tags differ by little."""
+    """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar tags."""
     extra, missing = [*own], [*like]
     both: list[tuple[Node, Node]] = []
     depth = max((len(node.keys) for node in (*own, *like)), default=0)

@@ -13,7 +13,7 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll of ..."), and what to do ("negate ...").
+    """An edit that may undo a mistake: what is wrong ("the sign of the roll of ..."), and what to do ("negate ...").
 
     `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
     counts the ways to make the same change in xacro, the most plausible first.
@@ -127,7 +127,7 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
 
 
 def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> tuple[Edit, ...]:
-    """Return the edits of a text that do what `first` does, and then `second`, whose places are in the text after `first`.
+    """Return the edits of a text that do what `first` does, and then `second`, whose places are those after `first`.
 
     An edit that touches an earlier one becomes one edit with it.
     """

@@ -85,7 +85,7 @@ def indented(xml: str, indent: str, newline: str) -> str:
 
 
 def child_indentation(text: str, start: int) -> str:
-    """Return the indentation of the children of the element at an offset: that of its first child, else one step more."""
+    """Return the indentation of the children of the element at an offset: its first child's, else one step more."""
     own = indentation(text, start)
     end, is_empty = head_end(text, start)
     token = None if is_empty else _TOKEN.search(text, end)

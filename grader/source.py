@@ -128,7 +128,7 @@ class Source:
         return [tag]
 
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro of xacro that an edit is in, each with the macro's name; nothing outside of macros."""
+        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
         del edit
         return ()
 
@@ -138,7 +138,7 @@ class Source:
         return xml
 
     def corrections(self, names: Sequence[str] = (), numbers: Sequence[str] = ()) -> list[Correction]:
-        """Return the edits that may correct what xacro refuses; `names` and `numbers` are those that a reference has."""
+        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
         del names, numbers
         return []
 

@@ -23,7 +23,7 @@ _SEE_BELOW = "the reference does not pass it (see below)"
 
 
 class RubricDraft(NamedTuple):
-    """A rubric that its reference passes, as bytes and as it is loaded; what it omits, and what looks odd in the reference."""
+    """A rubric that its reference passes, as bytes and loaded; what it omits, and what looks odd in the reference."""
 
     data: bytes
     rubric: Rubric
@@ -32,7 +32,7 @@ class RubricDraft(NamedTuple):
 
 
 def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
-    """Return a rubric for a file at `path`, with a criterion for each fact of the reference that a check can test. Raises InputError."""
+    """Return a rubric for a file at `path` with a criterion for each fact that a check can test. Raises InputError."""
     found = _measured(solution)
     if len(found) > MAX_FACTS:
         raise InputError(
@@ -65,7 +65,7 @@ def _instead(fact: Fact) -> list[Fact]:
 
 
 def _lost(rubric: Rubric) -> dict[str, Outcome]:
-    """Return the criteria that the reference does not pass, with what they found; one that is skipped with that of its cause."""
+    """Return what the reference does not pass, with the outcome; for a skipped criterion, that of its cause."""
     assert rubric.solution is not None
     results = {it.criterion.id: it for it in grade(rubric, rubric.solution.submission).results}
     lost = {name: it for name, it in results.items() if it.outcome.status != "passed"}
@@ -100,7 +100,7 @@ def _measured_by(name: str, solution: Solution) -> Iterator[Fact | Omission]:
 
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
-    """Return the facts that a rubric can hold: with arguments that the check takes, and each check with its arguments once."""
+    """Return the facts that a rubric can hold: with arguments that the check takes, and without duplicates."""
     different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
     return list(different.values())
 

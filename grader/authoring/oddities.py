@@ -85,7 +85,7 @@ def _of_joint(joint: Joint) -> Iterator[str]:
 
 
 def _mirrored_wheels(solution: Solution) -> Iterator[str]:
-    """Yield pairs of equal wheels on one link whose axes are opposite: then one of them turns backward to drive forward."""
+    """Yield pairs of equal wheels on one link with opposite axes: one of them turns backward to drive forward."""
     wheels: list[tuple[Joint, Mapping[str, float], Vector]] = []
     for joint in solution.moving_joints:
         size = _wheel(solution, joint) if joint.type == "continuous" else None
@@ -95,7 +95,10 @@ def _mirrored_wheels(solution: Solution) -> Iterator[str]:
                 wheels.append((joint, size, pose.rotate(solution.robot.axis(joint))))
     for (one, size, axis), (other, other_size, other_axis) in combinations(wheels, 2):
         if one.parent == other.parent and size == other_size and dot(axis, other_axis) < _OPPOSITE:
-            yield f"{one.child} and {other.child} are equal wheels with opposite axes: positive velocities of both turn the robot on the spot"
+            yield (
+                f"{one.child} and {other.child} are equal wheels with opposite axes: "
+                "positive velocities of both turn the robot on the spot"
+            )
 
 
 def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:
@@ -105,7 +108,7 @@ def _wheel(solution: Solution, joint: Joint) -> Mapping[str, float] | None:
 
 
 class Doubts:
-    """Facts of which parts of the reference contradict each other: of each check the first few, and the names of the others."""
+    """Facts of the reference that it does not pass: of each check the first few, and the names of the others."""
 
     def __init__(self) -> None:
         self._by_check: dict[str, list[tuple[Fact, Outcome]]] = {}

@@ -1,4 +1,4 @@
-"""The text of a new rubric, in TOML as a person would write it: its keys, the tolerances as defaults, and a criterion for each fact."""
+"""The text of a new rubric, in TOML as a person writes it: its keys, default tolerances, a criterion for each fact."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""What a check declares about itself, for those who make hints, rubrics, mutants and pictures without knowing its name."""
+"""What a check declares about itself, so that hints, rubrics, mutants and pictures need not know its name."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass

@@ -94,7 +94,9 @@ def collides_as(
     shapes += [Sphere(sphere)] if sphere is not None else []
     if len(shapes) != 1:
         raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
-    what = f"{_sized(shapes[0])}{f' at {point(xyz)} m' if xyz else ''}{f' with rpy {point(rpy)}' if any(rpy or ()) else ''}"
+    what = _sized(shapes[0])
+    what += f" at {point(xyz)} m" if xyz else ""
+    what += f" with rpy {point(rpy)}" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
     T_link_wanted = placed_by(robot.pose(relative_to or link, relative_to=link), Origin(xyz or _ZERO, rpy or _ZERO))
 
@@ -132,7 +134,7 @@ def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, .
 
 
 def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: float) -> dict[int, int]:
-    """Return the visual that each collision shape is, by their indices: as many pairs as possible (Kuhn's algorithm)."""
+    """Return the visual of each collision shape, by their indices: as many pairs as possible (Kuhn's algorithm)."""
     alike = [[index for index, other in enumerate(solid) if _is_like(visual, other, tolerance)] for visual in shown]
     partners: dict[int, int] = {}
 

@@ -70,7 +70,7 @@ def number_text(value: float, digits: int = 9) -> str:
 
 
 def check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
-    """Raise NotDecided or MissingElement where an element of a joint, or whether it has one, is not known because of xacro."""
+    """Raise NotDecided or MissingElement where xacro leaves open an element of a joint, or whether it has one."""
     part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
     if part is not None:
         part.check()

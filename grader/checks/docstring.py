@@ -10,7 +10,7 @@ _ARGUMENT = re.compile(r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+")
 
 
 class Documentation(NamedTuple):
-    """The paragraphs of a docstring before its first section, the first of which is a fact; the meaning of each argument."""
+    """The paragraphs of a docstring before its first section, a fact first; the meaning of each argument."""
 
     paragraphs: tuple[str, ...]
     arguments: Mapping[str, str]

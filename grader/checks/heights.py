@@ -129,7 +129,7 @@ def _measured(
 def _common_place(
     robot: Configuration, wrong: dict[str, float], lowest: dict[str, float], relative_to: str, tolerance: float
 ) -> LazyLocation | None:
-    """Return where to look if heights are off: the origin of the frame if all are off alike, else that of the first link."""
+    """Return where to look if heights are off: the origin of the frame if all are off alike, else of the first link."""
     first, value = next(iter(wrong.items()))
     alike = len(wrong) == len(lowest) > 1 and all(within(other, value, tolerance) for other in wrong.values())
     chain = robot.chain(first, above=relative_to) if alike else None

@@ -26,7 +26,8 @@ ABOUT = {
 }
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding
-_ROUNDING = 0.01  # of the largest principal moment: what rounded numbers may add to it in a thin plate, where the others are equal to it
+# Of the largest principal moment: what rounding may add to it in a thin plate, where it is the sum of the others.
+_ROUNDING = 0.01
 _CENTRE = 0.002  # metres that a centre of mass may be off
 _CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
 _OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
@@ -129,7 +130,7 @@ def _impossible(link: str, inertial: Inertial) -> Outcome | None:
 
 
 def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shape, Transform]]]:
-    """Return what shapes of a link count, in words, and each with its pose in the link; shapes without a volume do not count.
+    """Return what shapes of a link count, in words, and each that has a volume with its pose in the link.
 
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """

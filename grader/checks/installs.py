@@ -124,7 +124,8 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
         return pending(f"{message}; needs manual grading", "cannot determine statically what setup.py installs")
     if copies:
-        message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {package.share}"
+        message = f"a build installs {copies[0].source} as {copies[0].target}"
+        message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake)
     raise _not_installed(package, setup, files, kind)

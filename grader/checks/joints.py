@@ -1,4 +1,4 @@
-"""Checks of the joint that moves a link, which is the last joint above it that is not fixed: limits, axis, mimic, dynamics."""
+"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis, mimic, dynamics."""
 
 from math import degrees, hypot, isfinite
 

@@ -71,7 +71,7 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
 
 
 def why_not_found(mesh: MeshFile, submission: Submission) -> str:
-    """Return why ROS 2 does not find the file of a package after a build; empty if it does, or if no package was submitted.
+    """Return why ROS 2 does not find a package's file after a build; empty if it does, or no package was submitted.
 
     Raises NotDecided where that cannot be determined statically.
     """
@@ -106,7 +106,7 @@ def _found_by_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, submission: Submission) -> str:
-    """Return that no package of the submission has a name; raise NotDecided if one may be in an archive that is closed."""
+    """Return that no submitted package has a name; raise NotDecided if one may be in an archive that is closed."""
     if submission.tree.unopened:
         reason = "an archive could not be opened"
         raise NotDecided(f"the package {quoted(name)} may be in an archive that could not be opened", reason)

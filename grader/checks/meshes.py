@@ -1,4 +1,4 @@
-"""Checks of the meshes that a link shows: which file, where a build puts it, its scale and its pose. No mesh is opened."""
+"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No mesh is opened."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

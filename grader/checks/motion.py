@@ -60,7 +60,8 @@ def rolls_forward(
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
-    message = f"a small positive turn of {link!r} {_heading(off, travel, base)}{'' if fine else '; it should drive it forward'}"
+    message = f"a small positive turn of {link!r} {_heading(off, travel, base)}"
+    message += "" if fine else "; it should drive it forward"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
 
@@ -105,7 +106,8 @@ def axis_along(
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
     off = degrees_between(actual, expected)
     names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", _Z_AXIS: "the z axis"}
-    message = f"{names.get(axis, f'the direction {point(axis)}')} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
+    name = names.get(axis, f"the direction {point(axis)}")
+    message = f"{name} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK
     if not fine:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
@@ -146,7 +148,8 @@ def turns_about_itself(
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} from the cylinder's axis; it should be on it"
+        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} from the cylinder's axis"
+        message += "; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 

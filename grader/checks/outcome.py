@@ -85,7 +85,7 @@ def passed(message: str) -> Outcome:
 
 
 def pending(message: str, cause: str = "", at: AnyPlace = None, *, problem: str = "") -> Outcome:
-    """Return the outcome for a fact that needs manual grading; `cause` is the reason without what differs between students."""
+    """Return the outcome for manual grading; `cause` is the reason without what differs between students."""
     return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
 
 
@@ -152,7 +152,7 @@ def measured_point(
 
 
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
-    """Return that lengths seem to be in millimetres or centimetres; empty if not all of them are too large by such a factor."""
+    """Return that lengths seem to be in millimetres or centimetres; empty unless all are too large by that factor."""
     pairs = [(a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK]
     units = (unit for factor, unit in _UNITS if all(abs(a - b * factor) < abs(b) for a, b in pairs))
     unit = next(units, "") if pairs else ""

@@ -77,7 +77,7 @@ def centre_at(
     axis: Direction = _UP,
     angle: NonNegative = _ANY_AXIS,
 ) -> Outcome:
-    """The centre of a link's visual is at a point in another link's frame, in metres; if rigid, only fixed joints lie between.
+    """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed joints are between.
 
     Args:
         link: The link that is examined.

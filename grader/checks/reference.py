@@ -1,4 +1,4 @@
-"""Checks that compare a robot with that of the rubric's reference solution: the motion of its links, and because of which joint it differs."""
+"""Checks that compare a robot with the rubric's reference solution: how its links move, and because of which joint."""
 
 from collections.abc import Collection, Mapping, Sequence
 from math import degrees
@@ -211,7 +211,7 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
 
 
 def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
-    """Return the failure of a joint that cannot move as its counterpart does: it is prismatic, for example, but should turn."""
+    """Return the failure of a joint that cannot move as its counterpart does, such as a prismatic one for a wheel."""
     if joint.type == other.type or {joint.type, other.type} <= {"revolute", "continuous"} or other.type not in SINGLE:
         return None
     if "@type" in joint.unresolved:

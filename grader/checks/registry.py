@@ -87,7 +87,7 @@ def check_names() -> list[str]:
 
 
 def unused_checks() -> list[tuple[str, str]]:
-    """Return each check of another package that is not used, because the grader has one of its name, with that package."""
+    """Return each check of another package that is not used because the grader has its name, with that package."""
     entries = _entry_points()
     return sorted((name, _package_of(entry)) for name in set(_PLACES) & set(entries) for entry in entries[name])
 

@@ -44,7 +44,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
 
 
 def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
-    """The RViz file's Fixed Frame is this link, after the `frame_prefix` that the launch file gives robot_state_publisher.
+    """The RViz file's Fixed Frame is this link, after the launch file's `frame_prefix` for robot_state_publisher.
 
     Args:
         name: The name of the RViz file, such as view.rviz.
@@ -130,7 +130,8 @@ def _class_of_ros1(display: "Display") -> str:
 def _of_another(display: "Display", package: str) -> str:
     if package in ("", display.package):
         return ""
-    return f"the class of the {display.kind} display is {display.package}/{display.kind}; it should be {package}/{display.kind}"
+    own, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
+    return f"the class of the {display.kind} display is {own}; it should be {wanted}"
 
 
 def _off(display: "Display") -> str:
@@ -175,9 +176,10 @@ def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[St
 
 
 def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
-    """Return whether a RobotModel display finds the frames of the links: it puts its TF Prefix and a slash before their names."""
+    """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a slash before them."""
     node = model.node.get("TF Prefix")
     own = node.text or "" if node is not None else ""
+    # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash, robot_state_publisher none.
     found, prefixes = f"{own}/" if own else "", _frames(opened, "")
     if found in prefixes:
         return "passed", ""

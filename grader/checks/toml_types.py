@@ -27,7 +27,7 @@ class TomlType:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """A constraint on a value besides its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
+    """A constraint for `Annotated`: `must_be` ends the message "... must be", `schema` adds to the type's schema."""
 
     must_be: str
     holds: Callable[[Any], bool]
@@ -62,7 +62,7 @@ def simple_type(
     accepts: Callable[[Any], bool],
     convert: Callable[[Any], Any] = lambda value: value,
 ) -> TomlType:
-    """Return a type whose values `accepts` recognises and `convert` converts, unless it raises WrongValue for a part."""
+    """Return a type whose values `accepts` recognises and `convert` converts, unless that raises WrongValue."""
 
     def parse(value: Any) -> Any:
         if accepts(value):
@@ -99,7 +99,7 @@ _PLURALS: Mapping[Any, str] = {
 
 @lru_cache(maxsize=256)
 def toml_type(annotation: Any) -> TomlType:
-    """Return the type for an annotation: str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated."""
+    """Return the type for str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated."""
     inner = get_args(annotation)
     origin = get_origin(annotation)
     if annotation in _SIMPLE:

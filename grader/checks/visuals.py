@@ -48,7 +48,7 @@ _SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cy
 
 
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
-    """Return the visual that counts for a link: its only one, else the first mesh, whose size is unknown, else the largest.
+    """Return the visual that counts for a link: its only one, else the first mesh, of unknown size, else the largest.
 
     If the link has visuals of the named shape, only these count.
     """
@@ -92,7 +92,7 @@ def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
 
 
 def axis_place(joint: Joint) -> LazyLocation | None:
-    """Return the place that gives an axis its direction: the joint's rpy, if the axis is z of a frame that is turned."""
+    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a rotated frame."""
     is_z = joint.axis_location is not None and joint.axis is not None and unit(joint.axis) == (0.0, 0.0, 1.0)
     if is_z and joint.origin is not None and any(joint.origin.rpy):
         return place(joint.origin.location, "rpy")

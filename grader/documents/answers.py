@@ -38,7 +38,7 @@ class Passage(NamedTuple):
 
 
 class AnswerSearch(NamedTuple):
-    """The result of a search for an answer: the passage, the documents that were read, and those that were not, with reasons."""
+    """The result of a search for an answer: the passage, the documents that were read, and why others were not."""
 
     passage: Passage | None
     read: tuple[str, ...]
@@ -48,7 +48,7 @@ class AnswerSearch(NamedTuple):
 def find_answer(
     documents: DocumentCollection, files: Sequence[str], places: Sequence[str], question: str = ""
 ) -> AnswerSearch:
-    """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
+    """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents with names like `files`.
 
     A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a
     later one.
@@ -115,7 +115,7 @@ class _AnswerSearch:
         return passage._replace(how=how, is_certain=False) if is_other else passage
 
     def _in_order(self, wanted: Ordinal) -> Passage | None:
-        """Return the passage below a heading that several questions share, or in a file of that name, if it can be told which."""
+        """Return the passage below a heading that questions share, or in a file of that name, if this is clear."""
         found: list[Passage] = []
         headings = [[(document, head) for head in self._headings(document)] for document in self._read]
         for group in (*headings, [(document, _of_file(document, wanted.pattern)) for document in self._read]):
@@ -147,7 +147,7 @@ class _AnswerSearch:
         return Passage(text, at, _where(document, head, at), is_empty=self._is_question_only(text))
 
     def _is_question_only(self, text: str) -> bool:
-        """Return whether a passage holds no word besides the question's; one that ends in "?" may be worded differently."""
+        """Return whether a passage holds only the question's words; one that ends in "?" may be worded differently."""
         if "[picture]" in text or len(text) > _MAX_QUESTION:
             return False
         asked, mark, rest = text.lower().rpartition("?")

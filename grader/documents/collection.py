@@ -1,4 +1,4 @@
-"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one budget of time."""
+"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one time limit."""
 
 import os
 import re
@@ -27,8 +27,10 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and
 # answers.
 _OTHER = re.compile(
-    r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
-    r"|grader \d\S*, \S+: "
+    r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
+    r"|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )"  # "# 24.5 / 30 points: lab6", the report in Markdown
+    r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
+    r"|grader \d\S*, \S+: "  # "grader 1.0, lab6: my_robot.urdf", the report as text
 )
 
 
@@ -108,7 +110,7 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def pictures(self, file: File) -> list[tuple[int, bytes]]:
-        """Return the pictures in a Word or PDF file, each with the number of its position in the text. Raises InputError."""
+        """Return the pictures in a Word or PDF file, each with its position in the text. Raises InputError."""
         return list(embedded_pictures.unpacked(self._convert(file, embedded_pictures)))
 
     def _convert(self, file: File, script: ModuleType = converter) -> bytes:

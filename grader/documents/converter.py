@@ -130,7 +130,7 @@ def _element(block: Any) -> Any:
 
 
 def _marks(element: Any) -> tuple[list[str], list[str]]:
-    """Return the breaks between pages that Word has rendered before the text; those after its beginning, and the pictures."""
+    """Return the page breaks that Word rendered before the text; those after its beginning, and the pictures."""
     before: list[str] = []
     after: list[str] = []
     has_text = False
@@ -229,7 +229,7 @@ def _pdf(data: bytes) -> bytes:
 
 
 def _page_text(page: Any) -> str:
-    """Return the text of a page; if most lines are one word, as in PDFs of Google Docs, the words are joined by their positions."""
+    """Return the text of a page; if most lines are one word (PDFs of Google Docs), the words are joined by position."""
     text: str = page.extract_text()
     words = text.split()
     if _MIN_WORDS * len([line for line in text.split("\n") if line.strip()]) <= len(words) or len(text) > _MAX_PLACED:

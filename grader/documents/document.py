@@ -12,7 +12,7 @@ CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
 
 
 class Document(NamedTuple):
-    """The first lines of a document. `pages` contains the index of the first line of each page, or is empty if pages are not known.
+    """The first lines of a document. `pages` are the indices of the first line of each page, or empty if not known.
 
     `limit` says what was not read of a document that is too long.
     """
@@ -33,7 +33,7 @@ class Document(NamedTuple):
         return bool(self.pictures(heading.start, heading.end))
 
     def pictures(self, start: int, end: int) -> list[int]:
-        """Return the numbers of the pictures between two lines, counted from 0; in a PDF, of the pages with these lines."""
+        """Return the numbers of the pictures between two lines, from 0; in a PDF, of the pages with these lines."""
         if self.file.suffix == ".pdf":
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
             start, end = self.pages[first - 1], (*self.pages, len(self.lines))[last]

@@ -1,4 +1,4 @@
-"""Extract the pictures of a Word or PDF file from standard input to standard output, as the converter extracts the text.
+"""Extract the pictures of a Word or PDF file from standard input to standard output, as the converter does the text.
 
 Each picture has the number of its position in that text.
 """
@@ -29,7 +29,7 @@ _MAX_PALETTE = 3 * 256
 
 
 def main() -> int:
-    """Convert one document, with the arguments and limits of the converter beside this file, the only module that can be imported."""
+    """Convert one document, with the arguments and limits of the converter: no other module can be imported here."""
     converter = runpy.run_path(str(Path(__file__).with_name("converter.py")))
 
     def in_docx(data: bytes) -> bytes:
@@ -80,7 +80,7 @@ def _in_docx(document: Any, marks: Collection[str]) -> Iterator[tuple[int, bytes
 
 
 def _picture_id(element: Any) -> str:
-    """Return the id of the picture that an element of a drawing, or of one for older versions, shows; empty for other elements."""
+    """Return the id of the picture that an element of a drawing, or of an older VML one, shows; empty for others."""
     attribute = {"blip": "embed", "imagedata": "id"}.get(str(element.tag).rpartition("}")[2])
     return str(element.get(f"{{{_RELATIONSHIPS}}}{attribute}", ""))
 
@@ -129,7 +129,7 @@ def _of_pdf(image: Any) -> bytes:
 
 
 def _is_remapped(image: Any, highest: int) -> bool:
-    """Return whether a PDF maps the samples of an image to other values, such as inverted ones (ISO 32000-1, 8.9.5.2)."""
+    """Return whether a PDF maps the samples of an image to other values, as inverted ones (ISO 32000-1, 8.9.5.2)."""
     decode = list(image["/Decode"]) if "/Decode" in image else []
     return decode != [0, highest] * (len(decode) // 2)
 

@@ -1,4 +1,4 @@
-"""Pictures and other evidence in a submission: found by name or by headings in documents, and described, never graded."""
+"""Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -164,7 +164,7 @@ def _below_headings(documents: DocumentCollection | None, wanted: Sequence[Label
 
 
 def _whole_documents(documents: DocumentCollection | None) -> Iterator[File]:
-    """Yield the documents that may hold any evidence: those that were not read, and those with pictures without headings.
+    """Yield the documents that may hold any evidence: those not read, and those with pictures without headings.
 
     A pre-lab has none.
     """
@@ -186,7 +186,7 @@ def _step_headings(documents: DocumentCollection, document: Document) -> list[He
 
 
 def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
-    """Return whether there is a picture below a heading, which names a step in words: "18." may be a line of the handout."""
+    """Return whether a picture is below a heading that names a step in words: "18." may be a line of the handout."""
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
     return is_named and document.has_picture(head)

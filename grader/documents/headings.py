@@ -1,4 +1,4 @@
-"""The headings of a document: lines that name a task, a step or a question, and where the passage below each of them ends."""
+"""The headings of a document: lines that name a task, a step or a question, and where the passage below each ends."""
 
 import re
 from bisect import bisect_right
@@ -26,6 +26,7 @@ _ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
 _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
 _ANSWERS = frozenset({"answer", "answers"})
 _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
+# "Task 1", "t_1"; "Step 15", "Steps 3, 4 & 5", "Step 1-2".
 _TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
 # What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.
@@ -139,7 +140,7 @@ def _label(words: list[str]) -> Label:
 
 
 def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
-    """Return the pattern that a line or name begins with, in any order of its words, and the number after or between them."""
+    """Return the pattern that a line or name begins with, words in any order, and the number after or between."""
     words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
     tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
     for pattern in patterns:
@@ -163,7 +164,7 @@ def _are_alike(words: list[str], wanted: list[str]) -> bool:
 
 
 def _question_words(text: str) -> list[str]:
-    """Return the words of a heading from those on that may name a question: "2. Task 1 - Answer to Q3" begins with "question"."""
+    """Return the words of a heading from the question on: "2. Task 1 - Answer to Q3" begins with "question"."""
     tokens = WORDS.findall(text.lower())
     while tokens:
         has_number = len(tokens) > 1 and tokens[1].isdecimal()

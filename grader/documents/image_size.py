@@ -1,4 +1,4 @@
-"""Width and height of a picture from its first bytes. Nothing is decoded, and no library is loaded: imagesize loads urllib and ssl."""
+"""Width and height of a picture from its first bytes. Nothing is decoded; the library imagesize loads urllib, ssl."""
 
 import struct
 

@@ -39,8 +39,16 @@ _NOT_SHOWN = (
     (
         # Each alternative begins or goes on in a way of its own: hostile bytes cannot make the search exponential.
         re.compile(
-            rb"(?:\s|<\?[^>]*>|<!--(?:(?!-->).)*-->|<!(?!--)[^>\[]*(?:\[[^\]]*\]\s*)?>)*<svg[\s>]",
-            re.DOTALL | re.IGNORECASE,
+            rb"""
+            (?:
+                \s
+              | <\?[^>]*>                                # <?xml version="1.0"?>
+              | <!--(?:(?!-->).)*-->
+              | <!(?!--)[^>\[]*(?:\[[^\]]*\]\s*)?>       # <!DOCTYPE svg PUBLIC "...">, <!DOCTYPE svg [ ... ]>
+            )*
+            <svg[\s>]
+            """,
+            re.DOTALL | re.IGNORECASE | re.VERBOSE,
         ),
         "SVG, which can contain scripts",
     ),

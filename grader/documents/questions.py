@@ -40,7 +40,7 @@ class AnswerMatch(NamedTuple):
 
 
 def read_ordinal(place: str) -> Ordinal | None:
-    """Return the place among all questions that a text such as "required question 1 of 2" names; None for other texts."""
+    """Return the place among all questions that "required question 1 of 2" names; None for other texts."""
     found = _ORDINAL.fullmatch(place.lower())
     return Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
 
@@ -74,7 +74,7 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
 def _numbered(
     wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]
 ) -> AnswerMatch | None:
-    """Return the answer below the heading with the question's number; of several, such as a list of the questions, that with text."""
+    """Return the answer below the question's number; of several, as with a list of the questions, that with text."""
     hits = [index for index, answer in enumerate(answers) if answer.number == wanted.number]
     if len(hits) > 1:
         hits = [index for index in hits if index in written] or hits

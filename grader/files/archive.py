@@ -29,7 +29,7 @@ _MAX_STEPS = 500_000  # for all links of an archive
 
 
 def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None) -> Tree:
-    """Return the files in an archive. `file` is closed with the tree, or at once where it cannot be read (InputError)."""
+    """Return the files in an archive. `file` is closed with the tree, or at once if it cannot be read (InputError)."""
     allowance = allowance or limits.Allowance()
     with ExitStack() as opened:
         opened.callback(file.close)
@@ -56,7 +56,7 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowa
 
 
 def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
-    """Return the file tree that the members of an archive make; raises InputError for too many, and for too much in them."""
+    """Return the file tree that the members of an archive make; raises InputError if they are too many or too large."""
     found: dict[str, ArchiveMember] = {}
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()

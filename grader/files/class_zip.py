@@ -69,7 +69,7 @@ class ClassZip:
         return self._member(path).open()
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive in it, whose bytes update the digest; None for a file that is not an archive."""
+        """Return the files of an archive in it, whose bytes update the digest; None for a file of another kind."""
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)

@@ -1,4 +1,4 @@
-"""What is not read of a submission: the parts that no student wrote, and more than the limits for untrusted files, with the messages."""
+"""What is not read of a submission: parts that no student wrote, and what exceeds the limits, with the messages."""
 
 from grader.errors import FileError, InputError
 

@@ -27,7 +27,7 @@ _SIGNATURES = {
 
 
 def archive_kind(start: bytes) -> str | None:
-    """Return the kind of archive that the first 512 bytes of a file belong to: zip, tar, gz, bz2, xz, 7z, rar, or None."""
+    """Return the kind of archive that the first 512 bytes of a file show: zip, tar, gz, bz2, xz, 7z, rar, or None."""
     tar = "tar" if start[257:262] == b"ustar" else None
     return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
 
@@ -84,7 +84,7 @@ def with_inner(
     allowance: limits.Allowance | None = None,
     depth: int = 0,
 ) -> Tree:
-    """Return the tree with what is in its archives; if a package and a URDF are beside them, only of those whose names are wanted."""
+    """Return the tree with what is in its archives; beside a package and a URDF, only in those with wanted names."""
     archives = _archives(tree, is_wanted)
     if not archives:
         return tree

@@ -23,7 +23,7 @@ _ADVICE = " for a URDF (--max-size raises it)"
 def read_capped(
     path: Path | str, limit: int = URDF_LIMIT, *, shown: str = "", top: str = "", advice: str = _ADVICE
 ) -> bytes:
-    """Return the bytes of a regular file of at most `limit` bytes; raises InputError, with one sentence, for anything else.
+    """Return the bytes of a regular file of at most `limit` bytes; raises InputError in one sentence for anything else.
 
     `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below
     the folder `top` no symlink is followed.
@@ -122,7 +122,7 @@ def sha256_of(data: bytes) -> str:
 
 
 def not_there(path: Path) -> InputError:
-    """Return the error for a path that does not exist, with the existing name that is closest to its first wrong part."""
+    """Return the error for a path that does not exist, with the existing name closest to its first wrong part."""
     from grader.names import closest  # late: most paths are correct
 
     wrong = path

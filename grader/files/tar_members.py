@@ -29,7 +29,7 @@ def tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
 def compressed_members(
     file: IO[bytes], kind: str, stored: IO[bytes], name: str, limit: int, allowance: limits.Allowance
 ) -> Iterator[ArchiveMember]:
-    """Yield the members of a compressed tar, decompressed once: files that are not too large are appended to `stored`."""
+    """Yield the members of a compressed tar, decompressed once: files within the limit are appended to `stored`."""
     total = 0
     with _DECOMPRESSORS[kind](file) as source:
         stream = _Stream(source, name, limit, allowance)

@@ -70,7 +70,7 @@ class Tree:
         return tuple(file for file in self.ignored if file.is_archive)
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
-        """Return the tree without the files, folders and notes whose paths do not belong to it; a folder's path ends in a slash."""
+        """Return the tree of only the files, folders and notes whose paths belong; a folder's path ends in a slash."""
         files = {path: file for path, file in self.files.items() if belongs(path)}
         folders, unseen = (
             frozenset(path for path in paths if belongs(f"{path}/")) for paths in (self.folders, self.unseen)
@@ -101,7 +101,7 @@ def make_tree(
     unseen: Iterable[str] = (),
     kept: tuple[object, ...] = (),
 ) -> Tree:
-    """Return a tree of these files; folders that only the paths of files name are added. Raises InputError for too many.
+    """Return a tree of these files; folders that only their paths name are added. Raises InputError for too many.
 
     A file that is too large is ignored: it is named, and never read.
     """

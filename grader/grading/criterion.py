@@ -9,7 +9,7 @@ from grader.checks.check import Check
 
 
 class Carried(NamedTuple):
-    """Error carried forward: the criterion keeps its points where one of `causes` failed and the check, another fact, passes."""
+    """Error carried forward: points are kept where one of `causes` failed and the check, another fact, passes."""
 
     causes: tuple[str, ...]
     check: Check

@@ -21,7 +21,7 @@ from grader.submission.urdf import Absent
 
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
-    """Yield the results of some criteria in the order of the rubric; what a criterion requires counts if it is wanted, too."""
+    """Yield the results of criteria in the rubric's order; what a criterion requires counts if it is wanted, too."""
     grading = _Grading(rubric, submission)
     for criterion in rubric.criteria:
         if criterion.id in wanted:
@@ -106,7 +106,7 @@ class _Grading:
         return other if other.outcome.status == "errored" else result
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the first of these criteria that failed, if the result is a failure, or a skip because of one of them."""
+        """Return the first of these criteria that failed, if the result is a failure or a skip because of one."""
         names = [name for name in causes if result.because in (None, name)]
         before = (self.results[name] for name in names if name in self.results)
         return next((found for found in before if found.outcome.status == "failed"), None)
@@ -131,7 +131,8 @@ class _Grading:
             return Result(criterion, pending(f"{reason}; needs manual grading", cause))
         except (KeyboardInterrupt, OutOfTime):
             raise
-        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
+        # A faulty check, even one that exits, affects only its own criterion.
+        except BaseException as error:  # noqa: BLE001
             from traceback import format_exc  # needed only for a fault of the grader
 
             return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())

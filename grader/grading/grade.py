@@ -33,7 +33,7 @@ _ELSEWHERE = "the graded URDF is outside the graded package"
 def grade(
     rubric: Rubric, submission: Submission, parts: Sequence[str] = (), *, is_one_of_class: bool = False
 ) -> Report:
-    """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others.
+    """Return the report on a submission for all parts of the rubric, or the named ones; raises InputError for others.
 
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same
     parts.

@@ -1,4 +1,4 @@
-"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page are made from these tables."""
+"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page use these tables."""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -223,7 +223,8 @@ RUBRIC = KeyTable(
         ),
         "without_package": described(
             toml_type(Literal["failed", "manual"]),
-            "The criteria of the package if there is evidence, but no package: failed (the default), or manual grading.",
+            "The criteria of the package if there is evidence, but no package: "
+            "failed (the default), or manual grading.",
         ),
         "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
         "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),

@@ -1,4 +1,4 @@
-"""The work of this lab that a submission lacks: its URDF and its package. Evidence may take their place in manual grading."""
+"""The work of this lab that a submission lacks: its URDF and its package. Evidence may replace it in manual grading."""
 
 import re
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ def robot_of(urdf: Urdf) -> Robot | None:
 
 
 def is_another_robot(rubric: Rubric, robot: Robot | None) -> bool:
-    """Return whether a robot that is known completely has none of the links that the rubric names, and none with a similar name."""
+    """Return whether a completely known robot has none of the rubric's links, and none with a similar name."""
     if robot is None or robot.incomplete or not robot.links or not rubric.links:
         return False
     if any(link.name in rubric.links for link in robot.links):

@@ -12,7 +12,7 @@ from grader.submission.submission import Submission
 
 
 class ReferenceSolution:
-    """A rubric's own solution, of which no more is read than is needed. Its properties raise InputError where it cannot be read."""
+    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
 
     def __init__(self, path: Path, urdf: str, package: str, folders: tuple[str, ...]) -> None:
         self._path, self._urdf, self._package, self._folders = path, urdf, package, folders

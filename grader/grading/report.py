@@ -79,7 +79,7 @@ class Result(NamedTuple):
 
     @property
     def why_given(self) -> str:
-        """Why the outcome does not decide the points: the adjustment, or an error that is carried forward; empty if it does."""
+        """Why the outcome does not decide the points: the adjustment, or an error carried forward; empty if it does."""
         if self.manual_mark is not None:
             return ""
         if self.criterion.adjustment is not None:
@@ -103,7 +103,7 @@ class Result(NamedTuple):
 
 
 class Grade(NamedTuple):
-    """The grade of a student in a class: the points that count, None for an excused student, and the late penalty in them (0 or less).
+    """A student's grade in a class: the points that count, None if excused, and the late penalty in them (0 or less).
 
     `is_final` says that a final mark replaces the points of the criteria.
     """
@@ -197,7 +197,7 @@ class Report:
 
     @property
     def fault(self) -> str:
-        """The message of the first failure of a check or the grader, except on adjusted criteria; empty if there is none."""
+        """The message of the first failure of a check or the grader, except on adjusted criteria; empty without one."""
         errored = (one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted)
         return next((one.outcome.message for one in errored), "")
 

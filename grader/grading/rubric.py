@@ -69,7 +69,7 @@ class Ignored(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
+    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if any.
 
     `folders` are the names of the lab's folder in a repository of several labs. `without_urdf` says what the criteria
     of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual grading. It is empty where the

@@ -37,7 +37,7 @@ class RubricChange(NamedTuple):
 
 
 def rubric_changes(before: Rubric, after: Rubric) -> Mapping[str, tuple[RubricChange, ...]]:
-    """Return what changed in each criterion, in the order of the newer rubric; under "" what changed in the rubric itself."""
+    """Return what changed in each criterion, in the order of the newer rubric; under "" what changed in the rest."""
     old = {row.id: row for row in before.criteria}
     new = {row.id: row for row in after.criteria}
     found = {name: tuple(_of_criterion(name, old.get(name), new.get(name))) for name in {**new, **old}}

@@ -37,7 +37,7 @@ def rubric_schema() -> _Schema:
 
 
 def _complete(checks: Iterable[Check]) -> _Schema:
-    """Return definitions of what else is required in a rubric without defaults: of its criteria, and of what they carry."""
+    """Return definitions of what else a rubric without defaults requires: in its criteria, and in what they carry."""
     needed = [(check, [name for name, it in check.parameters.items() if it.required]) for check in checks]
     rules = [_if_check(check, {"required": names}) for check, names in needed if names]
     of_check = {"$ref": "#/$defs/needed"}

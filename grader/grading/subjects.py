@@ -1,4 +1,4 @@
-"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package, the reference solution."""
+"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package, the reference."""
 
 from collections.abc import Mapping
 from math import radians
@@ -22,7 +22,7 @@ _SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
 
 
 class Subjects:
-    """What of a submission is examined. Raises InputError if a check needs the reference solution and it cannot be read."""
+    """What of a submission is examined. Raises InputError if a check needs a reference solution that cannot be read."""
 
     def __init__(self, rubric: Rubric, submission: Submission) -> None:
         self.submission = submission
@@ -76,7 +76,7 @@ class Subjects:
         return self._posed[key]
 
     def _missing(self, name: Subject) -> object:
-        """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
+        """Return the package; raise MissingElement or NotDecided for any other subject that a submission lacks."""
         if name == "package":
             return self.submission.needed_package()
         self.submission.needed_urdf()
@@ -84,7 +84,7 @@ class Subjects:
 
 
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
-    """Raise MissingElement or NotDecided if a criterion names a link by its place in the tree, and that is no link, or not one."""
+    """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
     named_links(
         [dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot
     )
@@ -109,7 +109,7 @@ def _joint(robot: Configuration, name: str) -> Joint:
 
 
 def named_links(value: Any, robot: Configuration) -> Any:
-    """Return a value in which each selector is the name of the link that it means; raises MissingElement and NotDecided."""
+    """Return a value with each selector replaced by the name of its link; raises MissingElement and NotDecided."""
     match value:
         case str():
             return selected_link(robot.robot, robot.parent_joints, value)
@@ -121,7 +121,7 @@ def named_links(value: Any, robot: Configuration) -> Any:
 
 
 def _check_name(robot: Configuration, name: str) -> None:
-    """Raise MissingElement if several joints with this name turn or slide: a position has only the name of its joint."""
+    """Raise MissingElement if several joints with this name turn or slide: positions are given by the joint's name."""
     found = [joint for joint in robot.robot.joints if joint.name == name and joint.type in (*_TURNING, *_SLIDING)]
     if len(found) > 1:
         message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"

@@ -1,4 +1,4 @@
-"""Read a TOML file, and complain of the mistakes in it: all in one error, each with its line, which tomllib does not report of keys."""
+"""Read a TOML file; all mistakes in it are one error, each with its line, which tomllib does not report of keys."""
 
 import re
 import tomllib
@@ -15,8 +15,17 @@ TomlPath = tuple[str | int, ...]
 _MAX_DEPTH = 20  # keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
 
 _TOKEN = re.compile(
-    r'''"""(?:\\.|[^\\])*?"""(?!")|\'\'\'.*?\'\'\'(?!\')|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[\[\]{}\n=.]|[^\s"'\#\[\]{}=.]+|[ \t\r]+''',
-    re.DOTALL,
+    r"""
+      "{3}(?:\\.|[^\\])*?"{3}(?!")      # several lines: of up to five quotes at the end, the last three close it
+    | '{3}.*?'{3}(?!')                # the same, without escapes
+    | "(?:\\.|[^"\\\n])*"             # "30\" wide"
+    | '[^'\n]*'                       # 'C:\labs'
+    | \#[^\n]*                        # a comment, which may hold quotes and brackets
+    | [\[\]{}\n=.]
+    | [^\s"'\#\[\]{}=.]+              # a bare key, a number, or a boolean: points, 12, true
+    | [ \t\r]+
+    """,
+    re.DOTALL | re.VERBOSE,
 )
 _MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake

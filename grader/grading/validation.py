@@ -99,7 +99,7 @@ class Validation:
         self._defaults = defaults
 
     def _examines(self, where: TomlPath, row: TomlRow, check: Check) -> None:
-        """Complain of a pose for a check of something else, and of a comparison with a reference that the rubric lacks."""
+        """Complain of a pose for a check that examines no robot, and of a comparison without a reference."""
         if "at" in row and "robot" not in check.examined:
             self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
         links = [value for key, value in row.get("with", {}).items() if key in LINK_ARGUMENTS]

@@ -8,7 +8,15 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-_TOKEN = re.compile(r"""<!--.*?-->|<[?!][^>]*>|</[^>]*>|<([^\s/>]+)(?:"[^"]*"|'[^']*'|[^>"'])*>""", re.DOTALL)
+_TOKEN = re.compile(
+    r"""
+      <!--.*?-->
+    | <[?!][^>]*>                                # <?xml version="1.0"?>, <!DOCTYPE robot>
+    | </[^>]*>
+    | <([^\s/>]+)(?:"[^"]*"|'[^']*'|[^>"'])*>    # <link name="a>b">, <origin xyz='0 0 1'/>
+    """,
+    re.DOTALL | re.VERBOSE,
+)
 _ATTRIBUTE = re.compile(r"""\s([^\s="'<>/]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _NAMED_BY = ("name", "reference")
 
@@ -23,7 +31,7 @@ class AttributeSpan(NamedTuple):
 
 
 class Element(NamedTuple):
-    """An element: the offsets of its start tag, of the end of that tag and of its own end, its parent's index, its attributes.
+    """An element: where its start tag begins and ends, where it ends itself, its parent's index, its attributes.
 
     `label` is its place by names, which does not change if lines are added: `joint base_lidar_joint/origin`.
     """
@@ -65,7 +73,7 @@ def elements(text: str) -> list[Element]:
 
 
 def text_of(text: str, element: Element) -> tuple[int, int] | None:
-    """Return the offsets of the text in an element, without the white space around it; None if it has none, or children."""
+    """Return the offsets of the text in an element, without white space around it; None if it has none, or children."""
     end = text.rfind("</", element.head_end, element.end)
     inner = text[element.head_end : end] if end >= 0 else ""
     if not inner.strip() or "<" in inner:

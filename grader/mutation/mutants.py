@@ -42,7 +42,7 @@ class Mutant(NamedTuple):
 
 
 class MutantEdit(NamedTuple):
-    """A change of a text between two offsets: its family, its place by names, and what distinguishes it from others there."""
+    """A change of a text between two offsets: its family, its place by names, and what tells it from others there."""
 
     family: str
     label: str

@@ -1,4 +1,4 @@
-"""Grade the mutants of a rubric's reference that a criterion may look at: each must lose points, and some mutant must fail each criterion."""
+"""Grade the mutants of a rubric's reference: each must lose points, and each criterion must fail on some mutant."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,7 +36,7 @@ def mutants_of(trial: Trial) -> Iterator[Mutant]:
 
 
 def _is_looked_at(mutant: Mutant, criteria: Iterable[Criterion]) -> bool:
-    """Return whether a criterion may look at what a mutant of a package changes: some look at its name or at meshes only."""
+    """Return whether a criterion may look at a mutant of a package: some look at its name or at meshes only."""
     subjects = {criterion.check.subject for criterion in criteria}
     if "package" in subjects:
         return True
@@ -96,7 +96,7 @@ class MutationTest:
         )
 
     def _grade(self, mutant: Mutant) -> None:
-        """Grade a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty on it."""
+        """Grade a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty."""
         submission = self.trial.submission(mutant)
         results = list(self.trial.results(mutant, submission, self.trial.expected)) if submission is not None else []
         faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
@@ -154,5 +154,5 @@ class MutationTest:
 
 
 def _is_match(mutant: Mutant, pattern: str) -> bool:
-    """Return whether a pattern is the id of a mutant, or matches it: an id may have brackets, which are a set of characters."""
+    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of characters to fnmatch."""
     return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

@@ -1,4 +1,4 @@
-"""Mutants of a package: a file deleted or renamed, and mistakes in package.xml, setup.py, launch files and RViz files."""
+"""Mutants of a package: a file deleted or renamed, mistakes in package.xml, setup.py, launch files and RViz files."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator
@@ -14,7 +14,10 @@ from grader.source import Source
 
 # Files for people: without them the package does the same.
 _FOR_PEOPLE = (".md", ".rst", ".txt", ".pdf", ".docx", ".png", ".jpg", ".jpeg", ".gif", ".svg", ".mp4")
-_FOR_PEOPLE_TOO = re.compile(r"(^|/)(test|tests|doc|docs|\.[^/]*)/|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$")
+_FOR_PEOPLE_TOO = re.compile(
+    r"(^|/)(test|tests|doc|docs|\.[^/]*)/"  # test/test_pep257.py, .github/workflows/build.yml
+    r"|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$"  # LICENSE, README.html, .gitignore
+)
 _BUILD_TYPES = ("ament_python", "ament_cmake")
 _XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))

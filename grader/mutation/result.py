@@ -1,4 +1,4 @@
-"""The result of testing a rubric, with the diff of each change and the margin of each tolerance: how far off the reference is."""
+"""The result of testing a rubric, with each change's diff and each tolerance's margin: how far off the reference is."""
 
 from collections.abc import Mapping
 from decimal import Decimal
@@ -45,7 +45,7 @@ def margin_of(result: Result) -> Margin | None:
 
 
 def deviation(outcome: Outcome) -> float | None:
-    """Return how far the measured value is from the expected one: the largest difference of several numbers, or the angle in degrees."""
+    """Return how far the measured value is off: the largest difference of several numbers, or an angle in degrees."""
     measured, expected = _numbers(outcome.measured), _numbers(outcome.expected)
     if not measured or not expected or len(expected) not in (1, len(measured)):
         return None
@@ -104,7 +104,7 @@ class Loss(NamedTuple):
 
 
 class Survivor(NamedTuple):
-    """A mutant that loses nothing: its diff of one hunk, and what may catch it. `reason` is that of the rubric that ignores it."""
+    """A mutant that loses nothing: its diff of one hunk, what may catch it, and why the rubric ignores it."""
 
     mutant: Mutant
     diff: str
@@ -133,13 +133,13 @@ class MutantResults(NamedTuple):
 
     @property
     def score(self) -> Decimal:
-        """The mutation score: the share of the mutants that lose points, in percent, without those that the rubric ignores."""
+        """The mutation score: the share of the mutants that lose points, in percent, without those that are ignored."""
         count = self.caught + len(self.survivors)
         return Decimal(100 * self.caught) / count if count else Decimal(100)
 
 
 class EquivalentResults(NamedTuple):
-    """How many rewritings of the reference were graded, by family, those that lose points, and why a family was not used."""
+    """Rewritings of the reference: how many were graded, by family, which lose points, and why a family is unused."""
 
     tried: Mapping[str, int]
     unused: Mapping[str, str]

@@ -1,4 +1,4 @@
-"""Rewritings of a robot, each of a family: another file, the same robot. A step returns whether it could change anything."""
+"""Rewritings of a robot, each of a family: another file, the same robot. A step returns whether it changed anything."""
 
 from collections.abc import Callable, Collection
 from math import pi
@@ -31,7 +31,7 @@ _TURNING = ("revolute", "continuous")
 
 
 class RewritingRules(NamedTuple):
-    """What a rewriting must leave as it is: `named` is renamed nowhere, and frames are moved only where `may_move` is true."""
+    """What a rewriting must leave as it is: the names `named`, and the frames for which `may_move` is false."""
 
     named: Collection[str]
     may_move: Callable[[str], bool]

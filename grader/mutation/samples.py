@@ -71,7 +71,7 @@ _WORDS = {"lost": "loses its points", "carried": "is carried forward", "pending"
 
 
 def read_samples(folder: Path) -> list[Sample]:
-    """Return the samples in a folder, by their names. Raises RubricError for a broken expected.toml, InputError without any."""
+    """Return the samples in a folder by name. Raises RubricError for a broken expected.toml, InputError without any."""
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
     found = [_sample(path) for path in sorted(folder.glob(f"*/{EXPECTED}"))]
@@ -98,7 +98,7 @@ def _sample(path: Path) -> Sample:
 
 
 def tested_samples(rubric: Rubric, samples: list[Sample], step: Callable[[], None]) -> SampleResults:
-    """Return which samples of a rubric differ from what they expect. Raises RubricError where one names no criterion of it."""
+    """Return which samples of a rubric differ from what they expect. Raises RubricError for an unknown criterion."""
     own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
     _check_names(rubric, own)
     different: list[Loss] = []
@@ -113,7 +113,8 @@ def tested_samples(rubric: Rubric, samples: list[Sample], step: Callable[[], Non
 def _check_names(rubric: Rubric, samples: list[Sample]) -> None:
     known = [criterion.id for criterion in rubric.criteria]
     wrong = [
-        f"{printable_path(sample.folder / EXPECTED)}: the rubric {rubric.id} has no criterion {name!r}{did_you_mean(name, known)}"
+        f"{printable_path(sample.folder / EXPECTED)}: the rubric {rubric.id} "
+        f"has no criterion {name!r}{did_you_mean(name, known)}"
         for sample in samples
         for name in (*sample.lost, *sample.carried, *sample.pending)
         if name not in known

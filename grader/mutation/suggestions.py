@@ -62,7 +62,7 @@ def _checks_for(tags: Sequence[str], known: Iterable[Check]) -> list[str]:
 
 
 def _depth(place: str, tags: Sequence[str]) -> int:
-    """Return how deep the tags contain a place such as `limit`, `visual/origin` or `joint@type`, from 1; 0 if they do not."""
+    """Return how deep a place such as `limit`, `visual/origin` or `joint@type` is in the tags, from 1; else 0."""
     names = place.replace("@", "/@").split("/")
     return tags.index(names[-1]) + 1 if all(name in tags for name in names) else 0
 
@@ -73,7 +73,7 @@ def _measured(criterion: Criterion) -> set[str]:
 
 
 def _names(mutant: Mutant, robot: Robot | None) -> set[str]:
-    """Return the names in the place of a mutant, with the links that a joint moves, and those that a material colours."""
+    """Return the names in the place of a mutant, with the links that its joints move and its materials colour."""
     names = set(mutant.id.partition(": ")[2].partition(" -> ")[0].replace("/", " ").split())
     if robot is None:
         return names

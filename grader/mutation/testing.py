@@ -39,7 +39,7 @@ def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
 
 
 def _submission(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
-    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own, by its name."""
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own."""
     data = equivalent.text.encode()
     if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
         return with_urdf(reference, {urdf.path: data})
@@ -54,7 +54,7 @@ def _lost(trial: Trial, submission: Submission, equivalent: Equivalent) -> Itera
 
 
 def _asked(trial: Trial, submission: Submission, equivalent: Equivalent) -> Collection[str]:
-    """Return the criteria that depend on the robot and must keep; for a URDF on its own, those that need nothing else."""
+    """Return the criteria on the robot that must still pass; for a URDF on its own, those that need nothing else."""
     criteria = (trial.expected[name].criterion for name in trial.tested)
     others = ("package", "submission") if submission.is_single else ("package",)
     return [it.id for it in criteria if it.check.subject not in others and not breaking(it, equivalent.families)]
@@ -65,7 +65,7 @@ Progress = Callable[[int, int], None]  # how many submissions of how many are gr
 
 
 def tested(rubric: Rubric, samples: list[Sample] | None, *, seed: int, most: int, progress: Progress) -> RubricTest:
-    """Return what a test of a rubric finds. Raises InputError without a reference that can be read, RubricError for wrong samples."""
+    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples."""
     if rubric.solution is None:
         raise InputError(f'the rubric {rubric.id} has no reference: add reference = "FOLDER" with a correct solution')
     reference = rubric.solution.submission

@@ -1,4 +1,4 @@
-"""The element tree of a URDF, for rewriting a robot: its poses, frames and joints, and its text, written in many ways that mean the same."""
+"""The element tree of a URDF, to rewrite a robot: poses, frames and joints, and its text in ways that mean the same."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,7 +21,7 @@ _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree, without comments; meshes that xacro has found by $(find package) are those of package://."""
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones."""
     copy = etree.fromstring(etree.tostring(root, with_tail=False))
     for element in list(copy.iter(etree.Comment, etree.ProcessingInstruction)):
         above = element.getparent()

@@ -1,4 +1,4 @@
-"""Grade mutants of a reference: of the robot only the URDF is read again, of other files everything; the names that these refer to."""
+"""Grade mutants of a reference: of the robot only the URDF is read again, else everything. Find names in rubrics."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping

@@ -12,7 +12,17 @@ from dataclasses import dataclass, field
 from grader.errors import InputError
 from grader.files.tree import Tree
 
-_TOKEN = re.compile(r'#\[(=*)\[.*?(?:\]\1\]|\Z)|#[^\n]*|"((?:\\.|[^"\\])*)"|([()])|((?:\\.|[^\s()"#])+)', re.DOTALL)
+# The syntax of cmake-language(7).
+_TOKEN = re.compile(
+    r"""
+      \#\[(=*)\[.*?(?:\]\1\]|\Z)    # a comment of several lines: #[[ ... ]], #[=[ ... ]=]
+    | \#[^\n]*
+    | "((?:\\.|[^"\\])*)"           # "my \"robot\".urdf"
+    | ([()])
+    | ((?:\\.|[^\s()"\#])+)         # install, share/${PROJECT_NAME}
+    """,
+    re.DOTALL | re.VERBOSE,
+)
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _SOURCE = "${CMAKE_CURRENT_SOURCE_DIR}/"
 _MAX_SIZE = 128 * 1024  # bytes
@@ -20,11 +30,12 @@ _OPENING = ("if", "foreach", "while", "function", "macro", "block")
 _KINDS = ("DIRECTORY", "FILES", "PROGRAMS")
 # Commands that install no file of a share folder, and change no variable.
 _HARMLESS = frozenset(
-    {"add_compile_options", "add_definitions", "add_executable", "add_library", "ament_environment_hooks", "ament_export_dependencies",
-     "ament_export_include_directories", "ament_export_libraries", "ament_export_targets", "ament_lint_auto_find_test_dependencies",
-     "ament_package", "ament_python_install_package", "ament_target_dependencies", "cmake_minimum_required", "else", "elseif", "find_package",
-     "include_directories", "message", "target_compile_features", "target_compile_options", "target_include_directories", "target_link_libraries",
-     *_OPENING, *(f"end{name}" for name in _OPENING)}
+    {"add_compile_options", "add_definitions", "add_executable", "add_library", "ament_environment_hooks",
+     "ament_export_dependencies", "ament_export_include_directories", "ament_export_libraries", "ament_export_targets",
+     "ament_lint_auto_find_test_dependencies", "ament_package", "ament_python_install_package",
+     "ament_target_dependencies", "cmake_minimum_required", "else", "elseif", "find_package", "include_directories",
+     "message", "target_compile_features", "target_compile_options", "target_include_directories",
+     "target_link_libraries", *_OPENING, *(f"end{name}" for name in _OPENING)}
 )  # fmt: skip
 
 

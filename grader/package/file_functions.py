@@ -50,7 +50,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
 def _evaluated(
     function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
-    """Evaluate a search, count its steps and record whether its result depends on the order of the files in a folder, or of a set."""
+    """Evaluate a search, count its steps and record whether the order of files in a folder, or of a set, matters."""
     before = listing.names_read
     try:
         found = function(evaluation, call)

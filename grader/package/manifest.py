@@ -11,7 +11,7 @@ from grader.source import Location, Source
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is colcon's default if none is given."""
+    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is by default colcon's."""
 
     source: Source
     name: str | None

@@ -79,7 +79,7 @@ class Package:
 
     @cached_property
     def share(self) -> str:
-        """The folder below the prefix where ros2 looks for its files: by the name of the lab if it has it, else by its own."""
+        """The folder below the prefix where ros2 looks for its files: by the lab's name if it has it, else its own."""
         return f"share/{self.wanted if self.wanted in self.names else self.name}/"
 
     @property
@@ -120,7 +120,7 @@ class Package:
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
 
     def built(self, kind: str, name: str = "") -> str:
-        """Return the end of a message on a missing file of a kind if a build of the package has such a file, or the one of a name."""
+        """Return the end of a message on a missing file if a build has one of that kind, or the one of that name."""
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
         for path in self.generated:
             is_meant = path.rpartition("/")[2] == name if name else path.lower().endswith(_KINDS[kind][1])
@@ -213,12 +213,12 @@ class Package:
         return next((target for target, source in self.installed.items() if source == path), None)
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the package that a build installs at a path, which begins with the stand-in for the prefix."""
+        """Return the file of the package that a build installs at a path, which begins with the prefix's stand-in."""
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
         return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return what a build installs at a path below the prefix, with its path, from any package of the submission."""
+        """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
         package = next((package for package in self.packages.values() if path in package.installed), None)
         if package is not None:
             source = package.installed[path]

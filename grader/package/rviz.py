@@ -32,7 +32,8 @@ class Display:
 
     @property
     def is_enabled(self) -> bool:
-        """Whether it is enabled itself, whatever its group is; Enabled overrides Value."""
+        """Whether it is enabled itself, whatever its group is."""
+        # rviz_common's Display::load sets Value first, and then Enabled.
         return switched_on(self.node.get("Enabled"), default=switched_on(self.node.get("Value"), default=False))
 
     @property

@@ -19,8 +19,8 @@ _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
 # Calls that make, move or delete files: the files that exist afterwards are not known.
 _CHANGES = (
     WRITING, "os.link", "os.makedirs", "os.mkdir", "os.popen", "os.remove", "os.rename", "os.replace", "os.rmdir",
-    "os.spawn", "os.exec", "os.symlink", "os.system", "os.unlink", "pathlib.Path.", "shutil.", "subprocess.", "tarfile.",
-    "tempfile.", "urllib.", "xacro.", "zipfile.",
+    "os.spawn", "os.exec", "os.symlink", "os.system", "os.unlink", "pathlib.Path.", "shutil.", "subprocess.",
+    "tarfile.", "tempfile.", "urllib.", "xacro.", "zipfile.",
 )  # fmt: skip
 
 

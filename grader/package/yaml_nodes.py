@@ -1,4 +1,4 @@
-"""YAML with the location of every value, read event by event: neither depth nor aliases use unlimited time or memory."""
+"""YAML with the location of each value, read by event: neither depth nor aliases use unlimited time or memory."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The kinds of problems that a URDF can have, with what ROS 2 does about them. `docs/problems.md` is generated from it."""
+"""The kinds of problems that a URDF can have, and what ROS 2 does about them. Source of `docs/problems.md`."""
 
 from grader.problems import drops, kinds_in, notes, rejects, warns
 from grader.xml import catalogue as xml_catalogue
@@ -9,8 +9,8 @@ NO_ROBOT = rejects(
 RAW_XACRO = warns(
     "URDF014",
     "xacro that is not expanded",
-    "ROS 2's URDF reader does not support xacro: it ignores <xacro:...> tags, and ${...} is not a number. Expand the file "
-    "first: `ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
+    "ROS 2's URDF reader does not support xacro: it ignores <xacro:...> tags, and ${...} is not a number. Expand the "
+    "file first: `ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
 )
 ROBOT_WITHOUT_NAME = rejects(
     "URDF020", "A robot without a name", 'ROS 2 requires <robot name="...">; the name may be empty.'
@@ -18,7 +18,8 @@ ROBOT_WITHOUT_NAME = rejects(
 BAD_VERSION = rejects(
     "URDF021",
     "An unsupported URDF version",
-    'The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy supports only 1.0. Remove it, or write version="1.0".',
+    "The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy supports only 1.0. Remove it, or write "
+    'version="1.0".',
 )
 NO_LINKS = rejects("URDF022", "A robot without links", "ROS 2 requires at least one <link>.")
 LINK_WITHOUT_NAME = drops(
@@ -45,8 +46,8 @@ JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 require
 BAD_INERTIAL = drops(
     "URDF040",
     "An invalid <inertial>",
-    "ROS 2 logs an error and drops the link's inertial, visuals and collisions. An inertial needs <mass value> and <inertia> "
-    "with ixx, ixy, ixz, iyy, iyz, izz, all plain numbers.",
+    "ROS 2 logs an error and drops the link's inertial, visuals and collisions. An inertial needs <mass value> and "
+    "<inertia> with ixx, ixy, ixz, iyy, iyz, izz, all plain numbers.",
 )
 BAD_VISUAL = drops(
     "URDF041",
@@ -72,19 +73,20 @@ UNNAMED_MATERIAL = drops(
 UNDEFINED_MATERIAL = drops(
     "URDF051",
     "A material that is not defined, or used before its definition",
-    "The link is shown without the colour. A material directly under <robot> is defined for every link; one inside a link is "
-    "defined for that link and the links after it. Define it under <robot>.",
+    "The link is shown without the colour. A material directly under <robot> is defined for every link; one inside a "
+    "link is defined for that link and the links after it. Define it under <robot>.",
 )
 BAD_COLOUR = drops(
     "URDF052",
     "An invalid colour",
-    'rgba takes four numbers from 0 to 1: red, green, blue, opacity, as in rgba="0 0.6 0 1". ROS 2 logs an error; a material '
-    "under <robot> becomes black, one inside a link stays undefined. Divide values in 0..255 by 255.",
+    'rgba takes four numbers from 0 to 1: red, green, blue, opacity, as in rgba="0 0.6 0 1". ROS 2 logs an error; a '
+    "material under <robot> becomes black, one inside a link stays undefined. Divide values in 0..255 by 255.",
 )
 COLOUR_COUNT = warns(
     "URDF053",
     "A colour without exactly four numbers",
-    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the opacity: 1.",
+    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the "
+    "opacity: 1.",
 )
 COLOURLESS_MATERIAL = drops(
     "URDF054",
@@ -119,7 +121,8 @@ BAD_AXIS = rejects(
 LIMIT_MISSING = rejects(
     "URDF064",
     "A revolute or prismatic joint without limits",
-    'These joints require <limit lower upper effort velocity>. For a wheel that turns without end use type="continuous".',
+    "These joints require <limit lower upper effort velocity>. For a wheel that turns without end use "
+    'type="continuous".',
 )
 BAD_LIMIT = rejects(
     "URDF065",
@@ -154,8 +157,8 @@ DEFAULT_AXIS = notes(
 ZERO_AXIS = warns(
     "URDF073",
     "A joint axis of length zero",
-    "ROS 2 loads the file, but the pose of every link below this joint is undefined (NaN), and TF drops it. An <axis> without "
-    "xyz is 0 0 0, too.",
+    "ROS 2 loads the file, but the pose of every link below this joint is undefined (NaN), and TF drops it. An <axis> "
+    "without xyz is 0 0 0, too.",
 )
 SCALED_AXIS = notes(
     "URDF074",
@@ -165,8 +168,8 @@ SCALED_AXIS = notes(
 EMPTY_RANGE = warns(
     "URDF075",
     "Joint limits without a range",
-    "lower and upper default to 0, and ROS 2 does not check them: sliders and controllers cannot move a joint whose lower "
-    "limit is not below its upper limit.",
+    "lower and upper default to 0, and ROS 2 does not check them: sliders and controllers cannot move a joint whose "
+    "lower limit is not below its upper limit.",
 )
 MIMIC_TARGET = warns(
     "URDF076",
@@ -176,8 +179,8 @@ MIMIC_TARGET = warns(
 UNPUBLISHED_JOINT = notes(
     "URDF077",
     "A floating or planar joint",
-    "robot_state_publisher does not publish floating joints and treats planar joints as fixed: another node has to publish "
-    "the transform.",
+    "robot_state_publisher does not publish floating joints and treats planar joints as fixed: another node has to "
+    "publish the transform.",
 )
 NEGATIVE_SIZE = warns(
     "URDF078",
@@ -187,14 +190,14 @@ NEGATIVE_SIZE = warns(
 LIMIT_IN_DEGREES = notes(
     "URDF079",
     "A joint limit that looks like degrees",
-    "The limits of a revolute joint are in radians: 90 degrees are 1.5708, 180 degrees 3.1416. ROS 2 loads the file, but the "
-    "joint can turn many times.",
+    "The limits of a revolute joint are in radians: 90 degrees are 1.5708, 180 degrees 3.1416. ROS 2 loads the file, "
+    "but the joint can turn many times.",
 )
 TWO_ROOTS = rejects(
     "URDF080",
     "Links that are not connected to the robot",
-    "All links must form one tree: every link but one is the child of a joint. Add the missing joint, or fix the link names "
-    "in the joints.",
+    "All links must form one tree: every link but one is the child of a joint. Add the missing joint, or fix the link "
+    "names in the joints.",
     is_consequence=True,
 )
 NO_ROOT = rejects(
@@ -223,8 +226,8 @@ TWO_PARENTS = warns(
 TOO_MANY_PATHS = rejects(
     "URDF085",
     "A tree with too many paths",
-    "ROS 2 visits a link with two parents once for every path that leads to it. Here the paths are so many that it does not "
-    "finish loading.",
+    "ROS 2 visits a link with two parents once for every path that leads to it. Here the paths are so many that it "
+    "does not finish loading.",
 )
 REPEATED_ELEMENT = notes(
     "URDF090",
@@ -248,13 +251,14 @@ ROOT_INERTIA = notes(
 COMMENT_TRAP = notes(
     "URDF094",
     "A comment that can break a launch file",
-    "If a launch file passes robot_description without ParameterValue(..., value_type=str), ROS 2 reads the URDF as YAML, and "
-    "a comment that contains a colon and a space, or a tab, stops the launch.",
+    "If a launch file passes robot_description without ParameterValue(..., value_type=str), ROS 2 reads the URDF as "
+    "YAML, and a comment that contains a colon and a space, or a tab, stops the launch.",
 )
 UNLISTED = notes(
     "URDF099",
     "More problems than are listed",
-    "Only the first thousand problems of a file are listed. Fix these first; many of the others may disappear with them.",
+    "Only the first thousand problems of a file are listed. Fix these first; many of the others may disappear with "
+    "them.",
 )
 
 CATALOGUE = kinds_in([*vars(xml_catalogue).values(), *globals().values()])

@@ -27,7 +27,7 @@ class Convention(NamedTuple):
 
 
 def convention_of(robot: Configuration, reference: Configuration, base: str) -> Convention | None:
-    """Return how everything is turned by quarter turns or moved in the frame of `base`; None if it is not, or not alike.
+    """Return how all is rotated by quarter turns or moved in the frame of `base`; None if it is not, or not alike.
 
     One link may be elsewhere: its own mistake.
     """
@@ -43,7 +43,7 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
 
 
 def _pair(robot: Configuration, reference: Configuration, link: str, base: str) -> tuple[Vector, Vector] | None:
-    """Return where the first shape of a link is in the frame of the base of both robots, or its frame if it shows nothing."""
+    """Return where the first shape of a link is in the frame of both robots' base, or its frame if it has no shape."""
     try:
         found = [(it.pose(link, relative_to=base), it.link(link).visuals) for it in (robot, reference)]
     except (MissingElement, NotDecided):

@@ -16,7 +16,7 @@ from grader.text import quoted
 from grader.xml.parsing import Element, XmlDocument
 from grader.xml.urdf_format import TAGS
 
-_FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
+_FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
@@ -53,7 +53,7 @@ class Problems:
         return LazyLocation(self.source, self._indices[element])
 
     def parts(self, element: Element) -> UnresolvedParts:
-        """Return what xacro left unresolved of a link, joint or material, by the tag of its child; "@name" for its own attribute."""
+        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for an attribute."""
         if not self.unresolved:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}

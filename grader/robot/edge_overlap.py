@@ -47,7 +47,7 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
 
 
 def _spanned(p: Array, q: Array) -> Array:
-    """Return the cross products of directions of shape (3, n) with those of (3, m), as (3, n m). np.cross is far slower."""
+    """Return the cross products of directions of shape (3, n) and (3, m), as (3, n m). np.cross is far slower."""
     (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)
 

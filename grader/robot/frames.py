@@ -1,4 +1,4 @@
-"""The motion of each joint and the frame of each link: forward kinematics down the tree, and why a pose is undefined."""
+"""The motion of each joint and the frame of each link: forward kinematics down the tree; why a pose is undefined."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import atan2, isfinite, nan
@@ -73,7 +73,7 @@ class Frames:
         return frame
 
     def position(self, joint: Joint) -> Position:
-        """Return the position of a joint: its own, that of the joint that it mimics, or 0; NaN if xacro leaves that open."""
+        """Return the position of a joint: its own, that of the joint it mimics, or 0; NaN if xacro leaves it open."""
         if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
         # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
@@ -102,7 +102,7 @@ class Frames:
 
 
 def undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
-    """Return the error for a pose that is undefined because of this joint; raise NotDecided where xacro leaves it open."""
+    """Return the error for a pose that this joint leaves undefined; raise NotDecided where xacro leaves it open."""
     for part in ("origin", "axis", ""):
         if part in joint.unresolved:
             joint.unresolved[part].check()
@@ -174,7 +174,7 @@ def _floating(position: Position) -> Transform:
 
 
 def _planar(normal: Vector, position: Position) -> Transform:
-    """Return a motion in the plane across `normal`, then about it; x and y are the frame's if the normal is its z axis."""
+    """Return a motion in the plane across `normal`, then about it; x and y are the frame's if it is the z axis."""
     if isinstance(position, int | float):
         return IDENTITY
     x, y, angle = position

@@ -1,4 +1,4 @@
-"""Mass, centre of mass and inertia of uniform solids, alone or together, and the principal moments of an inertia tensor.
+"""Mass, centre of mass and inertia of uniform solids, alone or together, and principal moments of an inertia tensor.
 
 The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor are those of textbooks
 of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.13).
@@ -18,7 +18,7 @@ _MAX_SWEEPS = 12  # of Jacobi rotations, which converge quadratically: 3 x 3 mat
 
 
 class MassProperties(NamedTuple):
-    """The mass of a body in kg, its centre of mass in metres, and its inertia about that centre, along the axes of one frame."""
+    """The mass of a body in kg, its centre of mass in m, and its inertia about that, along the axes of one frame."""
 
     mass: float
     centre: Vector
@@ -88,7 +88,7 @@ def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:
 
 
 def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
-    """Return the inertia of a body about a point at `offset` from its centre of mass, in metres (parallel axis theorem)."""
+    """Return the inertia of a body about a point at `offset` (m) from its centre of mass: parallel axis theorem."""
     x, y, z = offset
     away = (y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y)
     return _tensor(about + mass * square for about, square in zip(inertia, away, strict=True))

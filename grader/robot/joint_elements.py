@@ -48,7 +48,7 @@ class SafetyController:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The positions (rad or m) at which the reference switch of a joint has a rising or falling edge; None if not given."""
+    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge; None if not given."""
 
     rising: float | None = None
     falling: float | None = None

@@ -1,4 +1,4 @@
-"""Joints as urdfdom reads them (`joint.cpp`), where every defect rejects the whole file, and the names that they refer to."""
+"""Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the names they refer to."""
 
 from itertools import islice
 
@@ -97,7 +97,7 @@ def _read_axis(element: Element, axis: Element | None, kind: str, problems: Prob
     if unit(direction) is None:
         message = "this axis has length 0; ROS 2 loads it, but every pose below this joint is undefined"
         problems.add(catalogue.ZERO_AXIS, message, axis, "xyz")
-    elif abs(sum(component * component for component in direction) - 1.0) > 0.02:
+    elif abs(sum(component * component for component in direction) - 1.0) > 0.02:  # 0.71 0.71 0 is rounded only
         message = "only the direction of an axis counts: ROS 2 normalizes it"
         problems.add(catalogue.SCALED_AXIS, message, axis, "xyz")
     return direction
@@ -122,6 +122,7 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
 
 def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -> None:
     for attribute, angle in ends.items():
+        # Degrees are round numbers: 10 and 15 are also taken for degrees, 31.4 (five turns in radians) is not.
         if FULL_TURN < abs(angle) <= _MAX_DEGREES and angle % 5 == 0:
             message = f"{attribute} is in radians, and {angle:g} is more than a full turn: is it in degrees?"
             problems.add(catalogue.LIMIT_IN_DEGREES, message, limit, attribute)
@@ -172,7 +173,8 @@ def check_references(robot: Robot, problems: Problems) -> None:
             if name and not robot.has_link(name):
                 guess = problems.did_you_mean(name, links)
                 guess = guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
-                message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist; ROS 2 rejects the file{guess}"
+                message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
+                message += f"; ROS 2 rejects the file{guess}"
                 problems.add(catalogue.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
         if joint.mimic is not None and not robot.has_joint(joint.mimic.joint):
             guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])

@@ -108,7 +108,7 @@ class Configuration:
         return pose
 
     def axis(self, joint: str | Joint) -> Vector:
-        """Return the unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
+        """Return the unit axis of a joint in its child link's frame; raises MissingElement if it has no direction."""
         found = self.joint(joint) if isinstance(joint, str) else joint
         direction = unit(found.axis) if found.axis is not None else None
         if direction is None:
@@ -168,7 +168,7 @@ class Configuration:
         return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.parent_joints)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
-        """Return the motion of points on a link when a joint that turns or slides moves by `angle` (rad or m) from here.
+        """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.
 
         Both the points and the motion are in the frame of `relative_to`.
         """

@@ -49,7 +49,7 @@ def turn_between(one: Rotation, other: Rotation) -> float:
 
 
 def ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
-    """Yield the size, turn and angle of the difference for each way to lay one shape over the other, that of its axes first."""
+    """Yield the size, turn and angle of the difference for each way to lay a shape over another, aligned axes first."""
     match a, b:
         case Sphere(), Sphere():
             yield _off(a.radius, b.radius), 0.0, 0.0

@@ -40,7 +40,7 @@ class Materials:
             self.known[name] = material or Material(name, location=problems.location(element))
 
     def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
-        """Return the material that a visual gets, and its name: a defined one wins, otherwise the one in place is defined."""
+        """Return the material of a visual and its name: a defined one wins, otherwise the one in place is defined."""
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
             return self.known[name], name

@@ -18,7 +18,7 @@ Vector = tuple[float, float, float]
 
 
 class UnresolvedPart(NamedTuple):
-    """A part of a link, joint or material that xacro leaves open: why it cannot be determined; empty where xacro refuses it."""
+    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where xacro refuses it."""
 
     reason: str
     location: LazyLocation

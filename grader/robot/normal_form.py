@@ -1,4 +1,4 @@
-"""The normal form of a robot: equal for two files that differ only in what a copy can change without changing the robot."""
+"""The normal form of a robot: equal for files that differ only in what a copy can change without changing the robot."""
 
 from dataclasses import fields, is_dataclass
 from hashlib import sha256

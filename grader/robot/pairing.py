@@ -1,4 +1,4 @@
-"""Two robots whose joints are paired: how far links of one are from those of the other with the joints at the same positions."""
+"""Two robots with paired joints: how far links of one are from those of the other with joints at the same positions."""
 
 from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from math import asin, degrees, dist, inf, sqrt
@@ -42,7 +42,7 @@ class RobotPair(NamedTuple):
     angle: float
 
     def offset(self, positions: tuple[float, ...], reversed_joints: Collection[int] = ()) -> Offset:
-        """Return the largest offset with the joints at these positions; of the robot some, by their indices, are at the opposite."""
+        """Return the largest offset at these positions of the joints; those of one robot may be reversed, by index."""
         own = {
             joint.name: -position if index in reversed_joints else position
             for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
@@ -57,7 +57,7 @@ class RobotPair(NamedTuple):
         return max(found, key=lambda offset: (self.times(offset), offset.distance))
 
     def _expected(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
-        """Return the poses of the other robot's links, which are computed once for all robots that are compared with it."""
+        """Return the poses of the other robot's links, computed once for all robots that are compared with it."""
         known = _EXPECTED.setdefault(self.robots[1], {})
         names, links = (tuple(joint.name for _, joint in self.joints), tuple(link for _, link in self.links))
         key = (self.bases[1], links, names, positions)
@@ -67,7 +67,7 @@ class RobotPair(NamedTuple):
         return known[key]
 
     def times(self, offset: Offset) -> float:
-        """Return how many times an offset is larger than the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
+        """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
         shares = offset.distance / max(self.tolerance, _LEAST), offset.angle / max(self.angle, _LEAST)
         return max(round(share, 6) if share >= 0 else inf for share in shares)
 

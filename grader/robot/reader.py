@@ -182,7 +182,8 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
         problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro)))
     for start, end in _comments(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
-            message = "this comment contains a colon and a space, or a tab: it can stop a launch file that passes the URDF as YAML"
+            message = "this comment contains a colon and a space, or a tab"
+            message += ": it can stop a launch file that passes the URDF as YAML"
             problems.listed.append(Problem(catalogue.COMMENT_TRAP, message, problems.source.at(start)))
             break
 

@@ -11,7 +11,7 @@ _BETWEEN = 0.3  # of a range: a position that is neither an end nor the middle
 
 
 def singles(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
-    """Yield positions with one joint at an end of its range, or between them, and the others at 0; each with its index."""
+    """Yield positions with one joint at an end of its range, or between, and the others at 0; each with its index."""
     for index, joint in enumerate(joints):
         low, high = _range(joint)
         for position in (low, high, low + _BETWEEN * (high - low)):

@@ -118,7 +118,7 @@ def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vec
 
 
 def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
-    """Return the point nearest the origin on the line or plane, or in the space, through corners, if it is between them."""
+    """Return the point nearest the origin on the line, plane or space through corners, if it is between them."""
     edges = [minus(other, first) for other in others]
     home = (-first[0], -first[1], -first[2])
     match edges:

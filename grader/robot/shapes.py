@@ -24,7 +24,7 @@ class UnknownShape(ValueError):
 
 
 def half_width(geometry: Geometry, direction: Vector) -> float:
-    """Return the extent of a shape from its centre along a unit direction of its frame, metres; UnknownShape for a mesh.
+    """Return the extent (m) of a shape from its centre along a unit direction of its frame; UnknownShape for a mesh.
 
     This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section 4.3). The cylinder's
     `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would have.

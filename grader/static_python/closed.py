@@ -152,7 +152,7 @@ class _Evaluator:
     def _rounds(
         self, loops: list[ast.comprehension], local: Mapping[str, Value], depth: int = 0
     ) -> Iterator[Mapping[str, Value]]:
-        """Yield the names that are bound in each round of nested loops, charged by depth: each loop around passes them on."""
+        """Yield the names bound in each round of nested loops, charged by depth: each loop around passes them on."""
         if not loops:
             yield local
             return

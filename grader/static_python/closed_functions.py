@@ -98,13 +98,13 @@ def _range(*bounds: int) -> range:
 
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "list": _of_items(list), "dict": make_dict, "str": lambda *args: text_of(*args) if args else "", "float": float, "int": int,
-    "bool": bool, "len": len, "abs": abs, "ord": ord, "round": _round, "range": _range, "min": _largest(min), "max": _largest(max),
-    "sorted": _of_items(sorted), "sum": _sum,
+    "list": _of_items(list), "dict": make_dict, "str": lambda *args: text_of(*args) if args else "",
+    "float": float, "int": int, "bool": bool, "len": len, "abs": abs, "ord": ord, "round": _round, "range": _range,
+    "min": _largest(min), "max": _largest(max), "sorted": _of_items(sorted), "sum": _sum,
     **{
         name: _unsupported(name)
-        for name in ("all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance", "issubclass", "map",
-                     "repr", "reversed", "set", "slice", "tuple", "type", "vars", "zip")
+        for name in ("all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance",
+                     "issubclass", "map", "repr", "reversed", "set", "slice", "tuple", "type", "vars", "zip")
     },
 }  # fmt: skip
 BUILTINS: Mapping[str, ClosedFunction] = {name: ClosedFunction(name, function) for name, function in _FUNCTIONS.items()}

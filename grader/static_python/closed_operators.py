@@ -1,4 +1,4 @@
-"""Operators, comparisons, subscripts, attributes and methods of the values of closed expressions: Python's own, on values of bounded size."""
+"""Operators, subscripts, attributes and methods in closed expressions: Python's own, on values of bounded size."""
 
 import ast
 import operator
@@ -92,8 +92,8 @@ _METHODS: Mapping[type, Mapping[str, Callable[..., Value]]] = {
         "replace": _replace, "join": _join,
         **{
             name: getattr(str, name)
-            for name in ("capitalize", "count", "endswith", "find", "index", "isdigit", "lower", "lstrip", "rsplit", "rstrip",
-                         "split", "startswith", "strip", "title", "upper")
+            for name in ("capitalize", "count", "endswith", "find", "index", "isdigit", "lower", "lstrip", "rsplit",
+                         "rstrip", "split", "startswith", "strip", "title", "upper")
         },
     },
     dict: {"get": dict.get, "keys": _view(dict.keys), "values": _view(dict.values), "items": _view(dict.items)},

@@ -1,4 +1,4 @@
-"""The values of closed expressions, plain ones of bounded size, and the budget that the work with them is charged to."""
+"""The values of closed expressions, plain ones of bounded size, and the budget to which work with them is charged."""
 
 from collections.abc import Callable, Collection, Iterable
 from typing import Any, NoReturn
@@ -56,7 +56,7 @@ class Budget:
             raise OutOfBudget(f"reading this takes more work than one submission may use ({self.limit:,} parts)")
 
     def measure(self, value: Value) -> int:
-        """Charge a value and return its size: the parts that it contains, each as often as it occurs. Raises Undetermined."""
+        """Charge a value and return its size: its parts, each as often as it occurs. Raises Undetermined."""
         pending, size = [value], 0
         while pending:
             part = pending.pop()

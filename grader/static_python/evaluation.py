@@ -1,4 +1,4 @@
-"""The state of one static evaluation: steps, errors, recorded calls, and whether the current statement is certainly reached.
+"""The state of a static evaluation: steps, errors, recorded calls, whether the current statement is certainly reached.
 
 What depends on something known only at run time becomes Unknown, with the reason; nothing is guessed. Steps, sizes and
 depth are bounded, so that the evaluation of any file ends.
@@ -84,7 +84,7 @@ class Evaluation:
             raise EvaluationStopped("the evaluation takes too many steps")
 
     def error(self, message: str, at: Position, kind: type[Exception] = TypeError) -> None:
-        """Record once an error that stops Python here, if this place is certainly reached; `kind` decides what catches it."""
+        """Record once an error that stops Python at a place certainly reached; `kind` decides what catches it."""
         if self.uncertainty is not None:
             return
         if self.handlers:
@@ -94,7 +94,7 @@ class Evaluation:
             self.errors.append(PythonError(message, at))
 
     def record(self, call: Call) -> Call:
-        """Record a call that is not evaluated, and return it as its own result. Raises ExitFlow if it certainly exits."""
+        """Record a call that is not evaluated, and return it as its result. Raises ExitFlow if it certainly exits."""
         if call.name in _EXITS and self.uncertainty is None and not self.handlers:
             if call.args and call.args[0] not in (0, None):
                 self.error("the file exits here with an error", call.at)

@@ -11,10 +11,10 @@ from grader.static_python.values import QualifiedName
 _SETUPTOOLS_PUBLIC = ("setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension")
 _SETUPTOOLS = frozenset(
     {"setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension", "Require", "depends",
-     "dist", "command", "errors", "extension", "PackageFinder", "PEP420PackageFinder", "sic", "SetuptoolsDeprecationWarning",
-     "build_meta", "glob", "msvc", "monkey", "namespaces", "sandbox", "unicode_utils", "wheel", "windows_support", "version",
-     "archive_util", "dep_util", "discovery", "config", "installer", "launch", "logging", "package_index", "convert_path",
-     "findall", "distutils", "warnings", "modified"}
+     "dist", "command", "errors", "extension", "PackageFinder", "PEP420PackageFinder", "sic",
+     "SetuptoolsDeprecationWarning", "build_meta", "glob", "msvc", "monkey", "namespaces", "sandbox", "unicode_utils",
+     "wheel", "windows_support", "version", "archive_util", "dep_util", "discovery", "config", "installer", "launch",
+     "logging", "package_index", "convert_path", "findall", "distutils", "warnings", "modified"}
 )  # fmt: skip
 # Modules of the standard library that students' setup files import; their names are read from the modules themselves.
 _INSPECTED = frozenset({"os", "os.path", "glob", "pathlib", "sys", "shutil", "itertools", "re"})
@@ -23,10 +23,13 @@ _INSTALLED_WITH_ROS = ("distutils", "pkg_resources", "wheel", "launch", "launch_
 _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
     "launch": ("LaunchDescription", "LaunchContext", "LaunchService"),
     "launch.actions": (
-        "DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction",
-        "RegisterEventHandler", "SetEnvironmentVariable", "SetLaunchConfiguration", "TimerAction", "EmitEvent",
+        "DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo",
+        "OpaqueFunction", "RegisterEventHandler", "SetEnvironmentVariable", "SetLaunchConfiguration", "TimerAction",
+        "EmitEvent",
     ),
-    "launch.conditions": ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"),
+    "launch.conditions": (
+        "IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals",
+    ),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnShutdown", "OnExecutionComplete"),
     "launch.launch_description_sources": (
         "PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource",
@@ -36,7 +39,9 @@ _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
         "PythonExpression", "TextSubstitution", "ThisLaunchFileDir",
     ),
     "launch_ros": (),
-    "launch_ros.actions": ("Node", "LifecycleNode", "ComposableNodeContainer", "PushRosNamespace", "SetParameter", "SetRemap"),
+    "launch_ros.actions": (
+        "Node", "LifecycleNode", "ComposableNodeContainer", "PushRosNamespace", "SetParameter", "SetRemap",
+    ),
     "launch_ros.descriptions": ("ComposableNode", "ParameterValue", "ParameterFile"),
     "launch_ros.parameter_descriptions": ("ParameterValue", "ParameterFile"),
     "launch_ros.substitutions": ("FindPackageShare", "FindPackagePrefix", "FindPackage", "ExecutableInPackage"),

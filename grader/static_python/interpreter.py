@@ -148,7 +148,7 @@ class Interpreter(StatementEvaluator):
     _asyncfor, _trystar = _for, _try
 
     def _guarded(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
-        """Evaluate a block whose errors are caught; return the error that is certainly raised, and whether another one may be."""
+        """Evaluate a block whose errors are caught; return the certainly raised error, and whether another may be."""
         before, failed_before, self.may_have_failed = self.uncertainty, self.may_have_failed, False
         self.handlers += 1
         raised: RaisedFlow | None = None

@@ -1,4 +1,4 @@
-"""Attributes and methods of plain values: strings, lists, dicts and paths. Most are Python's own, run on bounded values."""
+"""Attributes and methods of plain values (strings, lists, dicts, paths): most are Python's own, on bounded values."""
 
 import re
 from contextlib import suppress

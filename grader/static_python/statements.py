@@ -1,4 +1,4 @@
-"""Evaluate expressions of any kind, also given as text, and the statements that have no blocks: imports, assignments, deletions, raise and assert."""
+"""Evaluate expressions of any kind, also given as text, and the statements that have no blocks, such as imports."""
 
 import ast
 import builtins

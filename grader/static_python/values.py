@@ -1,4 +1,4 @@
-"""Abstract values: what an expression evaluates to without being run, a plain Python value or a stand-in; their size, items, truth and text."""
+"""Abstract values, plain Python values or stand-ins that expressions evaluate to: their size, items, truth and text."""
 
 import ast
 from collections.abc import Callable
@@ -18,7 +18,7 @@ Value = Any
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A value that cannot be determined statically, and the reason. An operation with it is unknown for the same reason."""
+    """A value that cannot be determined statically, and why. An operation with it is unknown for the same reason."""
 
     reason: str
     at: Position
@@ -176,13 +176,13 @@ def as_text(value: Value) -> str | None:
 
 
 def distinct(values: list[Value]) -> list[Value]:
-    """Return the values of a set, without duplicates. Their order is not that of the set, which differs between runs."""
+    """Return the values of a set, without duplicates. Their order is not the set's, which differs between runs."""
     plain = all(isinstance(value, str | int | float | PurePosixPath | None) for value in values)
     return list(dict.fromkeys(values)) if plain else values
 
 
 def names_package_folder(path: str) -> bool:
-    """Return whether a text contains the stand-in for the name of the package's folder, other than as the root of a path."""
+    """Return whether a text contains the stand-in for the name of the package's folder, but not as a path's root."""
     return PACKAGE_FOLDER in path.removeprefix(f"/{PACKAGE_FOLDER}")
 
 

@@ -51,7 +51,7 @@ def creates(submission: Submission, edit: Edit) -> bool:
 
 
 def with_urdf(submission: Submission, files: Files) -> Submission:
-    """Return a submission with the URDF read again, and nothing else: for edits of the URDF and of xacro that it includes."""
+    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None

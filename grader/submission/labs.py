@@ -102,7 +102,7 @@ def lab_words(name: str) -> tuple[str, ...]:
 
 
 def _joined(words: Sequence[str]) -> str:
-    """Return words without spaces, but with a point between numbers: lab6, and lab6.2 of Lab6 (2), which is not lab 62."""
+    """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which is not lab 62."""
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 
 

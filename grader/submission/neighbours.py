@@ -42,7 +42,7 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Map
 
 
 def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Submission:
-    """Return a file of a tree as a submission, with everything that is read for it; `alone` is what is around it without a tree."""
+    """Return a file of a tree as a submission, with what is read for it; `alone`: its surroundings without a tree."""
     known: dict[str, bytes] = {}
 
     def read(file: File, limit: int, *, first: bool = False) -> bytes:

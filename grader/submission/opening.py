@@ -101,7 +101,7 @@ def submission_of(
     no_documents: str = "",
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
 ) -> Submission:
-    """Return the submission that a file tree makes; raises InputError, which calls it `shown`, if there are no files."""
+    """Return the submission that a file tree makes; raises InputError, which names it `shown`, if it has no files."""
     if not tree.files and not tree.generated:
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")

@@ -1,4 +1,4 @@
-"""The package of a submission that is graded, and the reasons against the others and against files kept of earlier work."""
+"""The graded package of a submission, and the reasons against the others and against files kept of earlier work."""
 
 import re
 
@@ -16,14 +16,14 @@ _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+")
 _WORDS = frozenset(
     {
-        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived", "previous", "prev",
-        "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
+        "old", "older", "oldest", "backup", "backups", "bak", "copy", "copies", "kopie", "archive", "archived",
+        "previous", "prev", "deprecated", "legacy", "unused", "trash", "draft", "drafts", "broken", "wrong",
     }
 )  # fmt: skip
 
 
 def is_backup(path: str) -> bool:
-    """Return whether a file, or a folder around it, is named like a backup: old_ws, my_robot - Copy, my_robot.urdf.bak."""
+    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy, my_robot.urdf.bak."""
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
@@ -36,7 +36,7 @@ LATER = "it matches equally well, but comes later in alphabetical order"
 
 
 def find_packages(tree: Tree, wanted: str) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of the wanted name with at least a setup.py."""
+    """Return the folders of packages: those with a package.xml, and those of the wanted name with only a setup.py."""
     with_manifest, with_setup = (
         [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == name]
         for name in (MANIFEST, SETUP)

@@ -1,4 +1,4 @@
-"""Edits that make ROS 2 load a file of xacro that is loaded without xacro: its launch file runs xacro, or its name says xacro."""
+"""Edits that make ROS 2 load a xacro file that no xacro expands: the launch file runs xacro, or the name says xacro."""
 
 from collections.abc import Iterator
 

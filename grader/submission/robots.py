@@ -15,7 +15,16 @@ _MAX_ROBOTS = 400  # found by their content alone
 # What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always
 # linear.
 _PROLOG = re.compile(
-    rb"(?:\xef\xbb\xbf)?(?>\s+|<\?[^>]*>|<!--.*?-->|<!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>)*+", re.DOTALL | re.IGNORECASE
+    rb"""
+    (?:\xef\xbb\xbf)?                             # the byte-order mark that Windows editors write
+    (?>
+        \s+
+      | <\?[^>]*>                                 # <?xml version="1.0"?>, <?xml version="1.0">
+      | <!--.*?-->
+      | <!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>         # <!DOCTYPE robot>, <!DOCTYPE robot [ ... ]>
+    )*+
+    """,
+    re.DOTALL | re.IGNORECASE | re.VERBOSE,
 )
 _ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
@@ -28,10 +37,10 @@ _LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read firs
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
     {
-        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc", ".docx",
-        ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi", ".zip", ".tar",
-        ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend", ".pyc", ".so", ".a",
-        ".o", ".exe", ".dll", ".bin", ".db", ".db3",
+        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc",
+        ".docx", ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi",
+        ".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend",
+        ".pyc", ".so", ".a", ".o", ".exe", ".dll", ".bin", ".db", ".db3",
     }
 )  # fmt: skip
 
@@ -94,7 +103,7 @@ def parts_of(robots: tuple[RobotFile, ...]) -> frozenset[str]:
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if its first element is another."""
+    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another element is first."""
     if not file.size:
         return None
     for count in (START, _LONG_START):

@@ -43,7 +43,7 @@ class Selection(NamedTuple):
 
 
 def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit: int) -> Selection:
-    """Select what is graded, given what the rubric says: the URDF's path, the package's name, the names of the lab's folder.
+    """Select what is graded, given the rubric's path of the URDF, name of the package and names of the lab's folder.
 
     Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its
     kind. Another lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists,
@@ -80,7 +80,7 @@ def _students(
 
 
 class _LabScope:
-    """The part of a submission in which its lab is searched: `tree`, and `documents` without what is outside of the lab's folder.
+    """The part of a submission in which its lab is searched: `tree`, and `documents` only from the lab's folder.
 
     `robots` are the candidates in it, `elsewhere` are other robots and packages.
     """
@@ -139,7 +139,7 @@ class _LabScope:
         return found
 
     def nearest(self, paths: Iterable[str]) -> Belonging | None:
-        """Return where the nearest of these files are: in the lab's folder, or else in no lab's folder; None if nowhere."""
+        """Return where the nearest of these files are: in the lab's folder, or else in no lab's; None if nowhere."""
         present = set(map(self.lab, paths))
         return next((lab for lab in self._allowed if lab in present), None)
 

@@ -1,4 +1,4 @@
-"""The folders of several students in one repository, told from the parts and versions of one student's submission by their names."""
+"""The folders of several students in one repository, told by name from parts and versions of one student's work."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -9,34 +9,40 @@ from grader.submission.labs import without_archive
 
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
-_DATE = re.compile(r"(?<!\d)(?:(?:19|20)\d\d[-_.]?[01]\d[-_.]?[0-3]\d|[0-3]?\d[-_.][01]?\d[-_.](?:20)?\d\d)(?!\d)")
+_DATE = re.compile(
+    r"(?<!\d)(?:(?:19|20)\d\d[-_.]?[01]\d[-_.]?[0-3]\d"  # 2025-03-14, 20250314
+    r"|[0-3]?\d[-_.][01]?\d[-_.](?:20)?\d\d)(?!\d)"  # 14.3.2025, 14_03_25
+)
 _MIN_NUMBER = 4  # digits of a number that is part of a login, and not of a version
 _MIN_ID = 7  # digits of a name that is a number only, such as that of a student at the university
 
 # Words in the names of folders that are part of any submission.
 _PARTS = frozenset(
     {
-        "src", "source", "sources", "launch", "config", "configs", "configuration", "resource", "resources", "test", "tests",
-        "build", "install", "log", "logs", "doc", "docs", "document", "documents", "documentation", "image", "images", "img",
-        "imgs", "picture", "pictures", "pic", "pics", "photo", "photos", "screenshot", "screenshots", "evidence", "answer",
-        "answers", "report", "reports", "mesh", "meshes", "world", "worlds", "model", "models", "param", "params", "map", "maps",
-        "include", "includes", "script", "scripts", "media", "asset", "assets", "code", "codes", "package", "packages", "pkg",
-        "pkgs", "ws", "ros", "homework", "hw", "video", "videos", "data", "task", "tasks", "part", "parts", "step", "steps",
-        "exercise", "exercises", "ex", "lab", "labs", "prelab", "postlab", "pre", "post", "assignment", "assignments", "week",
-        "question", "questions", "q", "bot", "description", "bringup", "interface", "interfaces", "msgs", "sim", "simulation",
-        "simulator", "control", "controller", "controllers", "navigation", "nav", "slam", "sensor", "sensors", "lidar", "laser",
-        "camera", "webcam", "wheel", "wheels", "wheeled", "base", "chassis", "arm", "gripper", "box", "boxes", "cylinder",
-        "sphere", "caster", "footprint", "mobile", "diff", "differential", "drive", "driver", "vehicle", "car", "rover", "cart",
-        "tutorial", "tutorials", "example", "examples", "demo", "demos", "template", "templates", "handout", "given", "provided",
-        "starter", "skeleton", "reference", "project", "projects", "course", "programming", "file", "files", "folder", "dir",
-        "stuff", "misc", "other", "others", "common", "shared", "util", "utils", "lib", "library", "tool", "tools", "bin", "share",
-        "material", "materials", "inertia", "inertial", "macro", "macros", "component", "components", "desktop", "downloads",
-        "home", "user", "ubuntu", "linux", "windows", "mac", "vm", "docker", "github", "git", "repo", "repository", "main",
-        "master", "dev", "devel", "develop", "branch", "app", "moveit", "python", "cpp", "notebook", "notebooks", "note", "notes",
-        "input", "output", "result", "results", "zip", "rar", "proto", "protos", "plugin", "plugins", "team", "teams", "group",
-        "groups", "class", "student", "students", "member", "members", "deliverable", "deliverables", "practice", "playground",
-        "plain", "simple", "basic", "advanced", "html", "web", "static", "public", "private", "extra", "extras", "bonus",
-        "irp", "introduction", "intro", "abgabe", "aufgabe", "aufgaben", "bilder", "praktikum", "optional", "required", "real", "fake", "dummy", "sample", "samples", "visual", "visuals", "collision", "geometry",
+        "src", "source", "sources", "launch", "config", "configs", "configuration", "resource", "resources", "test",
+        "tests", "build", "install", "log", "logs", "doc", "docs", "document", "documents", "documentation", "image",
+        "images", "img", "imgs", "picture", "pictures", "pic", "pics", "photo", "photos", "screenshot", "screenshots",
+        "evidence", "answer", "answers", "report", "reports", "mesh", "meshes", "world", "worlds", "model", "models",
+        "param", "params", "map", "maps", "include", "includes", "script", "scripts", "media", "asset", "assets",
+        "code", "codes", "package", "packages", "pkg", "pkgs", "ws", "ros", "homework", "hw", "video", "videos", "data",
+        "task", "tasks", "part", "parts", "step", "steps", "exercise", "exercises", "ex", "lab", "labs", "prelab",
+        "postlab", "pre", "post", "assignment", "assignments", "week", "question", "questions", "q", "bot",
+        "description", "bringup", "interface", "interfaces", "msgs", "sim", "simulation", "simulator", "control",
+        "controller", "controllers", "navigation", "nav", "slam", "sensor", "sensors", "lidar", "laser", "camera",
+        "webcam", "wheel", "wheels", "wheeled", "base", "chassis", "arm", "gripper", "box", "boxes", "cylinder",
+        "sphere", "caster", "footprint", "mobile", "diff", "differential", "drive", "driver", "vehicle", "car", "rover",
+        "cart", "tutorial", "tutorials", "example", "examples", "demo", "demos", "template", "templates", "handout",
+        "given", "provided", "starter", "skeleton", "reference", "project", "projects", "course", "programming", "file",
+        "files", "folder", "dir", "stuff", "misc", "other", "others", "common", "shared", "util", "utils", "lib",
+        "library", "tool", "tools", "bin", "share", "material", "materials", "inertia", "inertial", "macro", "macros",
+        "component", "components", "desktop", "downloads", "home", "user", "ubuntu", "linux", "windows", "mac", "vm",
+        "docker", "github", "git", "repo", "repository", "main", "master", "dev", "devel", "develop", "branch", "app",
+        "moveit", "python", "cpp", "notebook", "notebooks", "note", "notes", "input", "output", "result", "results",
+        "zip", "rar", "proto", "protos", "plugin", "plugins", "team", "teams", "group", "groups", "class", "student",
+        "students", "member", "members", "deliverable", "deliverables", "practice", "playground", "plain", "simple",
+        "basic", "advanced", "html", "web", "static", "public", "private", "extra", "extras", "bonus", "irp",
+        "introduction", "intro", "abgabe", "aufgabe", "aufgaben", "bilder", "praktikum", "optional", "required", "real",
+        "fake", "dummy", "sample", "samples", "visual", "visuals", "collision", "geometry",
     }
 )  # fmt: skip
 _STEMS = re.compile(
@@ -45,16 +51,17 @@ _STEMS = re.compile(
 # Words in the names of versions, which say nothing of whose the folder is.
 _VERSIONS = frozenset(
     {
-        "old", "older", "oldest", "new", "newer", "newest", "copy", "copies", "kopie", "bak", "v", "ver", "version", "versions",
-        "final", "finals", "finished", "latest", "current", "previous", "prev", "orig", "original", "solution", "solutions", "sol",
-        "solved", "try", "attempt", "attempts", "draft", "drafts", "wip", "tmp", "temp", "work", "working", "works", "good", "bad",
-        "better", "best", "broken", "fixed", "fix", "correct", "corrected", "correction", "wrong", "submission", "submissions",
-        "submit", "submitted", "handin", "upload", "uploads", "uploaded", "resubmission", "resubmit", "revised", "revision", "rev",
-        "update", "updated", "improved", "first", "second", "third", "last", "complete", "completed", "done", "full", "initial",
-        "start", "before", "after", "archive", "archived", "save", "saved", "saves", "export", "exported", "trash", "unused",
-        "deprecated", "legacy", "ready", "my", "mine", "the", "of", "and", "or", "for", "with", "without", "to", "in", "on", "a",
-        "from", "only", "not", "this", "use", "alternative", "alt", "variant", "option", "one", "two", "three", "ii", "iii", "iv",
-        "versuch", "untitled", "unnamed", "von",
+        "old", "older", "oldest", "new", "newer", "newest", "copy", "copies", "kopie", "bak", "v", "ver", "version",
+        "versions", "final", "finals", "finished", "latest", "current", "previous", "prev", "orig", "original",
+        "solution", "solutions", "sol", "solved", "try", "attempt", "attempts", "draft", "drafts", "wip", "tmp", "temp",
+        "work", "working", "works", "good", "bad", "better", "best", "broken", "fixed", "fix", "correct", "corrected",
+        "correction", "wrong", "submission", "submissions", "submit", "submitted", "handin", "upload", "uploads",
+        "uploaded", "resubmission", "resubmit", "revised", "revision", "rev", "update", "updated", "improved", "first",
+        "second", "third", "last", "complete", "completed", "done", "full", "initial", "start", "before", "after",
+        "archive", "archived", "save", "saved", "saves", "export", "exported", "trash", "unused", "deprecated",
+        "legacy", "ready", "my", "mine", "the", "of", "and", "or", "for", "with", "without", "to", "in", "on", "a",
+        "from", "only", "not", "this", "use", "alternative", "alt", "variant", "option", "one", "two", "three", "ii",
+        "iii", "iv", "versuch", "untitled", "unnamed", "von",
     }
 )  # fmt: skip
 _NUMBERED = frozenset({"student", "team", "group", "member", "gruppe"})  # team 1 and team 2 are two
@@ -93,7 +100,7 @@ def students_in(
 def students_beside(
     folder: str, folders: Collection[str], packages: Mapping[str, str], lab: Collection[str], wanted: str
 ) -> tuple[str, tuple[str, ...]]:
-    """Return the folder of the student whose work is in a folder, and those beside it that may be other students'; none if none are.
+    """Return the folder of the student whose work is in a folder, and those beside it that may be others'; or none.
 
     `folders` are all of the submission; the other arguments are those of `students_in`.
     """
@@ -118,7 +125,7 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
 
 
 def person_in(name: str, lab: Collection[str] = ()) -> str:
-    """Return whose a folder is, by its name; empty if that names a part or a version of a submission. `lab` are words to ignore."""
+    """Return whose a folder is, by its name; empty for a part or version of a submission. `lab` are words to ignore."""
     words = _words(name)
     if _is_numbered(words):
         return "".join(words)
@@ -140,7 +147,7 @@ def _words(name: str) -> list[str]:
 
 
 def _owners(folder: str, packages: Mapping[str, str], lab: Collection[str], wanted: str) -> Iterator[tuple[str, str]]:
-    """Yield who a folder is of, as its path tells, with the folder that tells it: that of a package tells nothing but its name."""
+    """Yield whose a folder is, with the folder on its path that tells it: a package's only if it is renamed."""
     for path in accumulate(folder.split("/") if folder else (), "{}/{}".format):
         name = path.rpartition("/")[2]
         package = packages.get(path)

@@ -29,7 +29,7 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True)
 class Submission:
-    """The work that a student submitted. `package` is the one that is graded; `no_package` says why none is, and which there are.
+    """The work that a student submitted. `package` is the graded one; `no_package` says why none is, and which exist.
 
     `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several
     students whose work it holds, and `notes` say how it was read.
@@ -126,7 +126,7 @@ class Submission:
         return tuple(map(str, self.tree.ignored))
 
     def needed_package(self) -> Package:
-        """Return the package that is graded; raises MissingElement without one, NotDecided if one may be in an unopened archive."""
+        """Return the graded package; raises MissingElement without one, NotDecided if an archive is unopened."""
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
@@ -134,7 +134,7 @@ class Submission:
         raise MissingElement("package", "", message=message, detail=detail)
 
     def needed_urdf(self) -> Reading:
-        """Return the URDF that is graded; raises MissingElement without one, NotDecided if it cannot be read statically."""
+        """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be read statically."""
         match self.urdf:
             case Read(reading=reading):
                 if reading.robot is None and reading.undetermined:

@@ -1,4 +1,4 @@
-"""What is around a URDF in a submission: the packages whose launch files load it, and the files that its xacro includes."""
+"""What is around a URDF in a submission: packages whose launch files load it, and files that its xacro includes."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Surroundings:
             raise NotDecided(str(error)) from None
 
     def _installed(self, name: str, inside: str) -> str | None:
-        """Return the file that is at a path in a package once it is built; without any package, the most similar path."""
+        """Return the file at a path in a package once it is built; without any package, the most similar path."""
         from grader.package.cmake import read_cmake  # late: most URDFs are no xacro
 
         for package in self.packages:

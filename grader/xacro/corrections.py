@@ -1,4 +1,4 @@
-"""Edits that may correct what xacro refuses: unknown names, calls that do not fit a macro, a missing include, its XML."""
+"""Edits that may correct what xacro refuses: unknown names, calls that do not fit a macro, a missing include, XML."""
 
 import posixpath
 import re
@@ -61,7 +61,7 @@ class Corrector:
         yield from self._calls_of_macros(names)
 
     def _respelled(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
-        """Yield the edits that correct an unknown name where it is used, or where a similar one is defined; declare a parameter."""
+        """Yield the edits that correct an unknown name where it is used or a similar one defined; add a parameter."""
         near = closest(unknown.name, unknown.known)
         is_few = attribute is None and len(unknown.known) <= _MAX_NAMES
         ways: list[Edits] = []
@@ -161,7 +161,7 @@ def _name_of(macro: XacroNode) -> str:
 
 
 def _renamed(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
-    """Return the edit of an attribute's value; without an attribute, of the name of one, of the tag, or of any value."""
+    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the tag, or any value."""
     source, start = place.source.element(place.tag)
     tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()
     for found in () if tags else markup.attributes(source.text, start):

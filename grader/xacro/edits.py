@@ -46,7 +46,7 @@ Way = tuple[TextChange, ...]
 
 
 class Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is, what it should be, and the calls of macros around it."""
+    """A use of a text: the scope in which it is evaluated, what it is and should be, and the macro calls around it."""
 
     scope: XacroScope
     old: str
@@ -63,7 +63,7 @@ class Rewriter:
         self._known: dict[int, tuple[XacroScope, tuple[list[str], list[str]]]] = {}
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
-        """Return the ways to change an attribute (or, without a name, the text) at a place for its uses, the most plausible first.
+        """Return the ways to change an attribute (or, without a name, the text) for its uses, the most plausible first.
 
         Those with which all uses get what they should be come first, then those for the changed ones.
         """
@@ -92,7 +92,7 @@ class Rewriter:
             yield from self._of_parts(text, uses)
 
     def _of_parts(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of the parts of a text that are wrong: of the numbers of a list, or of what is around one part."""
+        """Yield changes of the wrong parts of a text: of the numbers of a list, or of what is around one part."""
         tokens = [text.part(*found.span()) for found in TOKEN.finditer(text.text)]
         words = [(use.old.split(), use.new.split()) for use in uses]
         if len(tokens) > 1 and all(len(tokens) == len(old) == len(new) for old, new in words):
@@ -127,7 +127,7 @@ class Rewriter:
                 yield rank + first, (TextChange(site, other),)
 
     def _candidates(self, site: Written, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, str]]:
-        """Yield the texts of a site with which the root is what its uses need: variants, the plain value, solved numbers."""
+        """Yield the texts of a site with which the root fits its uses: variants, the plain value, solved numbers."""
         text = site.text
 
         def fits(other: str) -> bool:
@@ -150,7 +150,7 @@ class Rewriter:
     def _solutions(
         self, site: Written, root: Written, slot: re.Match[str], uses: Sequence[Use]
     ) -> Iterator[tuple[int, str]]:
-        """Yield the text with the number in a slot, or its inverse, that gives what the first use needs, with more and more digits."""
+        """Yield the text with the number, or its inverse, that the first use needs, with more and more digits."""
         first = next((use for use in uses if not _same(use.old, use.new)), uses[0])
         pairs = enumerate(zip(first.old.split(), first.new.split(), strict=False))
         index = next((index for index, pair in pairs if not _same(*pair)), 0)

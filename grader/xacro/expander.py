@@ -65,7 +65,8 @@ class Expander:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
         self.budget = budget
-        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108  texts is set below
+        # `texts` is set below, so that the lambda is needed.
+        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
@@ -114,7 +115,7 @@ class Expander:
                 out.open = out.open or reason
 
     def insert(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-        """Expand the children of an element, but not the element itself, such as <xacro:if>; attributes set on it are lost."""
+        """Expand the children of an element, but not itself, such as <xacro:if>; attributes set on it are lost."""
         inside = XacroNode(source.tag, source.place)
         try:
             self.content(source, inside, scopes)
@@ -149,7 +150,7 @@ class Expander:
     def report(
         self, error: ExpressionFails | Undetermined | OutOfBudget, place: ScopePlace, attribute: str | None = None
     ) -> str:
-        """List a problem at a place, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
+        """List a problem, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
         message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
             return "" if isinstance(error, ExpressionFails) else message
@@ -171,7 +172,7 @@ class Expander:
         calls[call.source.path, call.tag] = call
 
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
-        """Return whether something is to be listed: once for each place in the source, however often a macro is called."""
+        """Return whether something is to be listed: once for each place in the source, for all calls of a macro."""
         known = len(self._listed)
         if known < _MAX_LISTED:
             self._listed.add((message, place.source.path, place.tag, attribute))

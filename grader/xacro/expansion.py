@@ -56,7 +56,7 @@ _READING_OF_SHORT = 1_500  # parts
 
 
 class ExpandedSource(Source):
-    """The text of a xacro file, whose start tags are those of the expanded elements. Edits are imported late: grading needs none."""
+    """The text of a xacro file; its start tags are the expanded elements. Edits are imported late: not for grading."""
 
     def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
         super().__init__(source.path, source.text)
@@ -94,12 +94,12 @@ class ExpandedSource(Source):
         return super().cost + self._work // _READING_OF_SHORT
 
     def element(self, tag: int) -> tuple[Source, int]:
-        """Return the text that an expanded element was written in, and the offset of its start tag: also of an included file."""
+        """Return the text, perhaps of an included file, with an expanded element, and the offset of its start tag."""
         place = self._nodes[tag].place
         return place.source.element(place.tag)
 
     def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[tuple[Edit, ...]]:
-        """Return the ways to give an attribute, or without a name the text, of expanded elements of one place other values."""
+        """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
         first = self._nodes[next(iter(wanted))]
         moved = first.moved.get(attribute)
         from grader.xacro.edits import Use
@@ -129,7 +129,7 @@ class ExpandedSource(Source):
         return found
 
     def corrections(self, names: Sequence[str] = (), numbers: Sequence[str] = ()) -> list[Correction]:
-        """Return the edits that may correct XML that is not well-formed, names which are not defined, and calls of macros."""
+        """Return edits that may correct XML that is not well-formed, undefined names, and calls of macros."""
         from grader.xacro.corrections import Corrector, Refusal, well_formed
 
         refusals = [Refusal(*refused) for refused in self._expander.refused]
@@ -149,7 +149,7 @@ class ExpandedSource(Source):
         return found[1]
 
     def adapted(self, tag: int, xml: str) -> str:
-        """Return the text of an element that is inserted in the one with this index: in a macro, with its parameters in names."""
+        """Return the text of an element inserted in the one with this index: in a macro, with parameters in names."""
         from grader.xacro.written import with_parameters
 
         scope = self._nodes[tag].place.scope

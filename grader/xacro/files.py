@@ -88,7 +88,7 @@ class Files:
         return renamed if path not in self._workspace.paths and renamed in self._workspace.paths else path
 
     def _added_ending(self) -> str:
-        """Return what was added to the name of the innermost file when it was uploaded without its package: .txt of a.xacro.txt."""
+        """Return what an upload without the package added to the innermost file's name: .txt of a.xacro.txt."""
         added = _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
         return added[1] if added is not None else ""
 

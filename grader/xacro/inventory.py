@@ -19,7 +19,7 @@ Definitions = dict[str, list[ScopePlace]]
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """The definitions in files, each with its places, and what is used; `dynamic` are tags whose names are evaluated."""
+    """The definitions in files, each with its places, and what is used; `dynamic` are tags with evaluated names."""
 
     properties: Definitions = field(default_factory=dict)
     macros: Definitions = field(default_factory=dict)
@@ -37,7 +37,7 @@ class Inventory:
 
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
-    """Return what files define and use. A parameter of a macro is no use of a property of its name. Raises OutOfBudget."""
+    """Return what files define and use; a macro's parameter is no use of a property of its name. Raises OutOfBudget."""
     found, roots = Inventory(), [*documents]
     spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
@@ -86,7 +86,7 @@ def _note_tag(node: XacroNode, found: Inventory) -> str:
 
 
 def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
-    """Return the names of a macro's parameters; a forwarded one is a use of the caller's property. Raises OutOfBudget."""
+    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises OutOfBudget."""
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)
     except (ExpressionFails, Undetermined):

@@ -8,10 +8,20 @@ from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 
-# A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
+# A parameter with a default, by xacro's `re_macro_arg`. Possessive, to be linear: xacro also tries a later quote as the
+# end of one, and `read_parameters` refuses the texts where that matters.
 _WITH_DEFAULT = re.compile(
-    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++|)(?:\s+|$)(.*)""",
-    re.ASCII,
+    r"""
+    \s*([^\s:=]+?)\s*:?=\s*                       # side:=, side=
+    (\^\|?)?                                      # ^, or ^| before a default: the caller's value comes first
+    (
+        \$\{.*?\} | \$\(.*?\)                     # ${2*pi}, $(arg side)
+      | (?:'[^'\n]*'|\"[^\"\n]*\"|[^\s'\"]++)++   # 0.1, 'left wheel'
+      |
+    )
+    (?:\s+|$)(.*)
+    """,
+    re.ASCII | re.VERBOSE,
 )
 _QUOTED = re.compile(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
 

@@ -15,7 +15,12 @@ _COMPARED = 256  # names of attributes that lxml compares for one part: each wit
 
 # xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
 _DECLARATION = re.compile(
-    r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
+    r"""
+    ^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1
+    (?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*        # encoding="latin-1", standalone='yes'
+    \s*\?>
+    """,
+    re.VERBOSE,
 )
 MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
@@ -86,7 +91,7 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 
 
 def _decoded(data: bytes, budget: Budget) -> str:
-    """Return the text of a file, which xacro reads as UTF-8 whatever its declaration says; its tags and attributes are charged."""
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge its tags."""
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(_OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data))
     try:

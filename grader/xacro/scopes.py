@@ -18,7 +18,7 @@ BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 class ScopePlace(NamedTuple):
-    """A start tag in a source file; once it is expanded, with the macro calls that led to it, outermost first, and the scope."""
+    """A start tag in a source file; once expanded, with its macro calls, outermost first, and the scope."""
 
     source: Source
     tag: int

@@ -22,8 +22,15 @@ from grader.xacro.scopes import (
     literal,
 )
 
+# The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
 PIECE = re.compile(
-    r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
+    r"""
+      (?P<escape>\$\$+[{(])               # $${, $$(: not evaluated
+    | \$\{(?P<expression>[^}]*)\}
+    | \$\((?P<substitution>[^)]*)\)       # $(find my_robot), $(arg side)
+    | (?P<text>[^$]+|\$[^{($]+|\$\Z)      # wheel, $5, and a $ at the end
+    """,
+    re.VERBOSE,
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -33,7 +40,7 @@ INSTALLED = "/install"  # where the packages are for $(find package): in a folde
 
 
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file; None if unknown."""
+    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown."""
 
     def __init__(
         self,
@@ -43,7 +50,7 @@ class Texts:
         own: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`own` are functions that need the document, such as load_yaml; `is_own` says whether a package was submitted."""
+        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
         self.arguments = arguments
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
@@ -105,7 +112,7 @@ class Texts:
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
-        """Return a message that a name is not defined, and the names that are. Raises OutOfBudget: finding a similar one takes long."""
+        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a similar one takes long."""
         known: Known = {**dict.fromkeys(own), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)

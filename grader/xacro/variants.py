@@ -9,6 +9,7 @@ from grader.names import closest
 EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?![\w.(])")
 _PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
+# -0.1 with its sign after a space or quote, or at the start; 2 without it in ${a-2}, where it may be an operator.
 _NUMBER = re.compile(r"""(?:(?<![^\s'"])[-+]?|(?<![\w.]))(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])""")
 TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")

@@ -13,7 +13,7 @@ _VALUE = re.compile(r'("[^"$]*")')
 
 
 class Written(NamedTuple):
-    """A text that stands at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
+    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
 
     source: Source
     start: int
@@ -78,7 +78,7 @@ def written(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | N
 
 
 def with_parameters(xml: str, scope: XacroScope) -> str:
-    """Return elements in whose attributes the texts that a macro's parameters have are the parameters: ${side}_wheel."""
+    """Return elements with a macro's parameters instead of the texts that they have, in attributes: ${side}_wheel."""
     for name, bound in scope.properties.items() if scope.parent is not None else ():
         if isinstance(bound.value, str) and bound.value.isidentifier() and name.isidentifier():
             word = re.compile(rf"(?<![^\W_]){re.escape(bound.value)}(?![^\W_])")

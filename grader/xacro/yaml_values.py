@@ -1,4 +1,4 @@
-"""Values from a YAML file, as load_yaml of xacro returns them: mappings, lists, plain scalars and numbers with units."""
+"""Values from a YAML file, as xacro's load_yaml returns them: mappings, lists, plain scalars, numbers with units."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -31,7 +31,7 @@ _RESOLVER: Any = yaml.resolver.Resolver()
 
 
 def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of a YAML text. `find` returns the value of a name in an expression that has a unit: !radians pi/2.
+    """Return the value of a YAML text. `find` returns the value of a name in an expression with a unit: !radians pi/2.
 
     Raises ExpressionFails for what is not YAML, Undetermined for what is too large or rarely used.
     """

@@ -70,7 +70,7 @@ def _text(element: Element) -> str:
 
 
 def is_same(text: str, expected: Scalar, tolerance: float) -> bool:
-    """Return whether a text is an expected value: numbers and lists of numbers are compared as such, true and 1 are equal."""
+    """Return whether a text is an expected value: numbers and lists are compared as numbers, true and 1 are equal."""
     wanted = text_of(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
     if "true" in (one, other) or "false" in (one, other):

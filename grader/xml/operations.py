@@ -42,7 +42,8 @@ WAYS = {
 _MAX_NEAR = 20  # tags before an error
 
 
-# What is replaced by what in a malformed tag.
+# What is replaced by what in a malformed tag: <- base --> for "comment", <link name=base> and <link name="base> for the
+# double quote, <link name: "base"> for "=".
 _IN_TAG = {
     "comment": (r"\A<[!\-\u2013\u2014\s]+(.*?)[!\-\u2013\u2014\s]*>?\Z", r"<!-- \1 -->"),
     "version": (r"\A<[\s?]*xml\b.*", _XML),
@@ -123,7 +124,7 @@ class Operations:
         return f"{piece.form} {form}", (piece.start, piece.end, new)
 
     def _tags(self) -> Iterator[Operation]:
-        """Yield what may be wrong with the tags that are open at an error, with the tag there, or with those before it."""
+        """Yield what may be wrong with the tags that are open at an error, the tag there, or those before it."""
         wrong, tags = self.wrong, self.tags
         for top in self.open[:1]:
             yield self._tag(top, "empty")
@@ -148,7 +149,7 @@ class Operations:
             yield "open", (wrong.start, wrong.start, f"<robot>{self.line}")
 
     def _closings(self) -> Iterator[Change]:
-        """Yield the closing of tags before the first tags that may not be in them, and of those in the one that is closed."""
+        """Yield the closing of tags before the first tags that may not be in them, and in the one that is closed."""
         places: dict[int, list[TextPiece]] = {}
         names = [piece.name for piece in self.open]
         inner = self.open[: names.index(self.wrong.name) if self.wrong.name in names else None]

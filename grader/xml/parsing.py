@@ -23,17 +23,23 @@ _PARSER = etree.XMLParser(
     remove_pis=True,
 )
 
-# lxml turns a line break or tab in a value into a space, TinyXML2 keeps it. The search skips all other bytes.
+# lxml turns a line break or tab in a value into a space (XML 1.0, 3.3.3), TinyXML2 keeps it. The search skips all other
+# bytes: of xyz="0 0<tab>1" it sees ="<tab>".
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
 _BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
 _DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
+# No declaration, and no byte-order mark, which lxml takes for the encoding; or one that says what TinyXML2 assumes.
 _PLAIN_START = re.compile(
-    rb"""(?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
+    rb"""
+      (?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)
+    | <\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>
+    """,
+    re.VERBOSE,
 )
 
 
 class Unresolved(NamedTuple):
-    """What was not expanded of an element, with the reason why it cannot be determined; empty where xacro refuses it."""
+    """What was not expanded of an element, with why it cannot be determined; empty where xacro refuses it."""
 
     attributes: Mapping[str, str]  # those that are left as they are written
     content: str | None = None  # why there may be more attributes and children; None if there are no more

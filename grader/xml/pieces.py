@@ -13,11 +13,12 @@ _MAX_TAG = 2000  # characters: what is longer is no tag
 # A malformed tag: to its >, or before the next tag; a comment in it is part of it.
 _EXTENT = re.compile(r"<[<\s]*(?:[^<>]|<!--.*?-->)*>?", re.DOTALL)
 _VALUE = r"""\s+[\w:.\-]+\s*=\s*(?:"[^"<>]*"|'[^'<>]*')\s*"""
-_LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")  # a tag without its <
+# A tag without its <: link name="base"> and /link>.
+_LOST = re.compile(rf"""(?<![<\w/:.\-"'=])/?[A-Za-z_][\w:.\-]*(?:{_VALUE})*/?>""")
 
 
 class TextPiece(NamedTuple):
-    """What is between two offsets: open, close, empty (tags), other, text, end (of the text). `at` is where the parser stops in it."""
+    """What is between two offsets: open, close, empty (tags), other, text, end. The parser stops in it at `at`."""
 
     start: int
     end: int
@@ -28,7 +29,7 @@ class TextPiece(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """How a text is read: strictly or as by TinyXML2; as a URDF or as any XML: `is_urdf` stops also where a tag is lost as text."""
+    """How to read a text: strictly or as TinyXML2; with `is_urdf`, reading stops also where a tag is lost as text."""
 
     is_strict: bool = False
     is_urdf: bool = False
@@ -44,7 +45,7 @@ class ParserMark(NamedTuple):
 
 
 class PieceScan(NamedTuple):
-    """How far a text is read: the places after its pieces, what is wrong there, if anything, and where the parser stops.
+    """How far a text is read: the places after its pieces, what is wrong there, and where the parser stops.
 
     The `faults` are what urdfdom does not know.
     """
@@ -114,7 +115,7 @@ def _is_wrong_markup(text: str, piece: TextPiece, rules: Rules) -> bool:
 
 
 def _piece(text: str, position: int, rules: Rules) -> TextPiece:
-    """Return the next tag, comment or declaration, or the end; a malformed tag ends at its >, or before the next tag."""
+    """Return the next tag, comment or declaration, or the end; a malformed tag ends at its > or the next tag."""
     start = text.find("<", position)
     if start < 0:
         return TextPiece(len(text), len(text) + 1, "", "end")

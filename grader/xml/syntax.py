@@ -1,4 +1,4 @@
-"""Edits after which a broken XML text can be read: a search over few operations near the place where the parser stops."""
+"""Edits that make a broken XML text readable: a search over few operations near the place where the parser stops."""
 
 from collections.abc import Iterator
 from heapq import nsmallest
@@ -19,7 +19,7 @@ _WINDOW = 400  # characters after an error that must be read
 
 
 class Way(NamedTuple):
-    """What is wrong, the changes of a text that correct it, each from an offset to another one, and the text after them."""
+    """What is wrong, the changes of a text that correct it, each from offset to offset, and the text after them."""
 
     name: str
     changes: list[Change]
@@ -27,7 +27,7 @@ class Way(NamedTuple):
 
 
 def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
-    """Yield edits after which a text can be read, the most plausible first; nothing where none brings the parser further."""
+    """Yield edits that make a text readable, the most plausible first; none where none brings the parser further."""
     search = _SyntaxSearch(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))
     if first:
@@ -77,7 +77,7 @@ class _SyntaxSearch:
     def _ranked(
         self, text: str, stop: PieceScan, operations: Iterator[Operation]
     ) -> Iterator[tuple[tuple[int, int], Way]]:
-        """Yield the ways that bring the parser further, each with how far it is from the end, and the faults for urdfdom."""
+        """Yield the ways that bring the parser further, with their distance to the end and the faults for urdfdom."""
         for name, *changes in islice(operations, _MAX_TRIES):
             after = text
             for start, end, new in reversed(changes):

@@ -20,7 +20,7 @@ class AttributeFormat(NamedTuple):
 
 
 class TagFormat(NamedTuple):
-    """An element: its attributes in their usual order, its children (which are needed, which may repeat), wrong names of attributes."""
+    """An element: its attributes in usual order, children (also needed, repeated ones), wrong names of attributes."""
 
     attributes: Mapping[str, AttributeFormat] = {}
     children: tuple[str, ...] = ()
@@ -37,7 +37,10 @@ _END = AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
 TAGS: dict[str, TagFormat] = {
-    "robot": TagFormat({"name": _REQUIRED, "version": AttributeFormat(default="1.0")}, ("link", "joint", "material"), ("link",), ("link", "joint", "material")),
+    "robot": TagFormat(
+        {"name": _REQUIRED, "version": AttributeFormat(default="1.0")},
+        ("link", "joint", "material"), needed=("link",), repeated=("link", "joint", "material"),
+    ),
     "link": TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
     "joint": TagFormat(
         {"name": _REQUIRED, "type": _REQUIRED},
@@ -56,7 +59,9 @@ TAGS: dict[str, TagFormat] = {
         aliases={"pos": "xyz"},
     ),
     "box": TagFormat({"size": AttributeFormat("m", _XYZ)}),
-    "cylinder": TagFormat({"radius": AttributeFormat("m", _ONE), "length": AttributeFormat("m", _ONE)}, aliases={"height": "length"}),
+    "cylinder": TagFormat(
+        {"radius": AttributeFormat("m", _ONE), "length": AttributeFormat("m", _ONE)}, aliases={"height": "length"}
+    ),
     "sphere": TagFormat({"radius": AttributeFormat("m", _ONE)}),
     "mesh": TagFormat({"filename": _REQUIRED, "scale": AttributeFormat("1", _XYZ, "1 1 1")}),
     "color": TagFormat({"rgba": AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
@@ -74,7 +79,12 @@ TAGS: dict[str, TagFormat] = {
             "velocity": AttributeFormat("rad/s or m/s", _ONE, usual="1"),
         }
     ),
-    "dynamics": TagFormat({"damping": AttributeFormat("N m s/rad or N s/m", _ONE, "0"), "friction": AttributeFormat("N m or N", _ONE, "0")}),
+    "dynamics": TagFormat(
+        {
+            "damping": AttributeFormat("N m s/rad or N s/m", _ONE, "0"),
+            "friction": AttributeFormat("N m or N", _ONE, "0"),
+        }
+    ),
     "mimic": TagFormat({"joint": _REQUIRED, "multiplier": AttributeFormat("1", _ONE, "1"), "offset": _END}),
     "safety_controller": TagFormat(
         {
@@ -84,7 +94,9 @@ TAGS: dict[str, TagFormat] = {
             "k_velocity": AttributeFormat("1", _ONE, usual="1"),
         }
     ),
-    "calibration": TagFormat({"rising": AttributeFormat("rad or m", _ONE, ""), "falling": AttributeFormat("rad or m", _ONE, "")}),
+    "calibration": TagFormat(
+        {"rising": AttributeFormat("rad or m", _ONE, ""), "falling": AttributeFormat("rad or m", _ONE, "")}
+    ),
 }  # fmt: skip
 
 # Views of the table.

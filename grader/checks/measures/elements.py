@@ -58,7 +58,7 @@ def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Facts:
 
 
 def _facts_in(element: Element) -> Iterator[Fact]:
-    """Yield a fact for the plain values in an element, and one for each child with elements or attributes of its own."""
+    """Yield a fact for the plain values in an element, and one for each child that has elements or attributes."""
     plain: Values = {}
     deep: list[Element] = []
     for child in _children(element):
@@ -84,7 +84,7 @@ def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
 
 
 def _title(element: Element, path: str, values: Values) -> str:
-    """Return what an element has: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
+    """Return a title: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
     owner = f"<{name_of(element)}>{f' of {_name(element)}' if _name(element) else ''}"
     listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
     if not path:

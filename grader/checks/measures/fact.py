@@ -133,7 +133,7 @@ def lengths(vector: Vector) -> list[float]:
 
 
 def direction(vector: Vector) -> list[float]:
-    """Return a unit vector without rounding errors: an axis of the frame where it is close to one, as for an rpy of 1.57."""
+    """Return a unit vector without rounding errors: the axis of the frame that is close to it, if any (rpy 1.57)."""
     cosine = cos(radians(_WHOLE))
     return [float(round(value)) + 0.0 if max(map(abs, vector)) >= cosine else length(value) for value in vector]
 

@@ -1,4 +1,4 @@
-"""Facts about the joints of a robot and about the robot as a whole: that it loads, its root, how many joints move, how its tips move."""
+"""Facts about the joints of a robot and the robot: that it loads, its root, how many joints move, how its tips move."""
 
 from collections import Counter
 from math import isfinite
@@ -95,7 +95,10 @@ def _mimic(solution: Solution, joint: Joint) -> Fact | None:
         return None
     leader = solution.robot.joint(joint.mimic.joint).child
     multiplier, offset = exact(joint.mimic.multiplier), exact(joint.mimic.offset)
-    title = f"The joint of {joint.child} mimics that of {leader}, multiplier {shown([multiplier])}, offset {shown([offset])}"
+    title = (
+        f"The joint of {joint.child} mimics that of {leader}, "
+        f"multiplier {shown([multiplier])}, offset {shown([offset])}"
+    )
     arguments = {"link": joint.child, "leader": leader, "multiplier": multiplier, "offset": offset}
     return Fact(joint.child, "mimic", title, "mimics", arguments)
 

@@ -91,7 +91,7 @@ def _opened_files(package: Package) -> Iterator[Fact]:
 
 
 def _started(launch: Launch) -> list[str]:
-    """Return the nodes that start; one that a condition replaces is an alternative, as joint_state_publisher for its GUI."""
+    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its GUI, for example."""
     names = {when: list(dict.fromkeys(_node(it) for it in launch.nodes if it.when is when)) for when in (True, False)}
     alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
     return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]

@@ -1,4 +1,4 @@
-"""Choose the edit of a state that makes a failed criterion pass: a piece of the difference, a solved number, or few pieces together."""
+"""Choose the edit that makes a failed criterion pass: a piece of the difference, a solved number, or few pieces."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from decimal import Decimal
@@ -170,7 +170,7 @@ class Choice:
                 yield together(proposals, tuple(edit for it in proposals for edit in it.edits))
 
     def _fewest(self, look: Look, pieces: list[Piece], name: str) -> list[Piece]:
-        """Return the pieces that a criterion needs to pass, of those that make it pass all together; none if these do not."""
+        """Return few of these pieces with which a criterion passes; none if it does not pass with all of them."""
         if not pieces or not self._is_passing(look, pieces, name):
             return []
         size = max(1, len(pieces) // 2)

@@ -37,7 +37,7 @@ class Hinted(NamedTuple):
 
 
 def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
-    """Return a report with proven hints for the criteria that failed; `keep_edits` keeps edits that the level does not show."""
+    """Return a report with proven hints for criteria that failed; `keep_edits` keeps edits that the level hides."""
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
@@ -85,7 +85,7 @@ def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]
 def _entry(
     found: FoundHint, shown: Mapping[str, FoundHint], results: Mapping[str, Result], costs: Mapping[str, Decimal]
 ) -> str:
-    """Return the criterion under which a report shows a hint: the one at the line that is edited, else the costliest."""
+    """Return the criterion that shows a hint in a report: the one at the line that is edited, else the costliest."""
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
         where, at = results[name].outcome.location, found.edits[0]

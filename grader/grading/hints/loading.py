@@ -68,7 +68,7 @@ def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], S
 
 
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[LoadingStep]:
-    """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises NoTrialsLeft."""
+    """Yield the steps towards a URDF of which ROS 2 drops nothing, within half of the budget. Raises NoTrialsLeft."""
     state, reserve = trials.start, trials.left // 2
     for _ in range(_MAX_STEPS):
         reading = _reading(state)
@@ -121,7 +121,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
 
 
 def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Proposal]) -> LoadingStep | None:
-    """Return the edit that brings ROS 2 furthest; of several that make it load the file, the one with the best score."""
+    """Return the edit that brings ROS 2 furthest; of several after which it loads the file, the best-scoring one."""
     now = defects(reading)
     better: list[tuple[Defects, int, Proposal]] = []
     complete: list[str] = []

@@ -118,7 +118,7 @@ class HintSearch:
         return sorted(costs, key=lambda name: (-costs[name], self._criteria[name].position))
 
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
-        """Add a proven edit of the submission as it is: the edit alone, else together with one or all of those before it."""
+        """Add a proven edit of the submission as it is: alone, else together with one or all of those before it."""
         submission = self.trials.start.submission
         all_edits = joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
@@ -131,7 +131,7 @@ class HintSearch:
         return self._add(proposal, all_edits, name, tuple(self.found))
 
     def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:
-        """Add edits if they are proven, graded from scratch, and gain the points of a criterion; return whether they are."""
+        """Add edits if they, graded from scratch, gain the points of a criterion; return whether they do."""
         start = self.trials.start
         state = self.trials.applied(start, edits, whole=True)
         if state is None or state.lost:

@@ -59,7 +59,7 @@ def _known(found: Iterable[Element | None]) -> Iterator[Element]:
 
 
 def _slots(owner: Element, tag: str) -> Iterator[Slot]:
-    """Yield the numbers of an element, or of its child with a tag, which may be missing: those of a vector, else all together."""
+    """Yield the numbers of an element, or of its child (perhaps missing): those of a vector, else all together."""
     element, known = child_of(owner, tag) if tag else owner, TAGS[tag or str(owner.tag)].attributes
     names = [name for name, one in known.items() if one.parts]
     vectors = [name for name in names if len(known[name].parts) > 1]
@@ -133,7 +133,7 @@ class Solver:
     def _solved(
         self, ask: Callable[[Values], Values | None], old: Values, start: Values, columns: Mapping[int, Values]
     ) -> Values | None:
-        """Return values with which nothing remains of the residual: by Newton's method, then with as few digits as possible."""
+        """Return values that leave no residual: by Newton's method, then with as few digits as possible."""
         values, residual = old, start
         for _ in range(_ROUNDS):
             step = least_squares([columns[index] for index in columns], residual)
@@ -214,7 +214,7 @@ def _vector(value: object) -> Values | None:
 
 
 def least_squares(columns: Sequence[Values], residual: Values) -> Values | None:
-    """Return the numbers with which the sum of columns is nearest to the residual; None where they are not determined."""
+    """Return the factors with which the sum of columns is nearest to the residual; None if they are undetermined."""
     count = len(columns)
     rows = [
         [sum(a * b for a, b in zip(one, other, strict=True)) for other in columns]

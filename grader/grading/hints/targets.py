@@ -13,7 +13,7 @@ _MAX_LINKS, _MAX_CHAIN = 40, 12
 
 
 class Targets(NamedTuple):
-    """Links that decide criteria: those whose shapes count, those whose parent joints move them, and those that criteria name."""
+    """Links that decide criteria: whose shapes count, whose parent joints move them, and that criteria name."""
 
     shown: tuple[str, ...]
     moved: tuple[str, ...]

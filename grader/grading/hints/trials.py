@@ -47,7 +47,7 @@ class State(NamedTuple):
 
 
 class Trials:
-    """Edited submissions are read and graded here. The budget counts readings, so that it is the same on every machine."""
+    """Reads and grades edited submissions. The budget counts readings, so that it is the same on every machine."""
 
     def __init__(self, rubric: Rubric, submission: Submission, results: Results) -> None:
         self.rubric = rubric
@@ -68,7 +68,7 @@ class Trials:
             self.faults.append(type(error).__name__)
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
-        """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises NoTrialsLeft."""
+        """Return those of the wanted criteria that pass with edits, at a quick look. Raises NoTrialsLeft."""
         edited = self.edited(state, edits)
         results = decide(self.rubric, edited, wanted) if edited is not None else ()
         return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
@@ -127,7 +127,7 @@ class Trials:
 
 
 def _new_problems(before: Submission, after: Submission) -> bool:
-    """Return whether ROS 2 loads the URDF, and finds a kind of problem that it had not before: no edit may make a robot worse."""
+    """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no edit may make it worse."""
     if (
         not isinstance(before.urdf, Read)
         or not isinstance(after.urdf, Read)
@@ -145,7 +145,7 @@ def _is_of_robot(path: str, submission: Submission) -> bool:
 
 
 def is_worse(before: Result, after: Result) -> bool:
-    """Return whether a criterion passed and does not any more, has fewer points, or is undecided now; never an adjusted one."""
+    """Return whether a criterion no longer passes, has fewer points, or is undecided now; never an adjusted one."""
     status = after.outcome.status
     if after.is_adjusted:
         return False

@@ -16,7 +16,7 @@ _MAX_TEXT = 240  # characters of a changed text
 
 
 def message(found: FoundHint, level: Level, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
-    """Return the hint in a sentence; the name of the URDF needs no mention. `entry` is the criterion that shows an earlier hint."""
+    """Return the hint in a sentence, which need not name the URDF. `entry` is where an earlier one is shown."""
     own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
     earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
     if not own:

@@ -58,7 +58,7 @@ def package_proposals(
 
 
 def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield the edits of the file of a kind, and those that rename or create files of the kind; without a kind, of its name."""
+    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of the package's name."""
     if not kind:
         yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
         return

@@ -1,4 +1,4 @@
-"""Files that are missing or have another name than in the reference, and the name of the package in all of its files."""
+"""Files that are missing or named otherwise than in the reference, and the name of the package in all its files."""
 
 import posixpath
 import re

@@ -12,7 +12,13 @@ from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Edit, Source
 from grader.xml.parsing import Element
 
-_SCALAR = re.compile(r""""[^"\n]*"|'[^'\n]*'|[^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s#))""")
+_SCALAR = re.compile(
+    r"""
+      "[^"\n]*" | '[^'\n]*'
+    | [^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s\#))    # base_link, of "Fixed Frame: base_link  # of the robot"
+    """,
+    re.VERBOSE,
+)
 _MAX_DEPTH, _MAX_CHILDREN = 8, 200
 _IDENTIFYING = ("exec", "name", "pkg", "file")  # attributes of an element
 

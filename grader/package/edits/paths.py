@@ -16,6 +16,7 @@ from grader.package.package import SETUP
 from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
+# What is before the name of a package: get_package_share_directory(', FindPackageShare(", $(find-pkg-share and a space.
 _PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
@@ -63,7 +64,7 @@ def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[
 
 
 def in_xml(task: PackageTask, like: str | None) -> str:
-    """Return a launch file in XML that starts the nodes of one of the reference, with the files of the student's package."""
+    """Return a launch file in XML with the nodes of one of the reference, and the files of the student's package."""
     if task.reference is None or like is None:
         return ""
     launch, paths = task.reference.launch(like), {}
@@ -97,7 +98,7 @@ def _found_at(task: PackageTask, source: Source, named: NamedFile) -> list[list[
 
 
 def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
-    """Yield the edits that replace a path of one machine, or one relative to the working folder, by the package's share folder.
+    """Yield the edits that replace a path of one machine, or relative to the working folder, by the share folder.
 
     The difference to the reference has no answer where the file is built in another way: launch-home-path,
     sensors-launch-home-path.

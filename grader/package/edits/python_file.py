@@ -10,10 +10,17 @@ from grader.source import Edit, Source
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.parse import Code, SyntaxFault, parse
 
+# Not `tokenize`: it stops at the mistakes that are searched for here.
 _TOKEN = re.compile(
-    r'''(?P<comment>\#[^\n]*)
-    |(?P<string>[rRbBfFuU]{0,2}(?:"""(?:\\.|[^\\])*?"""|\'\'\'(?:\\.|[^\\])*?\'\'\'|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))
-    |(?P<name>\w+)|(?P<op>[^\s\w])''',
+    r"""
+      (?P<comment>\#[^\n]*)
+    | (?P<string>[rRbBfFuU]{0,2}(?:
+          "{3}(?:\\.|[^\\])*?"{3} | '{3}(?:\\.|[^\\])*?'{3}    # over several lines
+        | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'            # "launch", r'\d', f'{name}.urdf'
+      ))
+    | (?P<name>\w+)                                            # setup, 0
+    | (?P<op>[^\s\w])                                          # also a quote that is not closed
+    """,
     re.DOTALL | re.VERBOSE,
 )
 _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
@@ -23,7 +30,7 @@ _USE = re.compile(r"\bglob\.glob\b")
 
 
 class Token(NamedTuple):
-    """A token: string, name (also a number), op, or the literal text between the quotes of a string; with its offsets."""
+    """A token: string, name (also a number), op, or the literal text between the quotes of a string; its offsets."""
 
     kind: str
     text: str
@@ -32,7 +39,7 @@ class Token(NamedTuple):
 
 
 class PythonFile:
-    """A Python file; offsets are those of the text as it is in the file, which may have other line breaks than Python sees."""
+    """A Python file; offsets are in the text as the file has it, which may have other line breaks than Python sees."""
 
     def __init__(self, source: Source) -> None:
         self.source = source

@@ -1,4 +1,4 @@
-"""A Python file as a tree: its functions, and the calls of setup and LaunchDescription with their arguments and items of lists."""
+"""A Python file as a tree: its functions, the calls of setup and LaunchDescription, their arguments and list items."""
 
 import ast
 from collections.abc import Mapping, Sequence

@@ -31,7 +31,7 @@ def _is_read(file: PythonFile, repair: Proposal) -> bool:
 
 
 def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
-    """Yield edits of one token, the nearest to the error first: of lone quotes and brackets, of the indentation, then of others."""
+    """Yield edits of one token, the nearest to the error first: lone quotes and brackets, indentation, then others."""
     source, last = file.source, fault.location.line
     at = source.offset(last, fault.location.column)
     if (plain := file.text.translate(_QUOTES)) != file.text:

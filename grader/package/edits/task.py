@@ -68,7 +68,7 @@ class PackageTask:
         return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
 
     def created(self, path: str, like: str | None) -> list[Edit]:
-        """Return the edit that creates a file like one of the reference; nothing where it exists, or the reference has none."""
+        """Return the edit that creates a file like the reference's; none where it exists, or the reference has none."""
         text = self.wanted(like)
         return [Edit(self.package.path(path), 1, 1, "", text)] if text is not None and path not in self.files else []
 

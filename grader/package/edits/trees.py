@@ -15,7 +15,7 @@ Span = tuple[int, int]
 
 
 class TreePlace(NamedTuple):
-    """Where a node is in its text, and the edits that add a value or a node to it; `code` is how it is written elsewhere.
+    """Where a node is in its text, and the edits that add a value or a node to it; `code` is how to write it elsewhere.
 
     `codes` and `spans` are those of its values, and `names` the offsets of their names.
     """

@@ -1,4 +1,4 @@
-"""Words and names: what a file spells in another way than the reference, uses without an import, or writes differently."""
+"""Words and names: what a file spells otherwise than the reference, uses without an import, or writes differently."""
 
 import ast
 import builtins
@@ -71,7 +71,7 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 
 def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that import or correct the names which are not defined, or not as they are used; and missing commas."""
+    """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
     yield change(file.with_imports(sorted(used)), "add", "the imports", what)

@@ -1,1 +1,1 @@
-"""Launch files of ROS 2 in Python, XML and YAML, evaluated without running them: the nodes that they start, with their files."""
+"""Launch files of ROS 2 in Python, XML and YAML, evaluated without running them: the nodes they start, their files."""

@@ -25,7 +25,7 @@ Include = Callable[[str, Context], str]
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """A visitor of actions that adds its findings. `when` is whether an action is executed: True, False or None for unknown."""
+    """A visitor of actions that adds its findings. `when` is whether an action is executed, None if this is unknown."""
 
     findings: Findings
     include: Include
@@ -186,7 +186,7 @@ def _set_argument(call: Call, context: Context, when: bool | None, *, declares: 
     """Give a launch argument that is declared or set its value."""
     name = resolve(call.argument(0, "name"), context)
     if when is False or not isinstance(name, str) or (declares and name in context.arguments):
-        return
+        return  # DeclareLaunchArgument.execute keeps a value that is already set
     value = call.argument(1, "default_value", "value")
     choices = call.kwargs.get("choices")
     if declares and len(call.args) > 1:

@@ -9,8 +9,10 @@ from grader.package.launch.substitutions import COMMAND_LINE
 from grader.static_python.values import Call, Unknown, Value
 
 # Elements and attributes that only ROS 1 has, and what replaces them.
-_ROS1_TAGS = {"param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
-              "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>"}  # fmt: skip
+_ROS1_TAGS = {
+    "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
+    "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>",
+}  # fmt: skip
 _ROS1_ATTRIBUTES: dict[str, dict[str, str | None]] = {
     "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": None},
     "arg": {"value": "default", "default_value": "default", "doc": "description"},

@@ -42,7 +42,7 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A program that is started. `when` is True, False where a condition prevents it, None where this is known at run time.
+    """A program that is started. `when` is True, False where a condition prevents it, None if known at run time only.
 
     `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is known at run time.
     """
@@ -93,7 +93,7 @@ class Launch:
         return tuple(reference for reference in self.references if reference.purpose in purposes)
 
     def frames_of(self, link: str) -> tuple[str | None, ...]:
-        """Return the frames that robot_state_publisher publishes for a link, or as which a rubric names it; None for an unknown one.
+        """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix it); None if unknown.
 
         tf2 ignores a slash at the start.
         """
@@ -104,7 +104,7 @@ class Launch:
 
 @dataclass(slots=True)
 class Findings:
-    """The findings so far in one launch file. `sets_parameters` is set where an action gives parameters to all nodes."""
+    """The findings so far in one launch file. `sets_parameters`: an action gives parameters to all nodes."""
 
     locate: Callable[[Position], Location]
     nodes: list[StartedNode] = field(default_factory=list)

@@ -11,15 +11,17 @@ from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
 _NODE_ARGUMENTS = frozenset(
-    {"package", "executable", "name", "namespace", "exec_name", "parameters", "remappings", "ros_arguments", "arguments",
-     "prefix", "cwd", "env", "additional_env", "shell", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "output",
-     "output_format", "cached_output", "log_cmd", "on_exit", "respawn", "respawn_delay", "respawn_max_retries", "condition",
-     "autostart", UNKNOWN_KEYS}
+    {"package", "executable", "name", "namespace", "exec_name", "parameters", "remappings", "ros_arguments",
+     "arguments", "prefix", "cwd", "env", "additional_env", "shell", "sigterm_timeout", "sigkill_timeout",
+     "emulate_tty", "output", "output_format", "cached_output", "log_cmd", "on_exit", "respawn", "respawn_delay",
+     "respawn_max_retries", "condition", "autostart", UNKNOWN_KEYS}
 )  # fmt: skip
 _RVIZ = "rviz2"
 # The errors where robot_description is given a call whose last method is missing.
 _UNFINISHED = {
-    "xacro.process_file": "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)",
+    "xacro.process_file": (
+        "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)"
+    ),
     "builtins.open": "robot_description is given an open file, not its contents: add .read() to open(...)",
 }
 # The launch files of the ROS 2 package urdf_launch; what they start is known.

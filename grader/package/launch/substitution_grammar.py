@@ -1,4 +1,4 @@
-"""The grammar of values in XML and YAML launch files: text and $(substitutions ...), as in ros2/launch's grammar.lark."""
+"""The grammar of values in XML and YAML launch files, text and $(substitutions ...): grammar.lark of ros2/launch."""
 
 from dataclasses import dataclass
 
@@ -34,7 +34,7 @@ _ON_STDERR = ("fail", "ignore", "warn", "capture")
 
 
 def parse_value(text: str, at: Position, findings: Findings) -> list[Value]:
-    """Return a value as a list of strings and calls of substitutions; what is wrong with it is added to the findings."""
+    """Return a value as a list of strings and calls of substitutions; mistakes in it are added to the findings."""
     return _ValueParser(text, at, findings).pieces("", 0)
 
 

@@ -1,4 +1,4 @@
-"""Edits of the mass, the inertia and the collision shapes of a link: those of a uniform solid of its shapes, as it is shown.
+"""Edits of the mass, the inertia and the collision shapes of a link: those of a uniform solid of its visible shapes.
 
 The checks of bodies suggest them, because no number that they measure leads there: a rubric without a reference
 solution needs them.

@@ -1,4 +1,4 @@
-"""Conventions of a whole robot: its base frame elsewhere or turned, and another unit of length, with all else consistent."""
+"""Conventions of a whole robot: its base frame elsewhere or rotated, or another unit of length, all consistently."""
 
 from collections.abc import Iterator
 from math import pi
@@ -30,7 +30,7 @@ def conventions(difference: RobotDifference) -> Iterator[Piece]:
 
 
 def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
-    """Return the piece that moves the frame of a link, and nothing that is seen; a turned frame turns the robot with it."""
+    """Return the piece that moves a link's frame, but nothing that is seen; a rotated frame turns the robot with it."""
     own = draft.joint_of(link) if T_new_old.rotation == IDENTITY.rotation else None
     before = _placed(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
     cause = f"{what} of the frame {link!r}"
@@ -38,7 +38,7 @@ def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
 
 
 def other_frames(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield the pieces with which the frame of a link is where the reference has it, and all that is in it stays where it is."""
+    """Yield the pieces that put the frame of a link where the reference has it; all that is in it stays where it is."""
     draft = difference.draft
     for link in draft.robot.links:
         joint, other = draft.joint_of(link.name), difference.reference.joint_of(link.name)

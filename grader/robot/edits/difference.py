@@ -138,7 +138,7 @@ class RobotDifference(PieceMaker):
             yield self.of_sets(sets)
 
     def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
-        """Rename a link with all that names it, or alone; a joint; a material where it is used, or where it is defined."""
+        """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
         own = (Set(element, "", "name", name),)
         everywhere = renamed(self.draft, old, name) if tag == "link" else own

@@ -91,7 +91,7 @@ class Draft:
         )
 
     def described(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
-        """Return what an element, or its child with a tag, is called: the visual origin of 'lidar'. Only known names are given."""
+        """Return what an element, or its child with a tag, is called: the visual origin of 'lidar', if `known`."""
         owner, path = self.owner(element), [tag] if tag else []
         inner = element
         while inner is not owner and inner is not self.root:

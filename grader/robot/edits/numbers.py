@@ -16,7 +16,7 @@ _LARGE = 1.0  # metres: larger parts are often in another unit
 
 
 class Mistake(NamedTuple):
-    """What a person does to a number: the units in which it happens, the correct number, the cause and what to do about it."""
+    """What a person does to a number: the units in which it happens, the correct number, the cause and what to do."""
 
     units: tuple[str, ...]
     correct: Callable[[float], float]

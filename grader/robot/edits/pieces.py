@@ -16,7 +16,7 @@ KNOWN, SOLVED, STRUCTURE, FITTED, CONVENTION = range(5)
 
 
 class Piece(NamedTuple):
-    """An edit that may undo a mistake: values that are set, or edits of the text; what is wrong, what to do, and the link concerned.
+    """An edit that may undo a mistake: values to set, or edits of the text; what is wrong, what to do, and the link.
 
     The `rank` orders pieces: the reference's own values come first, what fits comes later.
     """
@@ -32,7 +32,7 @@ class Piece(NamedTuple):
 
 
 class _Words(NamedTuple):
-    """The words of a change. `is_mistake`: it undoes a known one; `is_turned`: it sets several angles, and undoes none."""
+    """The words of a change. `is_mistake`: it undoes a known one; `is_turned`: it sets several angles, undoing none."""
 
     cause: str
     action: str
@@ -62,7 +62,7 @@ def _words(sets: Sequence[Set], tag: str) -> _Words:
 
 
 class PieceMaker:
-    """Makes pieces for a robot beside the reference's; `known` are names that may be told, because the reference has them."""
+    """Makes pieces for a robot beside the reference's; only `known` names are shown, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         self.draft, self.reference = draft, reference
@@ -81,7 +81,7 @@ class PieceMaker:
         link: str = "",
         tag: str = "",
     ) -> Piece:
-        """Return a piece that changes an element, or its child with a tag; {} in the texts stands for what it is called."""
+        """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
         place = self.draft.described(element, tag, self.known)
         cause, action = (text.replace("{}", place) for text in (cause, action))
         return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
@@ -132,7 +132,7 @@ class PieceMaker:
 
 
 def twins_of(owner: Element) -> list[Element]:
-    """Return what may be the same as a visual, or as its geometry: that of the collision; for a visual also the inertial."""
+    """Return what may equal a visual, or its geometry: that of the collision; for a visual also the inertial."""
     visual = owner.getparent() if owner.tag == "geometry" else owner
     link = visual.getparent() if visual is not None and visual.tag == "visual" else None
     if link is None or visual is None:

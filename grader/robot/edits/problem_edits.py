@@ -31,7 +31,7 @@ def repairable(problems: tuple[Problem, ...]) -> list[Problem]:
 
 
 def misplaced(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield the moves of elements which ROS 2 ignores where they are: a joint in a link, an origin beside the visual."""
+    """Yield the moves of elements that ROS 2 ignores where they are: a joint in a link, an origin beside the visual."""
     return islice(_misplaced(difference), _MAX_MOVED)
 
 

@@ -1,4 +1,4 @@
-"""What can be read of a text that TinyXML2 refuses: every element but the broken ones as it stands, and what was assumed."""
+"""What can be read of a text that TinyXML2 refuses: every element but the broken ones as is, and the assumptions."""
 
 import re
 from typing import Literal, NamedTuple
@@ -12,11 +12,17 @@ from grader.xml.urdf_format import CHILDREN
 
 # What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
 _OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<[?!].*?(?:>|\Z)", re.DOTALL)
-# A broken tag to its > or to the next tag, and the attributes in it: also without quotes, in typographic ones, or
-# without the last.
+# A broken tag to its > or to the next tag, and the attributes in it.
 _BROKEN = re.compile(r"<\s*+(?P<close>/?)\s*+(?P<name>[A-Za-z_][\w:.-]*)(?P<rest>[^<>]*)>?")
 _ATTRIBUTE = re.compile(
-    r"""(?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:"([^"]*)"?|'([^']*)'?|[“”]([^“”]*)[“”]|([^\s"'“”=]+))"""
+    r"""
+    (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
+        "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
+      | [“”]([^“”]*)[“”]
+      | ([^\s"'“”=]+)              # link=base
+    )
+    """,
+    re.VERBOSE,
 )
 _NEXT_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in them.

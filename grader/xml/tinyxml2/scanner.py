@@ -1,4 +1,4 @@
-"""A text read by TinyXML2's rules (`tinyxml2.cpp`: Identify, ParseDeep): its first <robot> as XML, or why there is none."""
+"""A text read by TinyXML2's rules (`tinyxml2.cpp`: Identify, ParseDeep): its first <robot> as XML, or why none."""
 
 import re
 from functools import cached_property
@@ -11,6 +11,7 @@ from grader.xml.tinyxml2.recovery import Recovery
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, ReadTag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
+# A declaration that XML parsers accept. TinyXML2 ignores what it says, and always reads UTF-8.
 _DECLARATION = re.compile(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
 )

@@ -19,7 +19,7 @@ REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 class ReadTag(NamedTuple):
-    """One tag; attribute values are decoded. Names that XML or lxml may refuse mean nothing to urdfdom: `_` replaces them."""
+    """One tag; attribute values are decoded. Names that XML or lxml may refuse are `_`: urdfdom ignores them anyway."""
 
     name: str
     form: Literal["open", "close", "empty"]

@@ -93,7 +93,7 @@ class _References:
 
 
 def _encoded(code: int) -> bytes:
-    """Return a code point as UTF-8, as TinyXML2 does for surrogates and past the last one; nothing beyond four bytes."""
+    """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last; nothing over four bytes."""
     if code <= _LAST_CODE_POINT:
         return chr(code).encode("utf-8", "surrogatepass")
     if code < _FIVE_BYTES:
@@ -102,7 +102,7 @@ def _encoded(code: int) -> bytes:
 
 
 def escape(value: str) -> str:
-    """Return a value for double quotes in XML; characters that XML does not allow are spelt out, so that names stay different."""
+    """Return a value for double quotes in XML; characters that XML forbids are spelt out, so that names differ."""
     return ILLEGAL.sub(_spell, value.translate(_ESCAPES))
 
 
