@@ -70,7 +70,7 @@ def counts(
 
 
 def _counted(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
-    """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro leaves a kind open."""
+    """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro leaves one open."""
     tree = robot.main_tree
     found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
     for joint in (robot.parent_joints[link] for link in tree[1:]) if set(nouns) - {"link", "joint"} else ():

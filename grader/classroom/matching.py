@@ -1,7 +1,8 @@
 """Find out which student is meant: one matcher for class folders, rosters, gradebooks, LMS files and typed names.
 
-A student is identified by clues. The first kind of clue with a match decides; if it matches several students, or one whom an LMS
-knows by another id, the match is ambiguous and no student is chosen. Spelling is normalised in one place (`clues_of`, `claims_of`).
+A student is identified by clues. The first kind of clue with a match decides; if it matches several students, or one
+whom an LMS knows by another id, the match is ambiguous and no student is chosen. Spelling is normalised in one place
+(`clues_of`, `claims_of`).
 """
 
 import re

@@ -131,8 +131,8 @@ class ReviewSession:
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
         """Mark the current item, unless it already has this mark.
 
-        `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there is a newer
-        one, and InputError.
+        `shown` is the newest mark that the person has seen, by default that of the item. Raises NewerMarkError if there
+        is a newer one, and InputError.
         """
         item = self.current_item()
         shown = item.newest if shown is None else shown
@@ -148,8 +148,8 @@ class ReviewSession:
     def undo(self) -> Mark | None:
         """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
 
-        Adds an entry that restores the mark before it, or withdraws the mark. Raises NewerMarkError if there is a newer mark,
-        InputError, also if the item is no longer graded, and IndexError if there is nothing to undo.
+        Adds an entry that restores the mark before it, or withdraws the mark. Raises NewerMarkError if there is a newer
+        mark, InputError, also if the item is no longer graded, and IndexError if there is nothing to undo.
         """
         here = self.position
         own = [index for index, given in enumerate(self._given) if given.position == here]

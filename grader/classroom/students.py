@@ -10,9 +10,10 @@ CANVAS_TEST_STUDENT = frozenset({"student, test", "test student"})
 class Student:
     """A student or a team. `key` is unique in the gradebook; the other fields are empty where they are not known.
 
-    `login`, `sis` (the university's id), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are the ids in rosters
-    and LMS files. `team` is the team folder of the submission, in the teams layout. `readings` are the names of a student or
-    group and the Canvas user ids that the name of a file in Canvas may mean. The gradebook stores neither of these two.
+    `login`, `sis` (the university's id), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are the ids
+    in rosters and LMS files. `team` is the team folder of the submission, in the teams layout. `readings` are the names
+    of a student or group and the Canvas user ids that the name of a file in Canvas may mean. The gradebook stores
+    neither of these two.
     """
 
     key: str
@@ -30,9 +31,10 @@ class Student:
 class ClassSubmission:
     """The submission of one student in a class: the last attempt, and where the earlier ones are.
 
-    `paths` are relative to the class folder or zip, with forward slashes: one folder, one file, or the several files that an LMS
-    has saved side by side. `names` are the student's own names of these, where the LMS has renamed them. `submitted` is ISO 8601,
-    empty if unknown. `is_certain` is False if a roster matched it by less than the student's own id, key or login.
+    `paths` are relative to the class folder or zip, with forward slashes: one folder, one file, or the several files
+    that an LMS has saved side by side. `names` are the student's own names of these, where the LMS has renamed them.
+    `submitted` is ISO 8601, empty if unknown. `is_certain` is False if a roster matched it by less than the student's
+    own id, key or login.
     """
 
     student: Student

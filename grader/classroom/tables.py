@@ -1,11 +1,12 @@
 """CSV files: one cell can be changed while every other byte stays, and what a spreadsheet opens contains nothing that it would run as a formula.
 
-An LMS compares the file with what it exported, so nothing else may change. Python's csv module gives values, but not how they were
-written (which cells were quoted, the line ends, blank lines): so rows are split here, into the same values. An open quote, which csv
-accepts, is an error.
+An LMS compares the file with what it exported, so nothing else may change. Python's csv module gives values, but not
+how they were written (which cells were quoted, the line ends, blank lines): so rows are split here, into the same
+values. An open quote, which csv accepts, is an error.
 
-What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the four;
-also after spaces. A spreadsheet with the semicolon as separator begins a cell after each semicolon, quoted or not.
+What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the
+four; also after spaces. A spreadsheet with the semicolon as separator begins a cell after each semicolon, quoted or
+not.
 """
 
 import codecs

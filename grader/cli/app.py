@@ -48,8 +48,8 @@ def _root(
 ) -> None:
     """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
 
-    Students start with grade, instructors with rubric show and batch. Each command describes its arguments under --help, with
-    examples.
+    Students start with grade, instructors with rubric show and batch. Each command describes its arguments under
+    --help, with examples.
 
     Examples:
 

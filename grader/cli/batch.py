@@ -61,8 +61,8 @@ def batch(
 ) -> str:
     """Grade a class into a gradebook, in parallel.
 
-    Rerun the same command to resume, or to grade new and changed submissions. Submissions are isolated: a crash or timeout affects only
-    its own submission. Exits 0 when every submission has a result, whatever the grades.
+    Rerun the same command to resume, or to grade new and changed submissions. Submissions are isolated: a crash or
+    timeout affects only its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:
 
@@ -78,7 +78,8 @@ def batch(
 
       Late submissions: [late] in the rubric, --due, and columns due and extension in the roster.
 
-      Unmatched submissions: add the student's login, email address or LMS number to the roster, and rerun with --roster.
+      Unmatched submissions: add the student's login, email address or LMS number to the roster, and rerun with
+      --roster.
 
       A student without a submission, or with a wrong result: grader mark.
 

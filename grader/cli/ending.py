@@ -25,8 +25,9 @@ _DELAY = 0.01  # seconds
 def quiet_interrupts() -> Iterator[None]:
     """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it interrupts.
 
-    It can arrive where Python cannot raise an exception (a finalizer, a callback of an import): there Python would print the
-    KeyboardInterrupt and go on, so it is raised again afterwards. Files that the interrupted code leaves open are no mistake.
+    It can arrive where Python cannot raise an exception (a finalizer, a callback of an import): there Python would
+    print the KeyboardInterrupt and go on, so it is raised again afterwards. Files that the interrupted code leaves open
+    are no mistake.
     """
     before = signal.getsignal(signal.SIGINT)
     if before is not signal.default_int_handler:  # ignored, as after nohup, or somebody else's

@@ -57,8 +57,8 @@ def grade(
 
     The report explains every lost point with file and line.
 
-    Exit codes: 0 all automatic criteria passed (or the score reaches --fail-under); 1 otherwise; 2 nothing was graded; 3 a check
-    is faulty.
+    Exit codes: 0 all automatic criteria passed (or the score reaches --fail-under); 1 otherwise; 2 nothing was graded;
+    3 a check is faulty.
 
     Examples:
 

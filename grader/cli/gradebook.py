@@ -26,12 +26,13 @@ def stats(
 ) -> str:
     """Show statistics of a class: grades, criteria, mistakes, fixes.
 
-    Manual marks are included, late penalties are not; only the totals of the students in --format json include them. The share of
-    a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
-    rest of the grade. An edit is shown with the number of students who need it: it was tried on one of their robots.
+    Manual marks are included, late penalties are not; only the totals of the students in --format json include them.
+    The share of a criterion is the mean share of its points that students earned; its discrimination is the correlation
+    of its points with the rest of the grade. An edit is shown with the number of students who need it: it was tried on
+    one of their robots.
 
-    With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions, and the
-    criteria that differ most. JSON has both.
+    With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions,
+    and the criteria that differ most. JSON has both.
 
     Examples:
 
@@ -66,9 +67,10 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two finished runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
-    manual marks; marks that were given after the older run count as changes. If the rubric changed, the output says what
-    changed for the criteria concerned. Grades include the late penalty. Runs count from 1.
+    Compares the last two finished runs of a gradebook, or two gradebooks. A grade changes with the submission, the
+    rubric, the grader or manual marks; marks that were given after the older run count as changes. If the rubric
+    changed, the output says what changed for the criteria concerned. Grades include the late penalty. Runs count from
+    1.
 
     Examples:
 
@@ -121,9 +123,9 @@ def merge(
 ) -> int:
     """Add the manual marks of gradebook B to gradebook A.
 
-    Use it if two people have graded in copies of one gradebook. Marks that only B has are added. It is a conflict if both
-    gradebooks have new, different marks of the same criterion and student. The command then lists both marks and asks which one
-    counts; A keeps both. Students are matched by their key, else by their ids.
+    Use it if two people have graded in copies of one gradebook. Marks that only B has are added. It is a conflict if
+    both gradebooks have new, different marks of the same criterion and student. The command then lists both marks and
+    asks which one counts; A keeps both. Students are matched by their key, else by their ids.
 
     Exit codes: 0 everything is merged; 1 a conflict is not decided, or a student of B is not in A; 2 wrong usage.
 

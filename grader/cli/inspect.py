@@ -26,7 +26,8 @@ def inspect(
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
+    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file. A planar
+    joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
 
     Examples:
 

@@ -39,8 +39,9 @@ def mark(
 ) -> str:
     """Give a manual mark for a criterion or the whole submission.
 
-    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, also without a submission.
-    A comment without POINTS changes no points. Later runs keep the mark. A later mark replaces it; the gradebook keeps both.
+    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, also without a
+    submission. A comment without POINTS changes no points. Later runs keep the mark. A later mark replaces it; the
+    gradebook keeps both.
 
     Examples:
 
@@ -91,14 +92,14 @@ def review(
 ) -> int:
     """Grade what needs manual grading, one item at a time.
 
-    Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a comment: 3.5
-    the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next review continues with
-    the rest.
+    Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a
+    comment: 3.5 the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next
+    review continues with the rest.
 
     With --second, you see no marks of others, and your marks change no grade. `grader stats` shows the agreement.
 
-    With --html, you review on a page in the browser that shows the pictures. The command prints the address of the page, which works
-    on this machine only. Ctrl-C ends the review.
+    With --html, you review on a page in the browser that shows the pictures. The command prints the address of the
+    page, which works on this machine only. Ctrl-C ends the review.
 
     Examples:
 

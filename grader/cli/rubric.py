@@ -112,8 +112,8 @@ def new_rubric(
 def check_rubric(file: RubricArgument) -> int:
     """Check a rubric and its reference solution.
 
-    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria cannot be decided on the
-    reference, such as the radius of a wheel that is a mesh.
+    Exits 2 if there are mistakes, and lists all of them with their lines; 1 if automatic criteria cannot be decided on
+    the reference, such as the radius of a wheel that is a mesh.
 
     Examples:
 
@@ -135,11 +135,11 @@ def run_test(
 ) -> int:
     """Test a rubric on variants of its reference and on samples.
 
-    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks are listed
-    with a suggestion.
+    The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks
+    are listed with a suggestion.
 
-    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1 otherwise; 2 the
-    rubric is broken or has no reference; 3 a check is faulty.
+    Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1
+    otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.
 
     Examples:
 

@@ -19,8 +19,8 @@ ProgressDisplay = Callable[[str], AbstractContextManager[Callable[["ClassProgres
 class Terminal(NamedTuple):
     """The terminal of a command.
 
-    `ask` prints a prompt and returns the line that is typed, None at the end of the input. `screen` is called before each use,
-    because a terminal can be resized.
+    `ask` prints a prompt and returns the line that is typed, None at the end of the input. `screen` is called before
+    each use, because a terminal can be resized.
     """
 
     show: Callable[[str], None]

@@ -28,7 +28,8 @@ def search_class_hints(
 ) -> None:
     """Search the hints that the reports of students show, and those that the statistics of the class count, and store them.
 
-    Reports quote the text of the student, so that each content is searched; statistics show one of those with the same robot.
+    Reports quote the text of the student, so that each content is searched; statistics show one of those with the same
+    robot.
     """
     searched = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if reports else []
     searches = [HintSearch(book, rubric, attrgetter("content"), options.max_size) for rubric in searched]

@@ -178,8 +178,9 @@ def _write_some(run: ReportRun, names: dict[str, str]) -> None:
 def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
     """Return the report on a student's newest submission, with the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person did, and always
-    in `feedback`. Without notes, the report is the same as that of `grader grade`. Without a submission, it has notes, but no points.
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
+    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. Without a
+    submission, it has notes, but no points.
     """
     report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason

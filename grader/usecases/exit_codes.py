@@ -34,8 +34,8 @@ def read_threshold(text: str) -> tuple[Decimal, bool]:
 def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
-    A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion must have
-    passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
+    A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion
+    must have passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
     """
     from grader.report.content import undecided
 

@@ -28,7 +28,8 @@ def publish_report(
 ) -> None:
     """Annotate the findings of a report, and add it to the job summary, which names the files with pictures.
 
-    Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the report.
+    Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the
+    report.
     """
     from grader.report.annotations import render_github
     from grader.report.markdown import cut_markdown

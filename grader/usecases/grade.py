@@ -148,9 +148,10 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
 def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     """Remove the files that `--save` names and return their permissions.
 
-    They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its reports. Robot
-    descriptions and other files of a package stay, because they may be what is read. Raises InputError if a report would overwrite a file of
-    the rubric or one of the submissions, or lead through a symlink of a submission.
+    They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its
+    reports. Robot descriptions and other files of a package stay, because they may be what is read. Raises InputError
+    if a report would overwrite a file of the rubric or one of the submissions, or lead through a symlink of a
+    submission.
     """
     if not saves:
         return {}

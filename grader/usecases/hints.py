@@ -23,8 +23,8 @@ def with_hints(
 ) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
 
-    The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report do not show the reference. Raises
-    InputError if edits are to be written at a level that does not show them.
+    The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report do not show the
+    reference. Raises InputError if edits are to be written at a level that does not show them.
     """
     allowed = report.rubric.hints
     level = allowed if wanted is None else min(allowed, wanted, key=LEVELS.index)

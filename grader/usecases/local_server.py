@@ -1,7 +1,7 @@
 """A server for one person on this machine: bound to the loopback address, with a secret in the path of every address.
 
-Requests without the secret are refused. Requests of other websites are refused as well: the server accepts only its own host name,
-and only JSON from its own origin. One thread does all the work, so that nothing is written concurrently.
+Requests without the secret are refused. Requests of other websites are refused as well: the server accepts only its own
+host name, and only JSON from its own origin. One thread does all the work, so that nothing is written concurrently.
 """
 
 import hmac

@@ -41,8 +41,9 @@ def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPictur
 class PictureFolder:
     """Writes pictures as FOLDER/CRITERION/STUDENT.NUMBER.ENDING.
 
-    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is overwritten.
-    An anonymous review needs an empty folder, because it must not show whose files are there. Raises InputError.
+    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is
+    overwritten. An anonymous review needs an empty folder, because it must not show whose files are there. Raises
+    InputError.
     """
 
     def __init__(self, session: ReviewSession, book: Gradebook, folder: Path) -> None:

@@ -27,7 +27,8 @@ from grader.usecases.grade import GradeRequest, grade_submission, remove_reports
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
 _Stamp = tuple[int, ...] | None
-# The report that was shown last, all of its text, whatever the terminal's width, and the texts of files that its hints change.
+# The report that was shown last, all of its text, whatever the terminal's width, and the texts of files that its hints
+# change.
 _Shown = tuple[Report, str, dict[str, str]]
 
 
@@ -37,8 +38,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     A submission or rubric that cannot be read is reported, and graded again after the next change.
 
     Raises:
-        GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed, a report
-            that cannot be saved.
+        GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed,
+            a report that cannot be saved.
     """
     besides: set[Path] = set()
     changes = _changes(request, besides, terminal.warn)

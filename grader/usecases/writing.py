@@ -46,8 +46,9 @@ def save(path: Path, text: str, submissions: Sequence[Path | str] = (), mode: in
 def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
     """Write a file atomically. A path that is not a regular file, such as a pipe or a device, is written to directly.
 
-    A symlink is followed unless it is in one of the submissions, which are folders and files that students made. A new file gets
-    the permissions `mode`; one that is replaced keeps its own. Raises InputError if the file cannot be written.
+    A symlink is followed unless it is in one of the submissions, which are folders and files that students made. A new
+    file gets the permissions `mode`; one that is replaced keeps its own. Raises InputError if the file cannot be
+    written.
     """
     refuse_symlinks(path, submissions)
     try:
@@ -114,7 +115,8 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
 def refuse_symlinks(path: Path, submissions: Sequence[Path | str] = ()) -> None:
     """Raise InputError if a path leads through a symlink that a student may have made.
 
-    These are the symlinks in the folder of a submission, or beside a URDF, or in the repository that a CI job checked out.
+    These are the symlinks in the folder of a submission, or beside a URDF, or in the repository that a CI job checked
+    out.
     """
     folders = set(_student_folders(submissions))
     for symlink in _symlinks(path):

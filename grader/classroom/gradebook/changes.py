@@ -58,8 +58,8 @@ class PointsChange(NamedTuple):
 class Change:
     """The changes for one student, and their causes. A grade that counts is None if there was none.
 
-    `is_regraded` is False if only points of criteria changed, and the grade did not. `rubric` are the changes of the rubric that
-    concern the criteria in `steps`.
+    `is_regraded` is False if only points of criteria changed, and the grade did not. `rubric` are the changes of the
+    rubric that concern the criteria in `steps`.
     """
 
     key: str
@@ -126,7 +126,8 @@ _Comparison = Callable[[str, str, tuple[str, ...]], tuple[RubricChange, ...]]
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
     """Return the last two finished runs in a gradebook, or two runs by their numbers; raises InputError.
 
-    An interrupted run has only a part of the class: the run after it would differ from it only in the rest. The older snapshot has the manual marks from before its run, the newer one also those after its run.
+    An interrupted run has only a part of the class: the run after it would differ from it only in the rest. The older
+    snapshot has the manual marks from before its run, the newer one also those after its run.
     """
     runs = {run.id: run for run in book.runs()}
     for run in (before, after):

@@ -44,7 +44,8 @@ def grouped(failures: Mapping[Failure, int]) -> list[tuple[Failure, int]]:
 def groups_of(failures: Mapping[Failure, int]) -> dict[Failure, Failure]:
     """Return the cause of each failure, given as the most frequent failure that has it.
 
-    A measured failure belongs to the first group whose values are within the tolerance, any other to the group with the same message.
+    A measured failure belongs to the first group whose values are within the tolerance, any other to the group with the
+    same message.
     """
     found: dict[Failure, Failure] = {}
     cells: dict[tuple[object, ...], list[Failure]] = {}

@@ -21,7 +21,8 @@ _MAX_FIXES = 20
 class CommonFix:
     """A change that several students need; `students` are their keys.
 
-    `criteria` that pass and `points` gained are those of most students. `example` contains the edits of one student, without file names.
+    `criteria` that pass and `points` gained are those of most students. `example` contains the edits of one student,
+    without file names.
     """
 
     action: str

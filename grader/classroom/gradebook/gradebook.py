@@ -69,7 +69,8 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     def _connect(self, create: bool) -> sqlite3.Connection:
         if create or not self.read_only:
             return sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT, isolation_level=None)
-        # In a folder without write permission SQLite reads a file with a write-ahead log only if nothing can write to it.
+        # In a folder without write permission SQLite reads a file with a write-ahead log only if nothing can write to
+        # it.
         is_static = not Path(f"{self.path}-wal").exists()
         uri = f"{self.path.absolute().as_uri()}?mode=ro{'&immutable=1' * is_static}"
         return sqlite3.connect(uri, timeout=_BUSY_TIMEOUT, isolation_level=None, uri=True)

@@ -22,8 +22,8 @@ _ROBOT = ("urdf", "robot")  # what a check examines that depends on the URDF alo
 class Mistaken(NamedTuple):
     """A submission that lost points. `hints` are those that are stored, as JSON; None if they have not been searched.
 
-    Submissions with the same `content` have the same hints. Those with the same `robot` and the same failed criteria need the same
-    changes, at other places of their texts.
+    Submissions with the same `content` have the same hints. Those with the same `robot` and the same failed criteria
+    need the same changes, at other places of their texts.
     """
 
     student: int

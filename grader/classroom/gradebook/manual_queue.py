@@ -29,8 +29,8 @@ class QueuedCriterion(NamedTuple):
 class ReviewScope(NamedTuple):
     """What a review shows: one criterion, one section, or with `mine` the students whose marker is `by`.
 
-    `by` is the name that reports show. With `second`, second opinions are given on items that others have marked or that need
-    manual grading; the marks of others are hidden. With `anonymous`, students have numbers instead of names.
+    `by` is the name that reports show. With `second`, second opinions are given on items that others have marked or
+    that need manual grading; the marks of others are hidden. With `anonymous`, students have numbers instead of names.
     """
 
     criterion: str = ""
@@ -84,8 +84,8 @@ _OPEN_FOR_SECOND = f"""({_IS_PENDING} OR {_MARKED})) AND NOT {_MARKED} AND grade
 def manual_grading_queue(grades: Grades, scope: ReviewScope = EVERYTHING) -> list[QueuedCriterion]:
     """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
 
-    Unreadable submissions are omitted: they need a fix, not points. So are students with a final mark or an excuse. Raises
-    InputError for a section or marker that no student has.
+    Unreadable submissions are omitted: they need a fix, not points. So are students with a final mark or an excuse.
+    Raises InputError for a section or marker that no student has.
     """
     rubric, students = grades.newest_rubric(), _students_of(grades.book, scope)
     query = _QUEUED + (_OPEN_FOR_SECOND if scope.second else _OPEN)

@@ -24,7 +24,8 @@ Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 class Entry(NamedTuple):
     """An entry of a grader: points and a comment, a comment alone, a withdrawn mark, or an excuse.
 
-    A comment alone keeps the points that count. A second opinion has points that never count, or none if it is withdrawn.
+    A comment alone keeps the points that count. A second opinion has points that never count, or none if it is
+    withdrawn.
     """
 
     kind: Kind
@@ -39,7 +40,8 @@ WITHDRAWN_SECOND = Entry("second")
 class Mark(NamedTuple):
     """An entry in the gradebook.
 
-    `by` is the name of the grader, empty without `--by`. `at` is the time, and `result` the result that it was given for.
+    `by` is the name of the grader, empty without `--by`. `at` is the time, and `result` the result that it was given
+    for.
     """
 
     id: int
@@ -102,10 +104,10 @@ def add_mark(
 ) -> AddedMark:
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
-    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If there is a
-    newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, their grader, and the
-    result that they were given for; the audit names who commented. Raises InputError for a criterion of a student without a
-    submission.
+    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If
+    there is a newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, their
+    grader, and the result that they were given for; the audit names who commented. Raises InputError for a criterion of
+    a student without a submission.
     """
     if grade.result is None and criterion != TOTAL:
         key = grade.student.key

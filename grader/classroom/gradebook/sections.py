@@ -20,9 +20,9 @@ _MIN_DIFFERENCE = 0.005  # of a share: what is shown as one percent
 class Section(NamedTuple):
     """The students of one section. `name` is empty for those without one.
 
-    `mean` and `median` are those of the `graded` students' grades over decided points, without late penalties; None without any.
-    `late_points` are the late penalties of `late` students. `shares` are the mean shares of each criterion's points that were
-    earned, None if nothing is decided.
+    `mean` and `median` are those of the `graded` students' grades over decided points, without late penalties; None
+    without any. `late_points` are the late penalties of `late` students. `shares` are the mean shares of each
+    criterion's points that were earned, None if nothing is decided.
     """
 
     name: str

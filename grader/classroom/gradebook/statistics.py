@@ -25,9 +25,9 @@ class CriterionStatistics:
 
     For `carried` students it failed because of an earlier mistake alone: they have the points.
 
-    `share` is the mean share of its points that was earned (the lower, the harder). `discrimination` is the correlation of that
-    share with the points of all other criteria: below about 0.2 the criterion says little about a student, below 0 it may be wrong.
-    It is None if all students have the same result.
+    `share` is the mean share of its points that was earned (the lower, the harder). `discrimination` is the correlation
+    of that share with the points of all other criteria: below about 0.2 the criterion says little about a student,
+    below 0 it may be wrong. It is None if all students have the same result.
     """
 
     criterion: Criterion
@@ -69,14 +69,14 @@ class PointTotals(NamedTuple):
 class ClassStatistics:
     """The statistics of a class: the scores of graded submissions without late penalties.
 
-    `verdicts` counts all students but the `excused`. `final` students have a final mark, which replaces the score; only those
-    with a graded submission, `final_graded`, are in the statistics.
+    `verdicts` counts all students but the `excused`. `final` students have a final mark, which replaces the score; only
+    those with a graded submission, `final_graded`, are in the statistics.
 
-    `mean` and the figures below it are over decided points: the grade of a student is the share that was earned of the points that
-    are decided, times the maximum of a submission, `out_of`. Students most of whose automatic points are undecided, `undecided`,
-    are not in them.
-    `pending` counts students with points that need manual grading, `reasons` why automatic points do, the most frequent first.
-    `bins` counts grades by tenths of the maximum; the maximum itself is in the last bin.
+    `mean` and the figures below it are over decided points: the grade of a student is the share that was earned of the
+    points that are decided, times the maximum of a submission, `out_of`. Students most of whose automatic points are
+    undecided, `undecided`, are not in them. `pending` counts students with points that need manual grading, `reasons`
+    why automatic points do, the most frequent first. `bins` counts grades by tenths of the maximum; the maximum itself
+    is in the last bin.
     """
 
     verdicts: Mapping[str, int]

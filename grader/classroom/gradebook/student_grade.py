@@ -41,7 +41,8 @@ class Reason(StrEnum):
 class SubmissionFiles(NamedTuple):
     """Where a submission was when it was graded: paths below the class `root`, and the fingerprint and digest of the files.
 
-    The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The digest is of the contents.
+    The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The
+    digest is of the contents.
     """
 
     root: str
@@ -85,13 +86,13 @@ class SubmissionSources:
 class StudentGrade:
     """One student's current grade. Without a submission `verdict` is `missing`, and there are no points.
 
-    `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed. `older_marks`
-    are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that had other points then,
-    `over_marks` those whose mark exceeds the current maximum, and `removed_marks` those that the rubric no longer has. `is_gone`
-    means that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded,
-    `has_other_parts` that the parts have that a submission is graded on. `final` is the final mark; None if there is none, or the
-    student is excused. `final_is_older` means that the final mark or excuse was given for an earlier submission. `section` and
-    `marker` come from the roster.
+    `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed.
+    `older_marks` are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that
+    had other points then, `over_marks` those whose mark exceeds the current maximum, and `removed_marks` those that the
+    rubric no longer has. `is_gone` means that the newest run did not find the submission, `is_outdated` that the rubric
+    has changed since it was graded, `has_other_parts` that the parts have that a submission is graded on. `final` is
+    the final mark; None if there is none, or the student is excused. `final_is_older` means that the final mark or
+    excuse was given for an earlier submission. `section` and `marker` come from the roster.
     """
 
     id: int

@@ -128,7 +128,8 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
     subjects = {row.check.subject for row in rubric.criteria}
     graded = {kind for kind, names in needed.items() if subjects.intersection(names)}
     package = {row.position for row in rubric.criteria if row.check.subject == "package"}
-    # A record takes long to read, so those of most classes are not: with a URDF and a package of the lab, or a URDF on its own.
+    # A record takes long to read, so those of most classes are not: with a URDF and a package of the lab, or a URDF on
+    # its own.
     found = [
         result
         for result, urdf, files in list(book.rows(_QUERY, rubric.sha256))
@@ -152,7 +153,8 @@ _TIMES = "SELECT is_late OR submitted <> '' OR days_late IS NOT NULL, roster_ent
 class LateTotals(NamedTuple):
     """How many submissions are late, the points that they lose in total, and the least and the most that one of them loses.
 
-    `unknown` counts the submissions if a deadline has no effect, because nothing says of any of them when it was submitted.
+    `unknown` counts the submissions if a deadline has no effect, because nothing says of any of them when it was
+    submitted.
     """
 
     students: int

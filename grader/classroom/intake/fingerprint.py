@@ -22,7 +22,8 @@ def is_zip(root: str) -> bool:
 def fingerprint(root: str, paths: tuple[str, ...], now: int, limit: int = URDF_LIMIT) -> str:
     """Return the fingerprint of a submission; empty if it cannot be trusted, because it was changed just before `now`.
 
-    `now` is in nanoseconds. Another `limit` (bytes of a URDF) gives another fingerprint: a file that was too large may be read now.
+    `now` is in nanoseconds. Another `limit` (bytes of a URDF) gives another fingerprint: a file that was too large may
+    be read now.
     """
     found = _fingerprint(root, paths, now - _CLOCK_RESOLUTION)
     return f"{found} {limit}" if found and limit != URDF_LIMIT else found

@@ -34,7 +34,8 @@ class CanvasGroups:
 
         `position` is the student that all other clues identify.
         """
-        # A user's name may end in the id of a member: of an ambiguous name, only the last number is certainly no part of a name.
+        # A user's name may end in the id of a member: of an ambiguous name, only the last number is certainly no part
+        # of a name.
         readings = student.readings if student.canvas else student.readings[-1:]
         claims = [claim for reading in readings if (claim := self._read(*reading, position))]
         numbers = {number for _, number in student.readings}

@@ -15,7 +15,8 @@ from grader.text import enumerated, first_lines, printable_path
 _UNMATCHED = -1
 _MAX_NOTES = 200
 _MAX_NAMED = 10
-# canvas-lms, app/models/abstract_assignment.rb, anonymize_students: names come back when all grades are posted or published.
+# canvas-lms, app/models/abstract_assignment.rb, anonymize_students: names come back when all grades are posted or
+# published.
 _ANONYMOUS = (
     "this is an anonymous download: its submissions (anon_...) match no student. Canvas shows the names when the grades are"
     " posted: download again then"
@@ -36,10 +37,10 @@ class _Placed(NamedTuple):
 class Intake:
     """The submissions of a class. `ignored` says in lines what in the folder is not a submission, and why.
 
-    With a roster, `unmatched` are the keys of submissions of students who are not on it (they are graded too), `absent` are students
-    without a submission, `contested` students with several possible submissions: none is assigned, and the gradebook keeps the
-    earlier one. `notes` says which submissions are ambiguous, and `ambiguous` how many. `assignments` are the names of the
-    assignment in nbgrader or Canvas.
+    With a roster, `unmatched` are the keys of submissions of students who are not on it (they are graded too), `absent`
+    are students without a submission, `contested` students with several possible submissions: none is assigned, and the
+    gradebook keeps the earlier one. `notes` says which submissions are ambiguous, and `ambiguous` how many.
+    `assignments` are the names of the assignment in nbgrader or Canvas.
     """
 
     layout: str
@@ -99,9 +100,10 @@ def assign(
 ) -> Intake:
     """Assign each submission to a student.
 
-    Of several submissions that may belong to one student, the only one with the student's own id, key or login exactly counts; without
-    such a one none does, and the student is contested. An unmatched submission that is named like a group counts for each member
-    without another submission, unless its folder `holds_students`: then the group is a section.
+    Of several submissions that may belong to one student, the only one with the student's own id, key or login exactly
+    counts; without such a one none does, and the student is contested. An unmatched submission that is named like a
+    group counts for each member without another submission, unless its folder `holds_students`: then the group is a
+    section.
     """
     notes = (*submissions.notes, *((_ANONYMOUS,) if submissions.is_anonymous else ()))
     if roster is None:

@@ -34,7 +34,8 @@ _CHUNK = 1024 * 1024
 class OpenedSubmission(NamedTuple):
     """A submission before it is graded: its digest, and either the bytes of a single URDF or a file tree.
 
-    The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `limit` the bytes of a URDF.
+    The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `limit` the bytes of
+    a URDF.
     """
 
     name: str

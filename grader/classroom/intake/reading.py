@@ -45,8 +45,8 @@ def _detected(folder: ClassFolder) -> str:
 def _unwrapped(folder: ClassFolder) -> ClassFolder:
     """Return the folder that contains the submissions.
 
-    An unpacked download may be in folders that contain nothing else. In a zip, it can be any folder that contains all files,
-    unless it is itself a submission.
+    An unpacked download may be in folders that contain nothing else. In a zip, it can be any folder that contains all
+    files, unless it is itself a submission.
     """
     wrappers, inner = list[ClassFolder](), _only_folder(folder)
     while inner is not None and len(wrappers) < MAX_WRAPPERS and not is_download(inner):
@@ -113,7 +113,8 @@ def find_download(path: Path, rubric_id: str) -> Download | None:
 def _notes_on_downloads(folder: ClassFolder, path: Path) -> list[str]:
     """Return a note on each entry of a small class folder that is graded as one submission and may be a whole class.
 
-    Raises InputError if there are no other entries but the course's own: then they do not count as submissions of one student.
+    Raises InputError if there are no other entries but the course's own: then they do not count as submissions of one
+    student.
     """
     names = folder.children.folders + [name for name in folder.children.files if ending_of(name)]
     others = [name for name in sorted(names) if not is_course_folder(name)] if len(names) <= _MAX_CHECKED else []
@@ -144,8 +145,8 @@ def read_class(
 ) -> Intake:
     """Return the submissions in a class folder or zip; raises InputError if there are none.
 
-    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `lab_folders`
-    are the names of its own (default: its id).
+    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and
+    `lab_folders` are the names of its own (default: its id).
     """
     if layout not in ("auto", *LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")

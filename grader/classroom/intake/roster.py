@@ -15,9 +15,9 @@ _MAX_WAYS = 4
 class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
-    Without a `group`, the `section` may be a team that submits together: only a submission shows which of the two it is. `marker`
-    is the person who grades the student manually. `aliases` are additional logins, such as the one at GitHub.
-    Gradebooks store entries as JSON with these field names.
+    Without a `group`, the `section` may be a team that submits together: only a submission shows which of the two it
+    is. `marker` is the person who grades the student manually. `aliases` are additional logins, such as the one at
+    GitHub. Gradebooks store entries as JSON with these field names.
     """
 
     student: Student
@@ -40,7 +40,8 @@ class RosterEntry:
 class RosterMatch(NamedTuple):
     """The student of a submission: the position in the entries, or None. `clue` says how the match was found.
 
-    `doubt` says why an ambiguous submission is left unassigned; `several` are the positions of the students that it may belong to.
+    `doubt` says why an ambiguous submission is left unassigned; `several` are the positions of the students that it may
+    belong to.
     """
 
     position: int | None
@@ -52,8 +53,8 @@ class RosterMatch(NamedTuple):
 class Roster:
     """The students of a class, in the order of the file; `notes` says which cells were not understood.
 
-    `assignments` has Canvas' ids of the assignments that the file has columns for, `groups` the positions of the students in
-    each group, by its normalised name.
+    `assignments` has Canvas' ids of the assignments that the file has columns for, `groups` the positions of the
+    students in each group, by its normalised name.
     """
 
     def __init__(

@@ -55,8 +55,9 @@ _UNIQUE = {
 def read_roster(path: Path) -> Roster:
     """Return the roster in a CSV file in UTF-8, UTF-16 with a byte order mark, or cp1252.
 
-    Columns can be in any order, separated by commas, semicolons or tabs; unknown columns are ignored. A student's key is the id, else
-    the university's id, login, address, name, or LMS id. Raises InputError with a line for each mistake in the file.
+    Columns can be in any order, separated by commas, semicolons or tabs; unknown columns are ignored. A student's key
+    is the id, else the university's id, login, address, name, or LMS id. Raises InputError with a line for each mistake
+    in the file.
     """
     shown = printable_path(path)
     rows = _rows(read_capped(path, SIZE_LIMIT, advice=""), shown)

@@ -9,10 +9,11 @@ from grader.classroom.intake.roster import RosterEntry
 from grader.classroom.students import Student
 from grader.text import printable_path
 
-# moodle, mod/assign/gradingtable.php, col_status: parts with ` - ` between them. One is the string submittedlateshort with the time
-# after the deadline, which is the student's own where Moodle knows an extension. Others with a number are overdue and
-# userextensiondate, which have a colon. lib/moodlelib.php, format_time: the two largest units, rounded down.
-# submittedlateshort in English, German, French, Spanish, Italian, Portuguese and Dutch, as their language packs have it.
+# moodle, mod/assign/gradingtable.php, col_status: parts with ` - ` between them. One is the string submittedlateshort
+# with the time after the deadline, which is the student's own where Moodle knows an extension. Others with a number are
+# overdue and userextensiondate, which have a colon. lib/moodlelib.php, format_time: the two largest units, rounded
+# down. submittedlateshort in English, German, French, Spanish, Italian, Portuguese and Dutch, as their language packs
+# have it.
 _LATE = re.compile(
     r"(?P<after>.+) (?:late|später|verspätet|después|de retraso|in ritardo|atrasado|(?:te )?laat)|en retard de (?P<before>.+)",
     re.IGNORECASE,

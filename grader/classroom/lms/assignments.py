@@ -59,7 +59,8 @@ def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
 def _detected(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
     """Return the only assignment whose title is a name of the rubric, contains or is part of one.
 
-    Raises InputError if there is none, or several. An only assignment with another title may be the grade of other work.
+    Raises InputError if there is none, or several. An only assignment with another title may be the grade of other
+    work.
     """
     assignments = [column for column in columns if column.title]
     joined = {"".join(_words(name)) for name in options.rubric_names} - {""}

@@ -1,10 +1,10 @@
 """Fill a gradebook that was exported from Canvas with the totals, for Grades > Import.
 
-How Canvas imports it is in lib/gradebook_importer.rb: it finds the student by ID, SIS User ID, SIS Login ID, then name; a cell that
-differs from the gradebook is a change, an empty one too, and EX is an excuse; the row of points possible sets the assignment's
-points. A column that is not in the file does not change. So rows without a new grade are removed, and the rest of the file does
-not change. The columns are detected as Canvas does: it does not translate these headers. A new export may have LastName and
-FirstName instead of Student (lib/gradebook_exporter.rb).
+How Canvas imports it is in lib/gradebook_importer.rb: it finds the student by ID, SIS User ID, SIS Login ID, then name;
+a cell that differs from the gradebook is a change, an empty one too, and EX is an excuse; the row of points possible
+sets the assignment's points. A column that is not in the file does not change. So rows without a new grade are removed,
+and the rest of the file does not change. The columns are detected as Canvas does: it does not translate these headers.
+A new export may have LastName and FirstName instead of Student (lib/gradebook_exporter.rb).
 """
 
 import re
@@ -59,8 +59,8 @@ class _Columns:
 def fill_gradebook(data: bytes, grades: Sequence[LmsGrade], options: FillOptions) -> Filled:
     """Return an exported gradebook with the totals in one assignment's column, and what importing it changes.
 
-    With `options.only` it has no other assignment. Raises InputError if the file is not a gradebook, if the column is ambiguous,
-    and, unless any maximum is allowed, if its points possible are not those of the rubric.
+    With `options.only` it has no other assignment. Raises InputError if the file is not a gradebook, if the column is
+    ambiguous, and, unless any maximum is allowed, if its points possible are not those of the rubric.
     """
     table = read_table(data, options.shown)
     columns = _find_columns(table, options)

@@ -1,14 +1,14 @@
 """The names under which an LMS gives uploaded feedback files to students.
 
 Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): a folder named
-`name_participant_type_plugin` contains the files of one student. The name must have no underscore. Files that begin with a dot
-or `~` are ignored. A file of the same name replaces an earlier one.
+`name_participant_type_plugin` contains the files of one student. The name must have no underscore. Files that begin
+with a dot or `~` are ignored. A file of the same name replaces an earlier one.
 
-Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): underscores separate the
-words of a file name, and LATE is ignored. The first two numbers, or after `anon` the next two words, are the user and an
-attachment of the newest submission. The file is shown under the attachment's name, so a report must have the same file type:
-for an archive, it is an archive that contains the report. In a group that is graded together, each member gets the comment
-(generate_comments_from_files).
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): underscores
+separate the words of a file name, and LATE is ignored. The first two numbers, or after `anon` the next two words, are
+the user and an attachment of the newest submission. The file is shown under the attachment's name, so a report must
+have the same file type: for an archive, it is an archive that contains the report. In a group that is graded together,
+each member gets the comment (generate_comments_from_files).
 """
 
 import re
@@ -46,7 +46,8 @@ def canvas_target(name: str) -> tuple[str, str] | None:
 def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
     """Return the name under which Canvas gives a report to the students of a submission; else an empty name and the reason.
 
-    `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the report.
+    `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the
+    report.
     """
     users = {student.canvas for student in members} - {""}
     certain = [name for name in names if _is_certain(name, users)]

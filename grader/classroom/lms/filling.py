@@ -1,7 +1,7 @@
 """Fill an LMS file with grades: match its rows with the students, write the grades, and say what importing the file does.
 
-Only pairs that are unambiguous in both directions match. Rows of students without a grade are removed, so that nothing of theirs
-changes.
+Only pairs that are unambiguous in both directions match. Rows of students without a grade are removed, so that nothing
+of theirs changes.
 """
 
 from collections.abc import Callable, Container, Iterable, Sequence
@@ -26,8 +26,8 @@ FillExcuse = Callable[[TableRow], TableRow | str]
 class FillOptions:
     """How an LMS file is filled: the rubric's maximum and names, the columns that the user names.
 
-    `any_maximum` allows another maximum in the file. `only` omits the columns of other assignments. `shown` is the name of the
-    file in messages.
+    `any_maximum` allows another maximum in the file. `only` omits the columns of other assignments. `shown` is the name
+    of the file in messages.
     """
 
     out_of: Decimal
@@ -70,12 +70,12 @@ class Conflict(NamedTuple):
 class Preflight:
     """The effects of importing the filled file.
 
-    `filled` rows are changed and `unchanged` ones have the grade already. All other rows are removed from the file, so that the
-    import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows of students
-    without a grade, `refused` those whose grade the LMS would not accept, `unknown` rows that match no student, `missing`
-    students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
-    unassigned. `kept_feedback` are rows with a comment that a person wrote. `older` are the final marks and excuses in the file
-    that were given for an earlier submission.
+    `filled` rows are changed and `unchanged` ones have the grade already. All other rows are removed from the file, so
+    that the import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows
+    of students without a grade, `refused` those whose grade the LMS would not accept, `unknown` rows that match no
+    student, `missing` students with a grade but without a row, `ambiguous` rows and students with several possible
+    matches, which are left unassigned. `kept_feedback` are rows with a comment that a person wrote. `older` are the
+    final marks and excuses in the file that were given for an earlier submission.
     """
 
     column: str

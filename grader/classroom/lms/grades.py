@@ -1,8 +1,8 @@
 """A student's grade and comment for a learning management system: points in its notation, and as HTML which of them were lost and why.
 
 Moodle stores the HTML of an uploaded comment unchanged and includes it in the next worksheet
-(mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words: without a match, a person has
-changed the words or added to them, and the comment is theirs.
+(mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words: without a match, a
+person has changed the words or added to them, and the comment is theirs.
 """
 
 import html
@@ -26,9 +26,9 @@ _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
 class LmsGrade:
     """A student's grade. Without a total `why_not` says why: no submission, needs manual grading.
 
-    `feedback` is HTML from `feedback_html`; Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is False for a
-    submission that is not on the roster of its class. `is_excused` is an excuse for an LMS that knows excuses; it has no total.
-    `is_older` means that the final mark or excuse was given for an earlier submission.
+    `feedback` is HTML from `feedback_html`; Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is
+    False for a submission that is not on the roster of its class. `is_excused` is an excuse for an LMS that knows
+    excuses; it has no total. `is_older` means that the final mark or excuse was given for an earlier submission.
     """
 
     student: Student
@@ -183,8 +183,8 @@ def _item(item: FeedbackItem) -> str:
 def _escaped(text: str) -> str:
     """Return a student's text on one line of HTML.
 
-    Two things become character references: a backslash, which PHP's CSV reader takes for an escape, and what a spreadsheet would take
-    for a formula after the semicolon of another reference.
+    Two things become character references: a backslash, which PHP's CSV reader takes for an escape, and what a
+    spreadsheet would take for a formula after the semicolon of another reference.
     """
     line = spelt_out(" ".join(text.split()))
     short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."

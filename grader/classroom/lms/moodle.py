@@ -1,9 +1,10 @@
 """Fill a grading worksheet that was downloaded from Moodle with totals and comments, for "Upload grading worksheet".
 
-How Moodle imports it is in mod/assign/feedback/offline (locallib.php, importgradeslib.php): it finds the student by the number in
-Identifier; it skips a grade that is empty, equal, above the maximum, locked, or changed in Moodle since the download; it writes every
-comment that differs, an empty one too. A worksheet shows rounded grades, so that even an unchanged row could change one. So rows
-without a new grade are removed: a student who is not in the file keeps everything.
+How Moodle imports it is in mod/assign/feedback/offline (locallib.php, importgradeslib.php): it finds the student by the
+number in Identifier; it skips a grade that is empty, equal, above the maximum, locked, or changed in Moodle since the
+download; it writes every comment that differs, an empty one too. A worksheet shows rounded grades, so that even an
+unchanged row could change one. So rows without a new grade are removed: a student who is not in the file keeps
+everything.
 """
 
 import html
@@ -34,8 +35,8 @@ _NO = frozenset({"no", "nein", "non", "não", "nee"})  # in the languages of `mo
 def fill_worksheet(data: bytes, grades: Sequence[LmsGrade], options: FillOptions) -> Filled:
     """Return a downloaded grading worksheet with the totals and comments, and what importing it changes.
 
-    A comment that a person wrote or changed stays, and is reported. Raises InputError if the file is not a worksheet with points,
-    and, unless any maximum is allowed, if its maximum grade is not that of the rubric.
+    A comment that a person wrote or changed stays, and is reported. Raises InputError if the file is not a worksheet
+    with points, and, unless any maximum is allowed, if its maximum grade is not that of the rubric.
     """
     table, columns = read_worksheet(data, options)
     maxima = sorted({row.value(columns.maximum) for row in student_rows(table) if len(row.cells) == len(table.titles)})

@@ -1,8 +1,8 @@
 """Detect the columns of a Moodle grading worksheet, in any language.
 
-The order of the columns is fixed (mod/assign/gradingtable.php): Identifier, then, unless the marking is blind, Full name and
-other data of a user; Status, group, marker; Grade, and directly after it Maximum grade, or Scale. So the Identifier is detected by
-its shape, a word and a number, and the Grade by the column after it.
+The order of the columns is fixed (mod/assign/gradingtable.php): Identifier, then, unless the marking is blind, Full
+name and other data of a user; Status, group, marker; Grade, and directly after it Maximum grade, or Scale. So the
+Identifier is detected by its shape, a word and a number, and the Grade by the column after it.
 """
 
 import re
@@ -13,9 +13,9 @@ from grader.classroom.lms.grades import read_points
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 
-# Headers in lower case, as the language packs have them (assign.php, assignfeedback_comments.php): English, German, French, Spanish,
-# Italian, Portuguese, Brazilian and Dutch, as far as they were looked up. The other columns are detected by place and values, so
-# that a language that is not here mostly works as well.
+# Headers in lower case, as the language packs have them (assign.php, assignfeedback_comments.php): English, German,
+# French, Spanish, Italian, Portuguese, Brazilian and Dutch, as far as they were looked up. The other columns are
+# detected by place and values, so that a language that is not here mostly works as well.
 _HEADERS = {
     "identifier": "identifier | id | identifiant | identificador | identificativo | identificatie",
     "maximum": (
@@ -69,7 +69,8 @@ def student_rows(table: Table) -> list[TableRow]:
 def find_columns(table: Table, column: str, feedback_column: str, shown: str) -> MoodleColumns:
     """Return the columns of a grading worksheet; `column` and `feedback_column` are headers that the user names.
 
-    Raises InputError if it is not a worksheet, if a column cannot be detected, and if the assignment is graded by a scale.
+    Raises InputError if it is not a worksheet, if a column cannot be detected, and if the assignment is graded by a
+    scale.
     """
     titles = table.titles
     kinds = [_KIND_OF.get(title.casefold(), "") for title in titles]

@@ -1,14 +1,17 @@
 """Fill the grade files of Blackboard Learn and Brightspace (D2L), which differ only in how they name columns and students.
 
-Blackboard, "Work offline with grade data" (help.blackboard.com): the file is tab-separated in UTF-16, or comma-separated.
-`Username` identifies the student. The number after the last `|` of a header identifies the column, as in
-`Lab 6 [Total Pts: 100 Score] |123456`; totals have `up to 100`. Comments (`Grading Notes`, `Feedback to Learner`) do not change.
+Blackboard, "Work offline with grade data" (help.blackboard.com): the file is tab-separated in UTF-16, or
+comma-separated. `Username` identifies the student. The number after the last `|` of a header identifies the column, as
+in `Lab 6 [Total Pts: 100 Score] |123456`; totals have `up to 100`. Comments (`Grading Notes`, `Feedback to Learner`) do
+not change.
 
-Brightspace, "Importing grades" (community.d2l.com, article 3538): `OrgDefinedId` or `Username` identifies the student, and the
-header the grade item: `Lab 6 Points Grade <Numeric MaxPoints:100>`. The last column `End-of-Line Indicator` has `#` in each row,
-and an export has `#` before ids. Points above the maximum are reduced to it, unless the item can exceed it.
+Brightspace, "Importing grades" (community.d2l.com, article 3538): `OrgDefinedId` or `Username` identifies the student,
+and the header the grade item: `Lab 6 Points Grade <Numeric MaxPoints:100>`. The last column `End-of-Line Indicator` has
+`#` in each row, and an export has `#` before ids. Points above the maximum are reduced to it, unless the item can
+exceed it.
 
-Neither documents what an empty cell does, and a file may contain some students only. So rows without a grade are removed.
+Neither documents what an empty cell does, and a file may contain some students only. So rows without a grade are
+removed.
 """
 
 import re
@@ -36,7 +39,8 @@ from grader.text import enumerated, format_points
 class OfflineFormat:
     """The columns of a file: those that identify students, and the pattern of an assignment's header.
 
-    The pattern has the groups `title` and `maximum`, and perhaps `number`. Headers in `kept` are not another assignment's.
+    The pattern has the groups `title` and `maximum`, and perhaps `number`. Headers in `kept` are not another
+    assignment's.
     """
 
     lms: str
@@ -78,8 +82,8 @@ _PREVIEW_USER = re.compile(r".*_previewuser\d*")  # the instructor's own test st
 def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, form: OfflineFormat) -> Filled:
     """Return a file of Blackboard or Brightspace with the totals in the column of an assignment, and what importing it changes.
 
-    With `options.only` it has no other assignment. Raises InputError if the file is of another kind, or the column is ambiguous.
-    Unless any maximum is allowed, its maximum must be that of the rubric.
+    With `options.only` it has no other assignment. Raises InputError if the file is of another kind, or the column is
+    ambiguous. Unless any maximum is allowed, its maximum must be that of the rubric.
     """
     table = read_table(data, options.shown)
     titles = table.titles

@@ -51,9 +51,9 @@ class Progress:
 class RunSettings(NamedTuple):
     """The settings of a run.
 
-    `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes. With `add` the class is added to whatever the
-    gradebook holds. `parts` are the ids of those that every submission is graded on; default: all. `handed_out` are hashes of
-    URDFs and robots that the course handed out.
+    `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes. With `add` the class is added to
+    whatever the gradebook holds. `parts` are the ids of those that every submission is graded on; default: all.
+    `handed_out` are hashes of URDFs and robots that the course handed out.
     """
 
     root: str

@@ -24,8 +24,8 @@ _lock = threading.Lock()  # a Dask worker may have many threads
 class Cluster(Executor):
     """An executor whose tasks run on the workers of a Dask cluster; raises InputError if it cannot be used.
 
-    `root` is the class: every worker has to see it at the same path. If a worker is lost, Dask gives its tasks to another one; a
-    task that ends one worker after the other raises WorkerError.
+    `root` is the class: every worker has to see it at the same path. If a worker is lost, Dask gives its tasks to
+    another one; a task that ends one worker after the other raises WorkerError.
     """
 
     def __init__(self, address: str, timeout: float, root: Path) -> None:
@@ -135,7 +135,8 @@ def _run_in_process(
 def _processes() -> Processes:
     from distributed import get_worker
 
-    # Dask starts its workers as daemons, which may not have processes of their own; those that pebble starts end with it.
+    # Dask starts its workers as daemons, which may not have processes of their own; those that pebble starts end with
+    # it.
     multiprocessing.current_process().daemon = False
     processes = Processes(get_worker().state.nthreads, _NO_TIMEOUT)
     Finalize(None, processes.shutdown, exitpriority=1)  # before a worker that ends waits for its processes

@@ -47,8 +47,8 @@ class WorkerError(GraderError):
 class Processes(Executor):
     """Worker processes. A task that takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
 
-    Another worker then replaces the one that ended. All of them end with the process that started them, however that ends.
-    `memory` is the limit for each worker, in bytes.
+    Another worker then replaces the one that ended. All of them end with the process that started them, however that
+    ends. `memory` is the limit for each worker, in bytes.
     """
 
     def __init__(self, workers: int, timeout: float, memory: int = MAX_MEMORY) -> None:
@@ -194,7 +194,8 @@ def _start_worker(memory: int) -> None:
     with suppress(ImportError, AttributeError, OSError):
         import fcntl
 
-        # Ask for a signal (SIGIO) when the pipe to the parent closes: a thread could not stop an interpreter that is stuck.
+        # Ask for a signal (SIGIO) when the pipe to the parent closes: a thread could not stop an interpreter that is
+        # stuck.
         assert parent is not None
         fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)

@@ -19,7 +19,8 @@ _MAX_TRIES = 3
 class Queue:
     """Submits tasks and collects results.
 
-    A submission whose grading is lost is tried alone, then without its documents; if that is lost as well, it is `errored`.
+    A submission whose grading is lost is tried alone, then without its documents; if that is lost as well, it is
+    `errored`.
     """
 
     def __init__(self, executor: Executor, workers: int, context: Callable[[], ClassContext]) -> None:

@@ -19,9 +19,9 @@ from grader.classroom.students import ClassSubmission, Student
 class Identities:
     """The students that were in a gradebook when a run began. `keys` returns the keys of the class that is graded now.
 
-    A student whose key is in the class or on the roster keeps it, with all results. Of the others, one who was on a roster is
-    recognised by LMS ids and by the data of the roster, never by the name of a folder; one who was not is recognised by the exact
-    name as well, and by the path of the submission.
+    A student whose key is in the class or on the roster keeps it, with all results. Of the others, one who was on a
+    roster is recognised by LMS ids and by the data of the roster, never by the name of a folder; one who was not is
+    recognised by the exact name as well, and by the path of the submission.
     """
 
     def __init__(self, book: Gradebook, root: str, roster: Roster | None, keys: Callable[[], Iterable[str]]) -> None:

@@ -1,11 +1,12 @@
 """The Canvas layout, a bulk download: all files side by side, each with its student's name and user id in its name.
 
-canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5 letters}_{attachment
-id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is submitted
-again under the same name is saved with `-1`, `-2` after its stem (attachment.rb, make_unique_filename).
+canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5
+letters}_{attachment id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web
+address. A file that is submitted again under the same name is saved with `-1`, `-2` after its stem (attachment.rb,
+make_unique_filename).
 
-If groups are graded as a whole, there is one submission for each group, with the group's name and the user id of one member
-(app/models/abstract_assignment.rb, representatives).
+If groups are graded as a whole, there is one submission for each group, with the group's name and the user id of one
+member (app/models/abstract_assignment.rb, representatives).
 """
 
 import re
@@ -23,7 +24,8 @@ _ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
 _REST = rf"_(?:(?P<attachment>{_ID})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))"
 _ANONYMOUS = re.compile(r"(?P<late>LATE_)?anon_(?P<user>[1-9A-HJ-NP-Za-km-z]{5})" + _REST, re.DOTALL)
 _USER = re.compile(rf"(?P<late>_LATE)?_(?P<user>{_ID})(?={_REST}\Z)", re.DOTALL)
-# Canvas numbers the uploads of all courses in order: a number far below the others' is part of a name that a student chose.
+# Canvas numbers the uploads of all courses in order: a number far below the others' is part of a name that a student
+# chose.
 _MAX_GROWTH = 1000
 _REPEATED = re.compile(
     r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
@@ -126,9 +128,9 @@ def _read(path: str, name: str, found: re.Match[str]) -> _CanvasFile:
 def _settled(readings: Sequence[_CanvasFile], names: Mapping[str, str], first: int) -> _CanvasFile:
     """Return a file in its last possible reading: its number is no part of a name that a user chose.
 
-    Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. They cannot rule out the
-    last reading, because its user may have changed the name between two downloads. `first` is the smallest number of an upload in
-    these. A roster rules nothing out, because a student may be missing on it.
+    Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. They cannot
+    rule out the last reading, because its user may have changed the name between two downloads. `first` is the smallest
+    number of an upload in these. A roster rules nothing out, because a student may be missing on it.
     """
     possible = [
         file

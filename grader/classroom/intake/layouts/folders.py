@@ -1,8 +1,8 @@
 """The folders layout: each folder, archive or URDF is the submission of one student or team, and is named after them.
 
-Class repositories of GitHub are `<assignment>-<login>/`. A browser saves a second `alice.zip` as `alice (1).zip`, a later attempt;
-a folder may contain only attempts. If two names differ in their ending only, a folder counts, then the endings in the
-order of `names.ENDINGS`; the other one is ignored, and reported.
+Class repositories of GitHub are `<assignment>-<login>/`. A browser saves a second `alice.zip` as `alice (1).zip`, a
+later attempt; a folder may contain only attempts. If two names differ in their ending only, a folder counts, then the
+endings in the order of `names.ENDINGS`; the other one is ignored, and reported.
 """
 
 import re
@@ -86,7 +86,8 @@ class FolderSubmissions(Submissions):
     def _by_student(self, plain: str, names: Iterable[str]) -> Iterable[tuple[str, list[tuple[int, str]]]]:
         """Group names that may belong to one student, with the numbers of copies.
 
-        `alice (1)` belongs to alice if there is an `alice`, or the roster has her; otherwise it may be a team's own name.
+        `alice (1)` belongs to alice if there is an `alice`, or the roster has her; otherwise it may be a team's own
+        name.
         """
         numbered = [(without_copy(self._without_prefix(name), self._ending(name))[1], name) for name in names]
         if any(number == 0 for number, _ in numbered) or (self._knows is not None and self._knows(plain)):
@@ -136,8 +137,9 @@ class FolderSubmissions(Submissions):
 def class_prefix(names: Sequence[str], rubric_id: str, knows: Callable[[str], bool] | None) -> str:
     """Return the prefix to remove from the names that have it, in lower case; empty if there is none.
 
-    It is the rubric's id with a hyphen, or `lab` and a number if most names have it. With a roster (`knows` says whether a name is on
-    it) it can be any prefix behind which the most names are on the roster. One more folder cannot change what the others mean.
+    It is the rubric's id with a hyphen, or `lab` and a number if most names have it. With a roster (`knows` says
+    whether a name is on it) it can be any prefix behind which the most names are on the roster. One more folder cannot
+    change what the others mean.
     """
     if not names or (knows and all(map(knows, names))):
         return ""

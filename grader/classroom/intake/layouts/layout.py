@@ -21,8 +21,9 @@ _PATH_KEY = "./"  # no file name begins with this
 class Submissions:
     """Submissions, sorted by their students' keys. A key that is not printable or not unique is replaced by a path key.
 
-    `assignments` is what an LMS calls the assignment; of `contested` students a file was ignored that may be another student's.
-    If the LMS hides all names (`is_anonymous`), a submission may belong to any student. `notes` say what was chosen.
+    `assignments` is what an LMS calls the assignment; of `contested` students a file was ignored that may be another
+    student's. If the LMS hides all names (`is_anonymous`), a submission may belong to any student. `notes` say what was
+    chosen.
     """
 
     def __init__(
@@ -82,8 +83,8 @@ def is_path_key(key: str) -> bool:
 class ClassFolder:
     """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
 
-    `rubric_id` is the name of the lab in names of folders, `lab_folders` what its own folder is called, `assignment` the name in
-    nbgrader, if the user has named it; `is_explicit` if the user has named the layout.
+    `rubric_id` is the name of the lab in names of folders, `lab_folders` what its own folder is called, `assignment`
+    the name in nbgrader, if the user has named it; `is_explicit` if the user has named the layout.
     """
 
     listing: ClassListing

@@ -1,11 +1,11 @@
 """The Moodle layout, a bulk download: a folder for each participant, or all files side by side, unpacked or in a zip.
 
-moodle, mod/assign/classes/downloader.php: `{full name}_{participant id}_assignsubmission_{plugin}/...`, in older versions with
-a `_` after it, or `..._{plugin}_{file}` without folders. A team has its group's name and number, or no number. Where names are
-hidden, the same word replaces each name, in the language of the site.
+moodle, mod/assign/classes/downloader.php: `{full name}_{participant id}_assignsubmission_{plugin}/...`, in older
+versions with a `_` after it, or `..._{plugin}_{file}` without folders. A team has its group's name and number, or no
+number. Where names are hidden, the same word replaces each name, in the language of the site.
 
-A folder with one archive or URDF in it, and nothing else, counts as that file: Canvas and students submit it without the folder,
-and it has to get the same points.
+A folder with one archive or URDF in it, and nothing else, counts as that file: Canvas and students submit it without
+the folder, and it has to get the same points.
 """
 
 import re

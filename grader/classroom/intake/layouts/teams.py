@@ -1,7 +1,8 @@
 """The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
 
-A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A team without
-such a lab folder is one submission. If the layout was named, the class folder may itself be a team's repository.
+A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A
+team without such a lab folder is one submission. If the layout was named, the class folder may itself be a team's
+repository.
 """
 
 import re
