@@ -126,15 +126,13 @@ def _run(arguments: Sequence[str]) -> int:
             result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
         if isinstance(result, str):
             write_stdout(result)
-    except GraderError as error:
-        for line in str(error).split("\n"):
+    except (GraderError, OSError) as error:
+        reason = f"cannot write: {error.strerror or error}" if isinstance(error, OSError) else str(error)
+        for line in reason.split("\n"):
             warn(line)
         return ExitCode.NOT_GRADED
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
-    except OSError as error:
-        warn(f"cannot write: {error.strerror or error}")
-        return ExitCode.NOT_GRADED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other_error(error)
     if result == 1 and arguments[0] in _COMPLETION:  # typer's code for a shell that it does not know

@@ -30,12 +30,13 @@ from grader.text import enumerated
 # Other arguments that install files and are not evaluated.
 _OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
-# below, most of those in `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
+# below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
 _NO_PACKAGES = frozenset(
     {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
      "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
-     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks"}
+     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks", "dist", "venv", "env", "requirements",
+     "fabfile", "site_scons"}
 )  # fmt: skip
 # The same arguments in setup.cfg and pyproject.toml: packages = find:, [tool.setuptools.packages.find].
 _SET_PACKAGES = rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"

@@ -490,6 +490,15 @@ def test_an_error_that_stops_the_build_fails_one_criterion(submitted: Submitted,
         assert kind != "urdf" or message == STOPS + reason
 
 
+@pytest.mark.parametrize("folder", ["dist", "venv", "env", "requirements", "fabfile", "site_scons", "urdf2"])
+def test_setuptools_does_not_choose_some_folders(folder: str) -> None:
+    """A message on packages=[...] names only folders that setuptools would take for packages."""
+    without = setup("    packages=find_packages(exclude=['test']),\n", "")
+    more = without.with_files({f"my_robot/{folder}/notes.txt": ""})
+    messages = [finds(build_installs, it, kind="urdf", name=KINDS["urdf"])[1] for it in (without, more)]
+    assert (messages[0] == messages[1]) == (folder != "urdf2")
+
+
 @every_kind
 def test_a_package_without_setup_py(kind: str) -> None:
     """A package without setup.py installs nothing."""

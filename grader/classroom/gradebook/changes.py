@@ -193,30 +193,37 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
         moves = ((new.verdict, "first submission"), (old.verdict, "no longer there"))
         why = (*(reason for holds, reason in moves if holds), *final)
         return Change(*whole, (), why, name) if why else None
-    steps = tuple(
-        PointsChange(name, old.points.get(name), new.points.get(name))
-        for name in dict.fromkeys((*old.points, *new.points))
-        if old.points.get(name) != new.points.get(name)
-    )
+    steps = tuple(_steps(old, new))
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
     late = (f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}",) if old.late != new.late else ()
     if not (steps or final or removed or late) and old.verdict == new.verdict:
         return None
-    is_same_rubric = old.sha256 == new.sha256
+    why = (*_reasons(old, new), *late, *final)
+    why += tuple(f"the manual mark of {name} no longer counts: the rubric no longer has it" for name in removed)
+    names = (*(step.criterion for step in steps), *removed) or ("",) * bool(late)
+    is_regraded = old.total != new.total or bool(final or removed) or old.verdict != new.verdict
+    found = comparison(old.sha256, new.sha256, names) if old.sha256 != new.sha256 else ()
+    return Change(*whole, steps, why, name, found, is_regraded)
+
+
+def _steps(old: _StudentState, new: _StudentState) -> Iterator[PointsChange]:
+    for name in dict.fromkeys((*old.points, *new.points)):
+        before, after = old.points.get(name), new.points.get(name)
+        if before != after:
+            yield PointsChange(name, before, after)
+
+
+def _reasons(old: _StudentState, new: _StudentState) -> Iterator[str]:
+    """Yield what may have changed the points of criteria."""
     reasons = (
         (old.digest != new.digest, "the submission changed"),
-        (not is_same_rubric, "the rubric changed"),
+        (old.sha256 != new.sha256, "the rubric changed"),
         (old.version != new.version, "the grader changed"),
-        (is_same_rubric and old.parts != new.parts, "graded on other parts"),
+        (old.sha256 == new.sha256 and old.parts != new.parts, "graded on other parts"),
         (_has_other_marks(old, new), "manual marks changed"),
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
-    why = (*(reason for holds, reason in reasons if holds), *late, *final)
-    why += tuple(f"the manual mark of {name} no longer counts: the rubric no longer has it" for name in removed)
-    names = (*(step.criterion for step in steps), *removed)
-    is_regraded = old.total != new.total or bool(final or removed) or old.verdict != new.verdict
-    found = () if is_same_rubric else comparison(old.sha256, new.sha256, names or ("",) * bool(late))
-    return Change(*whole, steps, why, name, found, is_regraded)
+    yield from (reason for holds, reason in reasons if holds)
 
 
 def _has_other_marks(old: _StudentState, new: _StudentState) -> bool:

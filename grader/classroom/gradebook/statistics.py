@@ -1,7 +1,7 @@
 """Statistics of a class: the distribution of scores, each criterion's difficulty and discrimination, the most common failures."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
@@ -114,8 +114,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     most = max((student.out_of for student in students), default=units_of(rubric.points))
     scores = Counter(student.grade(most) for student in students if student.counts)
     values, decided = sorted(scores.items()), scores.total()
-    mean = sum(score * count for score, count in values) / decided / UNITS_PER_POINT if decided else 0.0
-    squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
+    mean, deviation = _moments(values)
     # Most students have the same results as others: the figures of criteria add up these few rows.
     worth = [row.position for row in rubric.criteria if row.points]
     patterns = Counter(_pattern(student, worth) for student in students)
@@ -135,7 +134,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         points=_totals(students),
         reasons=_reasons(students),
         mean=mean,
-        deviation=sqrt(squares / decided) if decided else 0.0,
+        deviation=deviation,
         lowest=_ranked_score(values, 0),
         median=(_ranked_score(values, (decided - 1) // 2) + _ranked_score(values, decided // 2)) / 2,
         highest=_ranked_score(values, decided - 1),
@@ -146,6 +145,15 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
             for cause, count in causes[:_MAX_FAILURES]
         ),
     )
+
+
+def _moments(values: Sequence[tuple[int, int]]) -> tuple[float, float]:
+    """Return the mean and the standard deviation in points, of scores in units with their counts."""
+    total = sum(count for _, count in values)
+    if not total:
+        return 0.0, 0.0
+    mean = sum(score * count for score, count in values) / total / UNITS_PER_POINT
+    return mean, sqrt(sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values) / total)
 
 
 class Member(NamedTuple):

@@ -63,6 +63,15 @@ _WORD_AND_NUMBER = re.compile(r"(?:[^\W\d]{4,}\D*)?([0-9]+)")  # Participant 123
 _DATE = re.compile(r"\d{4}-\d\d?-\d\d?(?!\d)")
 
 
+def _ids(row: dict[str, str]) -> tuple[str, str]:
+    """Return the id of the student, and that of Moodle, which also stand in columns with other names."""
+    is_participant = bool(_PARTICIPANT.fullmatch(row["id"]))
+    own_id, of_moodle = ("", row["moodle"] or row["id"]) if is_participant else (row["id"], row["moodle"])
+    if _is_of_moodle(row):
+        return own_id, of_moodle or row["identifier"]
+    return own_id or row["identifier"], of_moodle
+
+
 class RowReader:
     """Reads the rows of one roster. `unread` are the lines with a Status that is not understood."""
 
@@ -76,13 +85,7 @@ class RowReader:
         return self._entry(line, row, mistakes.append), mistakes
 
     def _entry(self, line: int, row: dict[str, str], complain: Complain) -> RosterEntry | None:
-        is_participant = bool(_PARTICIPANT.fullmatch(row["id"]))
-        own_id = "" if is_participant else row["id"]
-        of_moodle = row["moodle"] or (row["id"] if is_participant else "")
-        if _is_of_moodle(row):
-            of_moodle = of_moodle or row["identifier"]
-        else:
-            own_id = own_id or row["identifier"]
+        own_id, of_moodle = _ids(row)
         canvas = _canvas(row["canvas"] or (own_id if self._is_from_canvas else ""), complain)
         moodle = _moodle(of_moodle, complain)
         sis = row["sis"] or ("" if own_id == canvas else own_id)

@@ -75,20 +75,17 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     titles = table.titles
     kinds = [_KIND_OF.get(title.casefold(), "") for title in titles]
     rows = student_rows(table)
-    first = [index for index, kind in enumerate(kinds) if index == 0 or kind == "identifier"]
-    identifier = next((index for index in first if _all(rows, index, _IDENTIFIER)), None)
+    identifier = _identifier(kinds, rows)
     if identifier is None:
-        raise InputError(
-            f"{shown} is not a grading worksheet of Moodle: its first column does not have 'Participant 123' in every row; {_list(titles)}"
-        )
+        reason = "its first column does not have 'Participant 123' in every row"
+        raise InputError(f"{shown} is not a grading worksheet of Moodle: {reason}; {_list(titles)}")
     grade = _named(titles, column, shown) if column else _grade(kinds, rows, identifier)
     if grade is None:
         raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
     if not rows or any((read_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)):
-        raise InputError(
-            f"{shown} has no number as the maximum grade after {titles[grade]!r}: an assignment that is graded by a scale takes no points"
-        )
+        reason = "an assignment that is graded by a scale takes no points"
+        raise InputError(f"{shown} has no number as the maximum grade after {titles[grade]!r}: {reason}")
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)
     name = next((index for index in between[:1] if index != email and kinds[index] != "status"), None)
@@ -103,6 +100,12 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
         feedback=_named(titles, feedback_column, shown) if feedback_column else _first(kinds, "feedback", maximum),
         has_modified="modified" in kinds[maximum + 1 :],
     )
+
+
+def _identifier(kinds: list[str], rows: Sequence[TableRow]) -> int | None:
+    """Return the first column, or one with that header, if every row has 'Participant 123' in it."""
+    first = (index for index, kind in enumerate(kinds) if index == 0 or kind == "identifier")
+    return next((index for index in first if _all(rows, index, _IDENTIFIER)), None)
 
 
 def _grade(kinds: list[str], rows: Sequence[TableRow], identifier: int) -> int | None:

@@ -25,14 +25,19 @@ def check_same_class(book: Gradebook, intake: Intake, identities: Identities, ru
         theirs, ours = ({name for name in names if name.startswith(lms)} for names in (stored, intake.assignments))
         if theirs and ours and theirs.isdisjoint(ours):
             raise _refusal(book, f"it was graded for {_first(sorted(theirs))}, not {_first(sorted(ours))}")
+    _check_ids(book, intake)
+    if next(book.students(), None) is not None and not _has_common_student(book, intake, identities):
+        raise _refusal(book, "no student of this class is in it")
+
+
+def _check_ids(book: Gradebook, intake: Intake) -> None:
+    """Raise InputError if the students of the gradebook have LMS ids, and none of these is in the class."""
     known, named = _numbers(book.students()), _numbers(intake.named_students())
     if known and named and known.isdisjoint(named):
         named |= _numbers(submission.student for submission in intake.submissions())  # with those of the roster
         if known.isdisjoint(named):
             names = " and ".join(sorted({lms.title() for lms, _ in known}))
             raise _refusal(book, f"the {names} ids of its students are not those of this class")
-    if next(book.students(), None) is not None and not _has_common_student(book, intake, identities):
-        raise _refusal(book, "no student of this class is in it")
 
 
 def check_roster(intake: Intake) -> None:

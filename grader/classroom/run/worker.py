@@ -73,18 +73,16 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     except InputError as error:
         result = result._replace(digest=result.digest or unreadable_digest(context.root, task.paths))
         is_unchanged = result.digest and result.digest == task.graded
-        return (
-            result if is_unchanged else failed(context, task, result._replace(verdict="unreadable", reason=str(error)))
-        )
-    except MemoryError:
-        if not task.no_documents:
-            return _grade_one(context, task._replace(no_documents=NO_MEMORY))
-        return failed(context, task, result._replace(verdict="errored", reason=NO_MEMORY))
+        verdict: Verdict = "unchanged" if is_unchanged else "unreadable"
+        return result if is_unchanged else failed(context, task, result._replace(verdict=verdict, reason=str(error)))
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
-        reason = f"the grader itself failed: {type(error).__name__}: {error}"
+        is_memory = isinstance(error, MemoryError)
+        if is_memory and not task.no_documents:
+            return _grade_one(context, task._replace(no_documents=NO_MEMORY))
+        reason = NO_MEMORY if is_memory else f"the grader itself failed: {type(error).__name__}: {error}"
         return failed(context, task, result._replace(verdict="errored", reason=reason))
     fault, reason = report.fault, _why_unreadable(submission)
-    verdict: Verdict = "errored" if fault else "unreadable" if reason else "graded"
+    verdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result._replace(verdict=verdict, reason=fault or reason).with_report(report, context.dictionary)
     if is_another_robot(rubric, robot_of(submission.urdf)):
         return graded  # what the course handed out for the lab before is no identical work

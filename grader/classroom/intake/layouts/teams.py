@@ -6,7 +6,7 @@ repository.
 """
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from grader.classroom.intake.layouts.folders import FolderSubmissions
@@ -74,18 +74,7 @@ def _names_in(folder: ClassFolder, lab: str) -> Collection[str]:
 def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of the students in lab folders, and of the teams without one."""
     labs = find_labs(folder)
-    teams = {path.removeprefix(folder.start).partition("/")[0] for path in labs}
-    rest = folder.children._replace(folders=[name for name in folder.children.folders if name not in teams])
-    if "" in labs.values():
-        outside = "is outside the folder of the lab"
-        folder.ignored.add_all(folder.start, ((name, outside) for name in (*rest.folders, *rest.files)))
-        rest = Children([], [], rest.refused)
-    elif folder.lab_folders:
-        without = [name for name in rest.folders if _has_no_lab(folder, name)]
-        reason = f"has no folder {folder.lab_folders[0]!r}, no folder of another lab and no robot"
-        folder.ignored.add_all(folder.start, ((name, reason) for name in without))
-        rest = rest._replace(folders=[name for name in rest.folders if name not in without])
-    alone = FolderSubmissions(replace(folder, children=rest))
+    alone = FolderSubmissions(replace(folder, children=_beside(folder, labs)))
     found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
         inner = folder.listing.children(lab)
@@ -100,6 +89,22 @@ def find_submissions(folder: ClassFolder) -> Submissions:
         f"{enumerated(others, _MAX_NAMED)}: another lab is graded, because there is no robot in the folder of this lab",
     )
     return Submissions(found, contested=alone.contested, notes=notes if others else ())
+
+
+def _beside(folder: ClassFolder, labs: Mapping[str, str]) -> Children:
+    """Return what is beside the teams' labs and may be a submission; the rest is ignored, with the reason."""
+    teams = {path.removeprefix(folder.start).partition("/")[0] for path in labs}
+    rest = folder.children._replace(folders=[name for name in folder.children.folders if name not in teams])
+    if "" in labs.values():
+        outside = "is outside the folder of the lab"
+        folder.ignored.add_all(folder.start, ((name, outside) for name in (*rest.folders, *rest.files)))
+        return Children([], [], rest.refused)
+    if not folder.lab_folders:
+        return rest
+    without = [name for name in rest.folders if _has_no_lab(folder, name)]
+    reason = f"has no folder {folder.lab_folders[0]!r}, no folder of another lab and no robot"
+    folder.ignored.add_all(folder.start, ((name, reason) for name in without))
+    return rest._replace(folders=[name for name in rest.folders if name not in without])
 
 
 def _has_no_lab(folder: ClassFolder, team: str) -> bool:
