@@ -9,8 +9,8 @@ from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import Agreement, ClassSummary
-from grader.report.as_json import kinds
-from grader.report.json_data import edit, exact, rounded, to_json
+from grader.report.as_json import KINDS
+from grader.report.json_data import EDIT, exact, rounded, to_json
 
 
 def render_class_json(
@@ -83,7 +83,7 @@ def _fix(fix: CommonFix) -> dict[str, Any]:
         "count": fix.count,
         "criteria": list(fix.criteria),
         "points": exact(fix.points),
-        "example": list(map(edit, fix.example)),
+        "example": list(map(EDIT.data, fix.example)),
     }
 
 
@@ -109,7 +109,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
-                **kinds(row.criterion),
+                **KINDS.data(row.criterion),
                 "passed": row.passed,
                 "marked_by_hand": row.marked,
                 **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},

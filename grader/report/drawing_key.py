@@ -7,8 +7,8 @@ from typing import Any
 from grader.drawing.picture import Callout, Picture, picture_of
 from grader.drawing.sheet import WIDTH, Place, Sheet
 from grader.grading.report import Report
-from grader.report.content import points_of
 from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
+from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
 from grader.text import counted_points, enumerated, printable
 

@@ -1,7 +1,6 @@
 """The formats of a report: the one registry from which options, completion, files and documentation take them."""
 
 import os
-from collections.abc import Callable
 from enum import StrEnum
 from functools import partial
 from importlib import import_module
@@ -77,6 +76,27 @@ class OutputFormat(StrEnum):
     JSON = "json"
 
 
+# The record or the schema of each JSON document: its title, and where it is.
+_SCHEMAS = {
+    "report": ("report", "as_json:REPORT"),
+    "inspect": ("inspection", "inspection:INSPECTION"),
+    "rubric-test": ("rubric test", "rubric_test:RUBRIC_TEST"),
+    "class": ("class", "class_schemas:CLASS"),
+    "diff": ("diff", "class_schemas:DIFF"),
+}
+
+
+def json_schema(name: str) -> dict[str, Any]:
+    """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
+    from grader.grading.schema import rubric_schema
+
+    if name == "rubric":
+        return rubric_schema()
+    title, place = _SCHEMAS[name]
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": draft, "title": f"grader {title}", **_imported(place).schema}
+
+
 def render(
     report: "Report",
     kind: Format,
@@ -92,7 +112,7 @@ def render(
     everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises InputError if the
     environment does not say whose result it is (Classroom 50).
     """
-    function = _function(kind)
+    function = _imported(kind.function)
     if kind.needs == "console":
         return draw(partial(function, report, verbose=verbose), screen)
     text: str = function(report, *needed(kind, base, picture))
@@ -101,16 +121,15 @@ def render(
 
 def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
     """Return an inspection in a format, for a screen or a file."""
-    function = _function(kind)
+    function = _imported(kind.function)
     if kind.needs == "console":
         return draw(partial(function, inspection), screen)
     return without_commands(function(inspection))
 
 
-def _function(kind: Format | InspectFormat) -> Callable[..., Any]:
-    module, _, name = kind.function.partition(":")
-    function: Callable[..., Any] = getattr(import_module(f"grader.report.{module}"), name)
-    return function
+def _imported(place: str) -> Any:
+    module, _, name = place.partition(":")
+    return getattr(import_module(f"grader.report.{module}"), name)
 
 
 def needed(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:

@@ -1,13 +1,12 @@
-"""JSON text and values that are the same bytes on every machine."""
+"""JSON text that is the same bytes on every machine, and records: the keys of an object, from which data and schema follow."""
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
-from typing import Any
-
-from grader.problems import Problem
-from grader.source import Edit, Location
+from operator import attrgetter
+from typing import Any, TypeVar
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
@@ -52,30 +51,141 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return a value rounded to 1e-6, because machines differ in the last digits; never -0, None if it is not finite."""
-    if isinstance(value, float):
-        return round(value, 6) + 0.0 if value - value == 0 else None
-    if isinstance(value, tuple | list):
-        return [rounded(item) for item in value]
-    return dict(value) if isinstance(value, Mapping) else value
+    """Return plain data: points exact, floats to 1e-6, because machines differ in the last digits; no -0, NaN or infinity."""
+    match value:
+        case float():
+            return round(value, 6) + 0.0 if value - value == 0 else None
+        case Decimal():
+            return exact(value)
+        case tuple() | list():
+            return [rounded(item) for item in value]
+        case Mapping():
+            return {key: rounded(item) for key, item in value.items()}
+        case _:
+            return value
 
 
-def location(where: Location | None) -> dict[str, Any] | None:
-    """Return a location as plain data."""
-    if where is None:
-        return None
-    place: dict[str, Any] = {"path": where.path, "line": where.line, "column": where.column}
-    calls = [{"macro": macro, "location": location(called)} for macro, called in where.calls]
-    return {**place, "calls": calls} if calls else place
+K = TypeVar("K")
+Schema = dict[str, Any]
+TEXT: Schema = {"type": "string"}
+NUMBER: Schema = {"type": "number"}
+COUNT: Schema = {"type": "integer", "minimum": 1}
+POINTS: Schema = {"type": "number", "minimum": 0}
+TOTAL: Schema = {"type": "integer", "minimum": 0}
+FLAG: Schema = {"type": "boolean"}
+HASH: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+VALUE: Schema = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 
 
-def problem(found: Problem) -> dict[str, Any]:
-    """Return a problem as plain data."""
-    words = {"code": found.code, "severity": found.severity, "message": found.message}
-    return {**words, "location": location(found.location)}
+def record(properties: Mapping[str, Schema], optional: Sequence[str] = ()) -> Schema:
+    """Return the schema of an object with exactly these properties."""
+    required = [name for name in properties if name not in optional]
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
-def edit(change: Edit) -> dict[str, Any]:
-    """Return an edit as plain data; only the name of a file that is renamed has the key `renamed`."""
-    data = change._asdict()
-    return data if change.renamed else {key: value for key, value in data.items() if key != "renamed"}
+def array(items: Schema) -> Schema:
+    """Return the schema of an array."""
+    return {"type": "array", "items": items}
+
+
+def mapping(values: Schema) -> Schema:
+    """Return the schema of an object with any keys."""
+    return {"type": "object", "additionalProperties": values}
+
+
+def nullable(schema: Schema) -> Schema:
+    """Return a schema that also allows null."""
+    return {"anyOf": [schema, {"type": "null"}]}
+
+
+def each(kind: K, names: str) -> dict[str, K]:
+    """Return keys of one type, from their names between spaces."""
+    return dict.fromkeys(names.split(), kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A JSON object: for each key its type, and which attribute of the described value it has, or which function of that.
+
+    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or what
+    a record describes. Keys in `optional` are absent where they would be empty.
+    """
+
+    keys: Mapping[str, "Kind | Key"]
+    optional: tuple[str, ...] = ()
+
+    def __iter__(self) -> "Iterator[tuple[str, Kind, Origin]]":
+        """Yield each key with its type and its value."""
+        for name, key in self.keys.items():
+            yield (name, *key) if isinstance(key, tuple) else (name, key, name)
+
+    @property
+    def schema(self) -> Schema:
+        """The schema of the object."""
+        return record({name: _schema(kind) for name, kind, _ in self}, self.optional)
+
+    def data(self, value: Any) -> dict[str, Any]:
+        """Return the object that describes a value."""
+        found = {name: _data(kind, origin, value) for name, kind, origin in self}
+        return {name: item for name, item in found.items() if item or name not in self.optional}
+
+
+@dataclass(frozen=True, slots=True)
+class Many:
+    """An array of records."""
+
+    of: Record
+
+
+@dataclass(frozen=True, slots=True)
+class Maybe:
+    """A record or null."""
+
+    of: Record
+
+
+Kind = Schema | Record | Many | Maybe
+Origin = str | Callable[[Any], Any]
+Key = tuple[Kind, Origin]
+
+
+def _schema(kind: Kind) -> Schema:
+    match kind:
+        case Record():
+            return kind.schema
+        case Many():
+            return array(kind.of.schema)
+        case Maybe():
+            return nullable(kind.of.schema)
+    return kind
+
+
+def _data(kind: Kind, origin: Origin, value: Any) -> Any:
+    found = attrgetter(origin)(value) if isinstance(origin, str) else origin(value)
+    match kind:
+        case Many():
+            return list(map(kind.of.data, found))
+        case Record() | Maybe() if found is None:
+            return None
+        case Record():
+            return kind.data(found)
+        case Maybe():
+            return kind.of.data(found)
+    return rounded(found) if isinstance(origin, str) else found
+
+
+def inner(owner: str, keys: Mapping[str, Kind]) -> dict[str, Key]:
+    """Return keys that have the attributes of their names of an attribute of a value."""
+    return {name: (kind, f"{owner}.{name}") for name, kind in keys.items()}
+
+
+def named(schema: str) -> dict[str, Key]:
+    """Return the key that names the schema of a document."""
+    return {"schema": ({"const": schema}, lambda _: schema)}
+
+
+GRADER = record({"version": TEXT})
+RUBRIC = Record({**each(TEXT, "id title"), "sha256": HASH})
+PLACE = {"path": TEXT, **each(COUNT, "line column")}
+EDIT = Record({**PLACE, **each(TEXT, "old new renamed")}, ("renamed",))
+ADJUSTMENT = Record({"action": {"enum": ["drop", "full"]}, "reason": TEXT})

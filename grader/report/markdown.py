@@ -8,10 +8,10 @@ from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, Details, diff_lines, location_text, result_details, status_of
+from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.locations import diff_lines, excerpt_lines, location_text
 from grader.report.markdown_text import code, escaped, fenced, folded
-from grader.report.order import Group, alike, groups, has_passed, in_order
-from grader.report.plain_text import evidence, excerpt_lines, problem_line, provenance
+from grader.report.order import Group, alike, earned_text, groups, has_passed, in_order, status_of
 from grader.text import enumerated, printable
 
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
@@ -77,10 +77,10 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
         yield "## Failed"
     for result, skipped, *_ in order.failures:
         item = _item(result, report, shown, answers=answers)
-        text = escaped(content.skipped_text(result.criterion.id, skipped)) if skipped else ""
+        text = escaped(skipped_text(result.criterion.id, skipped)) if skipped else ""
         yield f"{item}\n\n{indent(text, '  ')}" if text else item
     for cause, some in alike(order.skipped, lambda result: result.because or ""):
-        yield escaped(content.skipped_text(cause, some))
+        yield escaped(skipped_text(cause, some))
     for title, results in (("Needs manual grading", order.pending), *order.remarks):
         if results:
             yield f"## {title}"
@@ -101,7 +101,7 @@ def _passed(group: Group) -> str:
         for result in group.results
         if has_passed(result)
     ]
-    return folded(f"{printable(group.title)} {content.earned_text(group.results)}", lines) if lines else ""
+    return folded(f"{printable(group.title)} {group.points}", lines) if lines else ""
 
 
 def _head(report: Report) -> Iterator[str]:
@@ -109,7 +109,7 @@ def _head(report: Report) -> Iterator[str]:
     yield from map(escaped, content.summaries(report))
     if report.open_points:
         yield f"**{escaped(content.pending_line(report))}**"
-    yield escaped(provenance(report))
+    yield escaped(content.provenance(report))
     yield from map(escaped, (*content.notes(report), *content.ignored_lines(report)))
 
 
@@ -123,7 +123,7 @@ def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> 
 
 
 def _start(result: Result) -> str:
-    return f"{SYMBOLS[status_of(result)]} {content.earned_text((result,))}"
+    return f"{SYMBOLS[status_of(result)]} {earned_text(result)}"
 
 
 def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
@@ -133,7 +133,7 @@ def _details(details: Details, report: Report, shown: set[str], *, answers: bool
         yield escaped(details.expected)
     if details.location is not None:
         yield code(location_text(details.location))
-        lines = list(excerpt_lines(details.location, report))
+        lines = list(excerpt_lines(details.location, report.submission.source))
         if lines:
             yield fenced(lines)
     for title, lines in (("Found", list(details.answer)), ("Model answer", list(details.model_answer) * answers)):
@@ -150,7 +150,7 @@ def _details(details: Details, report: Report, shown: set[str], *, answers: bool
 
 
 def _evidence(report: Report) -> Iterator[str]:
-    for number, (part, lines) in enumerate(evidence(report)):
+    for number, (part, lines) in enumerate(content.evidence(report)):
         if number == 0:
             yield "## Evidence"
         yield f"{escaped(part)}:"
@@ -158,7 +158,6 @@ def _evidence(report: Report) -> Iterator[str]:
 
 
 def _problems(report: Report) -> Iterator[str]:
-    problems = list(content.other_problems(report))
-    if problems:
+    if problems := content.other_problems(report):
         yield f"## {content.other_problems_title(report)}"
-        yield from (f"- {escaped(problem_line(problem))}" for problem in problems)
+        yield from (f"- {escaped(content.problem_line(problem))}" for problem in problems)

@@ -17,12 +17,11 @@ from typing import Any
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
-from grader.report.as_json import additions
-from grader.report.content import earned_text
+from grader.report.as_json import ADDITIONS
+from grader.report.details import criterion_lines
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
-from grader.report.order import is_failure
-from grader.report.plain_text import criterion_lines
+from grader.report.order import earned_text, is_failure
 from grader.text import counted_points, printable
 
 
@@ -75,7 +74,7 @@ def _gradescope_test(result: Result, report: Report) -> dict[str, Any]:
             "status": result.outcome.status,
             "because": result.because,
             "carried": result.carried or None,
-            **additions(result),
+            **ADDITIONS.data(result),
         },
     }
 
@@ -137,9 +136,7 @@ def _scale(report: Report) -> int:
 
 def _classroom50_test(result: Result, report: Report, scale: int) -> dict[str, Any]:
     is_decided = result.manual_mark is not None or result.is_adjusted
-    bonus = (
-        [f"Extra credit: {earned_text((result,))}. It is not part of the maximum."] if result.criterion.bonus else []
-    )
+    bonus = [f"Extra credit: {earned_text(result)}. It is not part of the maximum."] if result.criterion.bonus else []
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
         "passed": not is_failure(result) and (is_decided or result.outcome.status == "passed"),

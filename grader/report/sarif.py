@@ -7,13 +7,13 @@ from typing import Any
 from urllib.parse import quote
 
 from grader.grading.report import Hint, Report
-from grader.report.as_json import grade_data
-from grader.report.content import explain_command
+from grader.report.as_json import GRADE
+from grader.report.content import explain_command, submission_lines
+from grader.report.details import criterion_lines
 from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
 from grader.report.locations import Base, RepositoryLocation, archive_around
 from grader.report.order import alike
-from grader.report.plain_text import criterion_lines, submission_lines
 from grader.report.rubrics import EVERY_KIND
 from grader.source import Edit
 from grader.text import printable
@@ -139,7 +139,7 @@ def _properties(report: Report, count: int) -> dict[str, Any]:
         "score": exact(report.score),
         "maxScore": exact(report.max_score),
         "pending": exact(report.pending),
-        **grade_data(report),
+        **GRADE.data(report),
         "rubric": {"id": printable(report.rubric.id), "sha256": report.rubric.sha256},
         "submission": {"id": printable(report.submission.id), "sha256": report.submission.sha256},
         "said": submission_lines(report),

@@ -37,7 +37,7 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
     A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion must have
     passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
     """
-    from grader.report.content import undecided
+    from grader.report.order import undecided
 
     if report.fault:
         return ExitCode.FAULT

@@ -71,7 +71,7 @@ class GradeResult(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.content import undecided
+        from grader.report.order import undecided
 
         names = ", ".join(result.criterion.id for result in undecided(self.report))
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:

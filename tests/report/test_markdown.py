@@ -10,10 +10,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
-from grader.report.content import earned_text
 from grader.report.markdown import cut_markdown, render_markdown
 from grader.report.markdown_text import code, escaped, fenced
-from grader.report.order import groups, in_order
+from grader.report.order import earned_text, groups, in_order
 from grader.text import printable
 from tests.report.hostile import TEXT
 from tests.report.readers import read_as_github, read_markdown
@@ -70,7 +69,7 @@ def test_what_passed_is_folded_by_group(name: str) -> None:
     report = report_of(name)
     folds = read_as_github(render_markdown(report)).findall("details")
     expected = {
-        f"{group.title} {earned_text(group.results)}": [
+        f"{group.title} {earned_text(*group.results)}": [
             result.criterion.title for result in group.results if result.outcome.status == "passed"
         ]
         for group in groups(report)

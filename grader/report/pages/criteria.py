@@ -3,10 +3,9 @@
 from typing import NamedTuple
 
 from grader.grading.report import Report, Result
-from grader.report import content
-from grader.report.details import Details, diff_lines, location_text, result_details, status_of
-from grader.report.locations import excerpt, width_of
-from grader.report.order import Failure
+from grader.report.details import Details, result_details, skipped_text
+from grader.report.locations import diff_lines, excerpt, location_text, width_of
+from grader.report.order import Failure, earned_text, status_of
 from grader.source import Location, Source
 from grader.text import printable
 
@@ -55,8 +54,8 @@ def failure_card(failure: Failure, report: Report, shown: set[str]) -> Card:
     feedback = "" if card.details.hints or card.details.feedback in shown else card.details.feedback
     shown.add(feedback)
     return card._replace(
-        cost=content.cost_text(failure),
-        skipped=content.skipped_text(result.criterion.id, skipped) if skipped else "",
+        cost=failure.cost,
+        skipped=skipped_text(result.criterion.id, skipped) if skipped else "",
         feedback=feedback,
     )
 
@@ -71,7 +70,7 @@ def card_of(result: Result, report: Report) -> Card:
         criterion.title,
         status_of(result),
         "",
-        content.earned_text((result,)),
+        earned_text(result),
         details,
         location_text(where) if where is not None else "",
         source_lines(source, where) if where is not None and source is not None else None,

@@ -4,11 +4,11 @@ from itertools import islice
 
 from grader import __version__
 from grader.drawing.picture import plain_picture
+from grader.report.content import problem_line
 from grader.report.inspection import Inspection, effect, tree
 from grader.report.pages.criteria import SourceLines, source_lines
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
-from grader.report.plain_text import problem_line
 from grader.text import first_lines, printable
 
 _MAX_SHOWN = 500  # links of the tree, and problems

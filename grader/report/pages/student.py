@@ -8,12 +8,11 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, group_status, status_of
-from grader.report.order import alike, failures, groups, in_order
+from grader.report.details import SYMBOLS, skipped_text
+from grader.report.order import alike, earned_text, failures, groups, in_order, status_of
 from grader.report.pages.criteria import card_of, failure_card
 from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
 from grader.report.pages.shell import render_page
-from grader.report.plain_text import evidence, problem_line, provenance
 from grader.text import format_points, printable
 
 
@@ -73,7 +72,7 @@ def _summary(report: Report) -> dict[str, object]:
         "notes": content.notes(report),
         "next": command,
         "left": "" if command else content.what_is_left(report),
-        "provenance": provenance(report),
+        "provenance": content.provenance(report),
     }
 
 
@@ -84,7 +83,7 @@ def _criteria(report: Report) -> dict[str, object]:
     return {
         "symbols": SYMBOLS,
         "failures": [failure_card(failure, report, shown) for failure in order.failures],
-        "skipped": [content.skipped_text(cause, some) for cause, some in skipped],
+        "skipped": [skipped_text(cause, some) for cause, some in skipped],
         "sections": [
             (title, [card_of(result, report) for result in results])
             for title, results in (("Needs manual grading", order.pending), *order.remarks)
@@ -96,9 +95,9 @@ def _criteria(report: Report) -> dict[str, object]:
 
 def _others(report: Report) -> dict[str, object]:
     return {
-        "evidence": [*evidence(report)],
+        "evidence": [*content.evidence(report)],
         "problems_title": content.other_problems_title(report),
-        "problems": [(problem.severity, problem_line(problem)) for problem in content.other_problems(report)],
+        "problems": [(problem.severity, content.problem_line(problem)) for problem in content.other_problems(report)],
         "ignored": content.ignored_lines(report),
     }
 
@@ -119,13 +118,13 @@ def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, l
         rows = [
             Rows(
                 group.title,
-                content.earned_text(group.results),
+                group.points,
                 tuple(_row(result, cards) for result in group.results),
-                group_status(group),
+                group.status,
             )
             for group in some
         ]
-        yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
+        yield titles[part], earned_text(*(result for group in some for result in group.results)), rows
 
 
 def _row(result: Result, cards: Collection[str]) -> Row:
@@ -133,4 +132,4 @@ def _row(result: Result, cards: Collection[str]) -> Row:
     title = result.criterion.title if status == "passed" else ""
     because = (result.because or "") if result.manual_mark is None and not result.is_adjusted else ""
     card = next((name for name in (result.criterion.id, because) if name in cards), "")
-    return Row(result.criterion.id, title, status, content.earned_text((result,)), because, card)
+    return Row(result.criterion.id, title, status, earned_text(result), because, card)
