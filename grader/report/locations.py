@@ -12,7 +12,11 @@ from grader.text import first_lines, printable
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
 _ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
 SourceOf = Callable[[str], Source | None]
+# A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
+SourceLine = tuple[int, str, str | None, str]
 _EXCERPT_WIDTH = 120
+_AROUND = 2  # lines of the source before and after the marked one
+_MAX_WIDTH = 160  # characters of a line on a page
 _MARGIN = 4  # characters before the marked part, if the line is cut
 _MAX_CALLS = 3  # macros of xacro that are named
 _MAX_TEXT = 500  # characters of a line: a whole file may be one line
@@ -92,6 +96,28 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
         number = str(where.line)
         yield f"{number} | {line.text}"
         yield f"{' ' * len(number)} | {' ' * line.start}{'-' * line.width}"
+
+
+def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
+    """Return the lines around a location, without their common indentation; none if its line is empty.
+
+    Of a very long line it is the part around the marked text.
+    """
+    source = source_of(where.path)
+    line = source.line(where.line) if source is not None else ""
+    if source is None or not line.strip():
+        return []
+    if len(line) > _MAX_WIDTH:
+        text, start, width = excerpt(source, where, _MAX_WIDTH)
+        return [(where.line, text[:start], text[start : start + width], text[start + width :])]
+    around = {number: source.line(number) for number in range(max(1, where.line - _AROUND), where.line + _AROUND + 1)}
+    last = max(number for number, text in around.items() if text.strip())
+    indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
+    lines = [(number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()]
+    start = where.column - 1
+    end = start + width_of(line, where.column)
+    marked = (where.line, line[min(indent, start) : start], line[start:end], line[end:])
+    return [marked if one[0] == where.line else one for one in lines if one[0] <= last]
 
 
 def archive_around(path: str) -> str:
