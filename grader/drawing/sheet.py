@@ -4,6 +4,7 @@ The top view is above the side view, and the front view to the right of it. Leng
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from math import floor, log10
 from typing import NamedTuple
 
@@ -28,16 +29,17 @@ class Seen(NamedTuple):
 
     def encloses(self, other: Extents) -> bool:
         """Return whether another rectangle in the view is in the one around the body."""
-        (a, b), (c, d), _ = self.extents
-        (e, f), (g, h), _ = other
-        return a <= e and f <= b and c <= g and h <= d
+        return all(
+            low <= least and most <= high
+            for (low, high), (least, most) in zip(self.extents[:2], other[:2], strict=True)
+        )
 
 
 def projection(scene: Scene, view: View) -> list[Seen]:
     """Return the bodies of a scene in a view from back to front.
 
-    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an exact one needs
-    the depths at each place of the view.
+    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an exact
+    one needs the depths at each place of the view.
     """
     return sorted(seen_in(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
 
@@ -52,15 +54,17 @@ def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
 
 
 def with_fronts(bodies: Sequence[Seen]) -> Iterator[tuple[Seen, list[Seen]]]:
-    """Yield the bodies of a projection, each with those in front of it whose rectangles in the view overlap its own."""
-    rows = [(*seen.extents[0], *seen.extents[1], seen) for seen in bodies]
-    for number, (a, b, c, d, seen) in enumerate(rows, 1):
-        fronts = [
+    """Yield the bodies of a projection, each with those before it whose rectangles overlap its own, the nearest first."""
+    rows = [(*seen.extents[0], *seen.extents[1], seen) for seen in reversed(bodies)]
+    for number in reversed(range(len(rows))):
+        a, b, c, d, seen = rows[number]
+        fronts = (
             other
-            for e, f, g, h, other in rows[number:]
+            for e, f, g, h, other in islice(rows, number)
             if a < f - _SAME and e < b - _SAME and c < h - _SAME and g < d - _SAME
-        ]
-        yield seen, [other for other in fronts if other.body.rgba[3] >= _TRANSPARENT][-_MAX_FRONTS:]
+        )
+        opaque = (other for other in fronts if other.body.rgba[3] >= _TRANSPARENT)
+        yield seen, list(islice(opaque, _MAX_FRONTS))
 
 
 Place = tuple[float, float]

@@ -3,13 +3,13 @@
 The element needs no style sheet, script or other file. A page that contains it adds `DARK_RULES` for dark mode.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from statistics import median
 from typing import Any
 
 from lxml import etree
 
-from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
+from grader.drawing.curves import SIDE, Curve, View, inner_edges
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH, Cell, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
@@ -87,13 +87,6 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     return _sized(root, *_THUMBNAIL)
 
 
-def empty_element(title: str, words: str, height: float) -> Any:
-    """Return a drawing without a robot: paper of a height in pixels."""
-    root = _root(title, words)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
-    return _sized(root, WIDTH, height)
-
-
 def _sized(root: Any, width: float, height: float) -> Any:
     """Set the size of a drawing, and of its background, in pixels."""
     root.set("viewBox", f"0 0 {width:g} {height:.0f}")
@@ -114,6 +107,13 @@ def _root(title: str, words: str) -> Any:
     return root
 
 
+def _empty(title: str, words: str, height: float) -> Any:
+    """Return a drawing without a robot."""
+    root = _root(title, words)
+    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
+    return _sized(root, WIDTH, height)
+
+
 def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
     labels, below, above = Labels(cell), Signs(), Signs()
     add_ground(below, cell, picture, labels)
@@ -127,7 +127,7 @@ def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
 
 
 def _put_bodies(group: Any, cell: Cell, bodies: Sequence[Seen]) -> None:
-    """Add the shapes from back to front with their edges, then lighter what others hide; thinner where the shapes are small."""
+    """Add the shapes from back to front with their edges, then lighter what others hide; thinner where they are small."""
     sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
     hidden: dict[str, list[Curve]] = {}
@@ -138,22 +138,16 @@ def _put_bodies(group: Any, cell: Cell, bodies: Sequence[Seen]) -> None:
         body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
         put(body, "title", text=seen.body.link[:_MAX_NAME])
         # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
-        if front := path_data(cell, (it.curve for it in inner if it.faces_viewer)):
-            put(group, "path", look, {"d": front, **looks})
-        for name, curve in _hidden(seen, inner, fronts):
-            hidden.setdefault(name, []).append(curve)
-    for name, curves in sorted(hidden.items()):
+        if visible := path_data(cell, (it.curve for it in inner if it.faces_viewer)):
+            put(group, "path", look, {"d": visible, **looks})
+        # What may be hidden is drawn again, whole, in the look for the colour of the shape that is around it.
+        covered = [*(seen.outline if fronts else ()), *(it.curve for it in inner if fronts or not it.faces_viewer)]
+        for curve, extents in ((curve, curve.extents()) for curve in covered):
+            around = next((other for other in fronts if other.encloses(extents)), seen)
+            hidden.setdefault(edge_look(around.body.rgba), []).append(curve)
+    for look, curves in sorted(hidden.items()):
         d = path_data(cell, curves)
-        put(group, "path", name, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
-
-
-def _hidden(seen: Seen, inner: Sequence[Edge], fronts: Sequence[Seen]) -> Iterator[tuple[str, Curve]]:
-    """Yield the edges of a body that may be hidden, whole, each with a look for the colour of the shape that is around it."""
-    outline = seen.outline if fronts else ()
-    for curve in (*outline, *(edge.curve for edge in inner if fronts or not edge.faces_viewer)):
-        extents = curve.extents()
-        around = next((other for other in reversed(fronts) if other.encloses(extents)), seen)
-        yield edge_look(around.body.rgba), curve
+        put(group, "path", look, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
 
 
 _STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
@@ -192,7 +186,7 @@ def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str
     lines = [line for text in filter(None, words) for line in wrapped(text, _WIDTH)]
     lines += [] if picture is not None else ["", *wrapped(reason, _WIDTH)]
     top = _TITLE + LINE * len(lines) + 8.0
-    root = drawing_element(picture, title, top) if picture is not None else empty_element(title, reason, top)
+    root = drawing_element(picture, title, top) if picture is not None else _empty(title, reason, top)
     put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
     faint = put(root, "g", "faint")
     for number, line in enumerate(lines, 1):
