@@ -29,10 +29,9 @@ class Seen(NamedTuple):
 
     def encloses(self, other: Extents) -> bool:
         """Return whether another rectangle in the view is in the one around the body."""
-        return all(
-            low <= least and most <= high
-            for (low, high), (least, most) in zip(self.extents[:2], other[:2], strict=True)
-        )
+        (a, b), (c, d), _ = self.extents
+        (e, f), (g, h), _ = other
+        return a <= e and f <= b and c <= g and h <= d
 
 
 def projection(scene: Scene, view: View) -> list[Seen]:

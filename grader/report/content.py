@@ -9,7 +9,6 @@ from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report.locations import location_text
 from grader.report.order import earned_text, failures, sum_text, undecided
-from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
@@ -116,17 +115,6 @@ def pending_line(report: Report) -> str:
 def pending_points(report: Report) -> str:
     """Return how many points need manual grading."""
     return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading"
-
-
-def why_no_picture(report: Report) -> str:
-    """Return why a report has no picture of the robot."""
-    submission = report.submission
-    urdf = submission.originals.urdf if submission.originals is not None else Absent()
-    if submission.has_urdf and isinstance(urdf, Absent):
-        return "No picture: the submission has changed or moved since it was graded."
-    if submission.robot is None or not submission.robot.links:
-        return "No picture: no robot could be read from the submission."
-    return "No picture: no link of the robot has a pose."
 
 
 def notes(report: Report) -> list[str]:

@@ -14,9 +14,9 @@ from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH, Cell, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
 from grader.grading.report import Report
-from grader.report.content import bonus_line, grade_line, score_text, summary, why_no_picture
+from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import result_details
-from grader.report.drawing_key import description, put_key, put_legend
+from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
 from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import (

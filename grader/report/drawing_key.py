@@ -10,15 +10,27 @@ from grader.grading.report import Report
 from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
 from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
+from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, printable
 
 _NOWHERE = "not in the picture"
 
 
-def drawn(report: Report) -> str:
+def alt_text(report: Report) -> str:
     """Return a description of the drawing of a report; empty if there is no robot."""
     picture = picture_of(report)
     return f"Top, side and front view of the robot. {description(picture)}".strip() if picture is not None else ""
+
+
+def why_no_picture(report: Report) -> str:
+    """Return why a report has no picture of the robot."""
+    submission = report.submission
+    urdf = submission.originals.urdf if submission.originals is not None else Absent()
+    if submission.has_urdf and isinstance(urdf, Absent):
+        return "No picture: the submission has changed or moved since it was graded."
+    if submission.robot is None or not submission.robot.links:
+        return "No picture: no robot could be read from the submission."
+    return "No picture: no link of the robot has a pose."
 
 
 def heading(callout: Callout) -> str:

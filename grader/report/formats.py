@@ -59,7 +59,7 @@ class InspectFormat(StrEnum):
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
     SVG = "svg", "drawing:inspection_svg"
-    HTML = "html", "pages.inspection:inspection_html"
+    HTML = "html", "pages.robot:inspection_html"
 
     def __new__(cls, name: str, function: str = "", needs: Need = "") -> Self:
         """Return a member with its row."""

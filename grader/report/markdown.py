@@ -3,6 +3,8 @@
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
 
+import html
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from textwrap import indent
 
@@ -10,10 +12,20 @@ from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import SYMBOLS, Details, result_details, skipped_text
 from grader.report.locations import diff_lines, excerpt_lines, location_text
-from grader.report.markdown_text import code, escaped, fenced, folded
 from grader.report.order import Group, alike, earned_text, groups, has_passed, in_order, status_of
 from grader.text import enumerated, printable
 
+_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
+_ACTIVE = re.compile(
+    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
+    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",  # GitHub makes links of bare addresses
+    re.IGNORECASE,
+)
+_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
+# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
+_MENTION = re.compile(r"@|#(?=\d)")
+_FENCE = re.compile(r"`{3,}")
+_MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
@@ -61,10 +73,10 @@ def _picture(report: Report, address: str) -> str:
     """Return the image of the robot's drawing with a description; empty without a robot."""
     if not address:
         return ""
-    from grader.report.drawing_key import drawn  # late: few reports show a picture
+    from grader.report.drawing_key import alt_text  # late: few reports show a picture
 
-    shown = drawn(report)
-    return f"![{escaped(shown)}]({address})" if shown else ""
+    words = alt_text(report)
+    return f"![{escaped(words)}]({address})" if words else ""
 
 
 def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
@@ -161,3 +173,35 @@ def _problems(report: Report) -> Iterator[str]:
     if problems := content.other_problems(report):
         yield f"## {content.other_problems_title(report)}"
         yield from (f"- {escaped(content.problem_line(problem))}" for problem in problems)
+
+
+def escaped(text: str) -> str:
+    """Return one line of printable text that Markdown shows as it is."""
+    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
+    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    return _MENTION.sub("\\g<0>\u2060", plain)
+
+
+def code(text: str) -> str:
+    """Return printable text as inline code; as plain text if it has too many backticks."""
+    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    if longest >= _MAX_FENCE:
+        return escaped(text)
+    fence = "`" * (longest + 1)
+    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
+    return f"{fence}{space}{text}{space}{fence}"
+
+
+def fenced(lines: list[str], language: str = "text") -> str:
+    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
+    fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
+    if len(fence) > _MAX_FENCE:
+        return "\n".join(f"    {line}" for line in lines)
+    return "\n".join((f"{fence}{language}", *lines, fence))
+
+
+def folded(summary: str, lines: list[str]) -> str:
+    """Return Markdown below a line of printable text that unfolds it."""
+    shown = _MENTION.sub("\\g<0>\u2060", html.escape(summary))
+    # CommonMark reads Markdown in HTML only after an empty line.
+    return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))

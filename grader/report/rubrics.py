@@ -12,7 +12,7 @@ from grader.grading.worth import worth
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.report.details import sentence
-from grader.report.markdown_text import code, escaped
+from grader.report.markdown import code, escaped
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE

@@ -41,7 +41,7 @@ def publish_report(
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.annotations import command
-    from grader.report.markdown_text import escaped
+    from grader.report.markdown import escaped
 
     lines = [printable(line) for line in reason.splitlines()]
     annotate(command("error", None, "Nothing was graded", "\n".join(lines)))

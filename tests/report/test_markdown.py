@@ -10,8 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
-from grader.report.markdown import cut_markdown, render_markdown
-from grader.report.markdown_text import code, escaped, fenced
+from grader.report.markdown import code, cut_markdown, escaped, fenced, render_markdown
 from grader.report.order import earned_text, groups, in_order
 from grader.text import printable
 from tests.report.hostile import TEXT

@@ -1,16 +1,21 @@
-"""The robot on a page: three views, the 3-D model with the sliders of its joints, and a description."""
+"""Pages about a robot: three views, the 3-D model with the sliders of its joints, and a description."""
 
 from collections.abc import Iterator, Mapping
+from itertools import islice
 from math import degrees, pi
 from typing import Any, NamedTuple
 
 from lxml import etree
 from markupsafe import Markup
 
-from grader.drawing.picture import Picture
+from grader import __version__
+from grader.drawing.picture import Picture, plain_picture
 from grader.drawing.scene import Scene
 from grader.errors import MissingElement, NotDecided
+from grader.report.content import problem_line
 from grader.report.drawing import drawing_element
+from grader.report.inspection import Inspection, effect, tree
+from grader.report.locations import source_lines
 from grader.report.order import alike
 from grader.report.pages.model import picture_data
 from grader.report.pages.shell import Assets, render_page
@@ -18,9 +23,11 @@ from grader.report.svg_elements import DARK_RULES
 from grader.robot.model import Box, Cylinder, Joint
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform
-from grader.text import counted, quoted
+from grader.text import counted, first_lines, printable, quoted
 
 _HALF_TURN = 180.0
+_MAX_LISTED = 500  # links of the tree, and problems
+_CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 _MAX_SLIDE = 1.0  # metres, of a joint without limits
 _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 
@@ -172,3 +179,23 @@ def _words(picture: Picture, moving: int) -> str:
         names = ", ".join(result.criterion.id for result in callout.results)
         words += f" {callout.number}: {names} failed{f' at {callout.link}' if callout.link else ''}."
     return words
+
+
+def inspection_html(inspection: Inspection) -> str:
+    """Return the inspection as an HTML page, with the joints at the given positions."""
+    reading, robot = inspection.reading, inspection.robot
+    sources = {reading.source.path: reading.source}
+    lines = (f"{indent}{link}  {joint}" for indent, link, joint in (tree(robot) if robot is not None else ()))
+    values = {
+        "version": __version__,
+        "title": printable(robot.robot.name if robot is not None else inspection.path),
+        "path": inspection.path,
+        "effect": effect(reading),
+        "verdict": _CLASSES.get(reading.verdict if reading.is_decided else "", "failed"),
+        "problems": [
+            (problem.severity, problem_line(problem), source_lines(problem.location, sources.get))
+            for problem in reading.problems[:_MAX_LISTED]
+        ],
+        "tree": first_lines([*islice(lines, _MAX_LISTED + 1)], _MAX_LISTED),
+    }
+    return render_robot_page("inspection.html", values, plain_picture(robot, inspection.relative_to), {})

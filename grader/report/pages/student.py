@@ -8,6 +8,7 @@ from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.drawing_key import why_no_picture
 from grader.report.locations import SourceLine, diff_lines, location_text, source_lines
 from grader.report.order import Failure, Group, alike, earned_text, failures, groups, in_order, status_of
 from grader.report.pages.robot import render_robot_page
@@ -107,7 +108,7 @@ def _card(result: Result, report: Report) -> Card:
 def _others(report: Report) -> dict[str, object]:
     problems = content.other_problems(report)
     return {
-        "no_picture": content.why_no_picture(report),
+        "no_picture": why_no_picture(report),
         "evidence": [*content.evidence(report)],
         "problems_title": content.other_problems_title(report),
         "problems": [(problem.severity, content.problem_line(problem)) for problem in problems],
