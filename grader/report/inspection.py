@@ -10,7 +10,7 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import show_problems, symbol, wrapped
+from grader.report.console import put, show_problems, symbol, wrapped
 from grader.report.json_data import (
     NUMBER,
     TEXT,
@@ -113,29 +113,29 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     words = effect(reading)
-    console.print(
-        Text.assemble((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
-    )
+    head = ((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
+    console.print(Text.assemble(*head))
     if reading.problems:
-        console.print()
-        console.print(Text("Problems", style="bold"))
+        _print_title(console, "Problems")
         show_problems(console, reading.problems, lambda _: reading.source, inspection.path)
     if robot is None:
         return
-    console.print()
-    console.print(Text("Tree", style="bold"))
+    _print_title(console, "Tree")
     signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
     for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-        line = Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim"))
-        console.print(line, overflow="ignore", no_wrap=True, crop=False)
+        put(console, Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
     _print_rest(console, len(robot.roots) + len(robot.holding))
-    console.print()
     frame = printable(inspection.relative_to or "")
-    console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
+    _print_title(console, f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)")
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
         wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
     _print_rest(console, len(robot.robot.links))
+
+
+def _print_title(console: Console, title: str) -> None:
+    console.print()
+    console.print(Text(title, "bold"))
 
 
 def _print_rest(console: Console, count: int) -> None:

@@ -1,7 +1,7 @@
 """Rubrics, checks and problem codes in plain text, and a rubric as Markdown for the lab's handout."""
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import Check, check_names, find_check, unused_checks
@@ -11,6 +11,7 @@ from grader.grading.rubric import Part, Rubric
 from grader.grading.worth import worth
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
+from grader.problems import Kind
 from grader.report.details import sentence
 from grader.report.markdown import code, escaped
 from grader.robot.catalogue import CATALOGUE
@@ -63,57 +64,59 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
+def kind_of(code: str) -> Kind | None:
+    """Return the kind of problem with a code; None if there is none."""
+    return next((kind for kind in EVERY_KIND if kind.code == code), None)
+
+
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
-    for kind in EVERY_KIND:
-        if kind.code == name.upper():
-            effect = f"\n{EFFECTS[kind.effect]}\n" if EFFECTS[kind.effect] else ""
-            return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n{effect}"
+    kind = kind_of(name.upper())
+    if kind is not None:
+        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _filled(kind.explanation), EFFECTS[kind.effect]]
+        return _paragraphs(texts)
     for criterion in rubric.criteria:
         if criterion.id == name:
-            return _criterion_text(criterion, rubric)
+            return _paragraphs(_criterion_texts(criterion, rubric))
     check = find_check(name)
     if check is not None:
-        text = "\n\n".join(map(_filled, check.documentation.paragraphs))
         source = f", from the package {check.distribution}" if check.distribution else ""
-        return f"{check.name}: a check for rubrics{source}\n\n{text}\n\n{_arguments(check)}".rstrip("\n") + "\n"
+        texts = [f"{check.name}: a check for rubrics{source}", *map(_filled, check.documentation.paragraphs)]
+        return _paragraphs([*texts, _arguments(check).rstrip("\n")])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
-        f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
+        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
     )
-    guess = did_you_mean(name, known) or lists
-    raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
+    raise InputError(
+        f"there is no problem code, criterion or check {name!r}{did_you_mean(name, known) or f'; {lists}'}"
+    )
 
 
-def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
-    lines = [
-        f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})",
-        "",
-        _filled(f"Passes when: {criterion.title}."),
-    ]
+def _paragraphs(texts: Iterable[str]) -> str:
+    return "\n\n".join(filter(None, texts)) + "\n"
+
+
+def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
+    yield f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})"
+    yield _filled(f"Passes when: {criterion.title}.")
     if criterion.adjustment is not None:
-        lines += ["", _filled(sentence(criterion.adjustment.message))]
-    if criterion.feedback:
-        lines += ["", _filled(criterion.feedback)]
+        yield _filled(sentence(criterion.adjustment.message))
+    yield _filled(criterion.feedback)
     if criterion.requires:
-        lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
-    lines += ["", *_check_lines("Check", criterion.check, criterion.arguments)]
-    if criterion.at:
-        positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
-        lines.append(_filled(f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."))
+        yield _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
+    positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
+    pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
+    yield _check_text("Check", criterion.check, criterion.arguments, pose)
     if criterion.carried is not None:
         causes, check, arguments = criterion.carried
-        title = f"If it fails and {enumerated(causes, word='or')} failed before it, the points are given if this check passes"
-        lines += ["", *_check_lines(title, check, arguments)]
-    return "\n".join(lines) + "\n"
+        failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
+        yield _check_text(f"{failures}, the points are given if this check passes", check, arguments)
 
 
-def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
+def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
     given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
-    return [
-        _filled(f"{title}: {check.name}. {check.documentation.fact}"),
-        *([_filled(f"With {given}.")] if given else []),
-    ]
+    texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
+    return "\n".join(map(_filled, filter(None, texts)))
 
 
 def _arguments(check: Check) -> str:

@@ -14,7 +14,7 @@ from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
 from grader.report.locations import Base, RepositoryLocation, archive_around
 from grader.report.order import alike
-from grader.report.rubrics import EVERY_KIND
+from grader.report.rubrics import kind_of
 from grader.source import Edit
 from grader.text import printable
 
@@ -49,10 +49,10 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
             title, command = printable(criterion.title), explain_command(name, report)
             fact = printable(f"Passes when: {criterion.title}. {criterion.check.documentation.fact}")
             return _described(name, title, fact, printable(criterion.feedback) or fact, "error", command)
-    for kind in EVERY_KIND:
-        if kind.code == name:
-            explanation = " ".join(kind.explanation.split())
-            return _described(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
+    kind = kind_of(name)
+    if kind is not None:
+        explanation = " ".join(kind.explanation.split())
+        return _described(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
     return _described(name, name, name, name, "warning", f"grader explain {name}")
 
 
