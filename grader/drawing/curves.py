@@ -51,7 +51,7 @@ class Line(NamedTuple):
 
     def at(self, share: float) -> Vector:
         """Return the point at a share of the length, from 0 to 1."""
-        return _moved(self.start, minus(self.end, self.start), share)
+        return _step(self.start, minus(self.end, self.start), share)
 
     def extents(self) -> Extents:
         """Return the least and the largest coordinates."""
@@ -73,7 +73,7 @@ class Arc(NamedTuple):
     def at(self, share: float) -> Vector:
         """Return the point at a share of the angle, from 0 to 1."""
         angle = self.start + share * (self.end - self.start)
-        return _moved(_moved(self.centre, self.major, cos(angle)), self.minor, sin(angle))
+        return _step(_step(self.centre, self.major, cos(angle)), self.minor, sin(angle))
 
     def extents(self) -> Extents:
         """Return the least and the largest coordinates of the whole circle."""
@@ -95,7 +95,7 @@ def inner_edges(shape: Shape, pose: Transform) -> list[Edge]:
     """Return the edges of a shape with T_view_shape that do not look like a part of its outline."""
     match shape:
         case Box(size=size):
-            return [*_box_edges(_columns(pose, _scaled(size, 0.5)), pose)]
+            return [*_box_edges(_columns(pose, _scale(size, 0.5)), pose)]
         case Cylinder(radius=radius, length=length):
             tube = _Tube.of(radius, length, pose)
             near, far = Edge(tube.rim(tube.near, 0.0, pi), True), Edge(tube.rim(tube.far, pi, tau), False)
@@ -134,11 +134,11 @@ class _Tube(NamedTuple):
     @classmethod
     def of(cls, radius: float, length: float, pose: Transform) -> "_Tube":
         axis = pose.rotate(VIEWER)
-        axis = _scaled(axis, -1.0) if axis[2] < 0.0 else axis
+        axis = _scale(axis, -1.0) if axis[2] < 0.0 else axis
         shows_side = hypot(axis[0], axis[1]) > _EDGE_ON
         across = (unit(cross(axis, VIEWER)) if shows_side else None) or _ALIGNED
-        near, far = (_moved(pose.translation, axis, share) for share in (length / 2.0, -length / 2.0))
-        major, minor = _scaled(across, radius), _scaled(cross(across, axis), radius)
+        near, far = (_step(pose.translation, axis, share) for share in (length / 2.0, -length / 2.0))
+        major, minor = _scale(across, radius), _scale(cross(across, axis), radius)
         return cls(near, far, major, minor, axis[2] > _EDGE_ON, shows_side)
 
     def rim(self, centre: Vector, start: float, end: float) -> Arc:
@@ -151,8 +151,8 @@ def _box_edges(halves: tuple[Vector, Vector, Vector], pose: Transform) -> Iterat
         if not any(halves[axis][:2]):
             continue
         for signs in product((-1.0, 1.0), repeat=2):
-            middle = _moved(_moved(pose.translation, halves[first], signs[0]), halves[second], signs[1])
-            line = Line(_moved(middle, halves[axis], -1.0), _moved(middle, halves[axis], 1.0))
+            middle = _step(_step(pose.translation, halves[first], signs[0]), halves[second], signs[1])
+            line = Line(_step(middle, halves[axis], -1.0), _step(middle, halves[axis], 1.0))
             leans = signs[0] * to_viewer[first], signs[1] * to_viewer[second]
             if min(leans) > _EDGE_ON or max(leans) < -_EDGE_ON:  # the viewer sees both faces beside it, or none
                 yield Edge(line, faces_viewer=leans[0] > 0.0)
@@ -166,20 +166,20 @@ def _columns(pose: Transform, sizes: Vector) -> tuple[Vector, Vector, Vector]:
 
 def _zonogon(centre: Vector, sides: tuple[Vector, ...]) -> Iterator[Vector]:
     """Yield the corners of the outline of a box: its edges one after the other, by their direction, and back."""
-    upward = [side if side[1] > 0.0 or (side[1] == 0.0 and side[0] > 0.0) else _scaled(side, -1.0) for side in sides]
+    upward = [side if side[1] > 0.0 or (side[1] == 0.0 and side[0] > 0.0) else _scale(side, -1.0) for side in sides]
     upward.sort(key=lambda side: atan2(side[1], side[0]))
     corner = centre
     for side in upward:
-        corner = _moved(corner, side, -0.5)
+        corner = _step(corner, side, -0.5)
     for way in (1.0, -1.0):
         for side in upward:
             yield corner
-            corner = _moved(corner, side, way)
+            corner = _step(corner, side, way)
 
 
-def _moved(point: Vector, along: Vector, share: float) -> Vector:
+def _step(point: Vector, along: Vector, share: float) -> Vector:
     return (point[0] + share * along[0], point[1] + share * along[1], point[2] + share * along[2])
 
 
-def _scaled(vector: Vector, factor: float) -> Vector:
+def _scale(vector: Vector, factor: float) -> Vector:
     return (vector[0] * factor, vector[1] * factor, vector[2] * factor)

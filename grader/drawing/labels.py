@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from math import cos, hypot, sin, tau
 from typing import NamedTuple
 
-from grader.drawing.sheet import TITLE, Cell, Place
+from grader.drawing.sheet import TITLE, Panel, Place
 
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what is labelled
 _DIRECTIONS = 16
@@ -39,7 +39,7 @@ class Rectangle(NamedTuple):
 class Labels:
     """The labels of one cell. `taken` are the rectangles of labels, `marks` those of signs that labels should not cover."""
 
-    def __init__(self, cell: Cell) -> None:
+    def __init__(self, cell: Panel) -> None:
         self._room = Rectangle(cell.left, cell.top + TITLE, cell.left + cell.width, cell.top + cell.height)
         self._taken: list[Rectangle] = []
         self._marks: list[Rectangle] = []

@@ -157,10 +157,10 @@ def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
     pose = placed_by(Transform(), visual.origin)
     if is_empty(shape) or not is_drawable(sizes) or not is_drawable(pose.translation):
         return None
-    return Body(link, drawn, pose, _clamped(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
+    return Body(link, drawn, pose, _clamp(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
 
 
-def _clamped(rgba: Rgba) -> Rgba:
+def _clamp(rgba: Rgba) -> Rgba:
     """Return a colour with channels from 0 to 1; one that is no finite number is 0."""
     red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
     return red, green, blue, alpha

@@ -40,10 +40,10 @@ def projection(scene: Scene, view: View) -> list[Seen]:
     The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an exact
     one needs the depths at each place of the view.
     """
-    return sorted(seen_in(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
+    return sorted(project(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
 
 
-def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
+def project(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
     """Return bodies of a scene in a view."""
     found = ((body, view.T_view_frame @ scene.pose(body)) for body in bodies)
     return [
@@ -82,7 +82,7 @@ _FAR = 2.0  # times the size of the robot: a ground farther away is not in the p
 _UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
 
 
-class Cell(NamedTuple):
+class Panel(NamedTuple):
     """A view on a sheet: its rectangle, the position of the frame's origin, and pixels per metre."""
 
     view: View
@@ -110,7 +110,7 @@ class Cell(NamedTuple):
 class Sheet(NamedTuple):
     """The cells of the three views, the position of the key, the total height, and pixels per metre."""
 
-    cells: tuple[Cell, ...]
+    cells: tuple[Panel, ...]
     key: Place
     height: float
     scale: float
@@ -142,7 +142,7 @@ def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
     return Sheet(tuple(cells), (columns[1][0], top), top + sum(rows), scale)
 
 
-def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Cell:
+def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Panel:
     """Return the cell of a single view, in a rectangle of this size in pixels."""
     low, high = _bounds(picture)
     (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
@@ -152,11 +152,11 @@ def single_cell(picture: Picture, view: View, width: float, height: float, margi
     return _cell(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
 
 
-def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Cell:
+def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Panel:
     """Return a cell with the robot centred below the title."""
     u, v, _ = view.T_view_frame.apply(middle)
     origin = corner[0] + size[0] / 2.0 - scale * u, corner[1] + (title + size[1]) / 2.0 + scale * v
-    return Cell(view, *corner, *size, origin, scale)
+    return Panel(view, *corner, *size, origin, scale)
 
 
 def _middle(low: Vector, high: Vector) -> Vector:

@@ -17,7 +17,7 @@ from grader.report.json_data import (
     TEXT,
     TOTAL,
     VALUE,
-    Kind,
+    KeyType,
     Many,
     Maybe,
     Record,
@@ -25,9 +25,9 @@ from grader.report.json_data import (
     each,
     inner,
     mapping,
-    named,
     nullable,
     rounded,
+    schema_key,
     to_json,
 )
 
@@ -42,7 +42,7 @@ PROBLEM = Record(
     }
 )
 _HINT = Record({"message": TEXT, "edits": Many(EDIT), "gains": mapping(POINTS), "verified": (FLAG, lambda _: True)})
-_KINDS: dict[str, Kind] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}
+_KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}
 KINDS = Record(_KINDS, ("bonus", "adjustment"))
 ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
     {
@@ -54,7 +54,7 @@ ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a m
 )
 
 
-def _expected(result: Result) -> Any:
+def _expectation(result: Result) -> Any:
     return result.criterion.answer or rounded(result.outcome.expected)
 
 
@@ -70,7 +70,7 @@ _RESULT = Record(
         "points": POINTS,
         "max_points": (POINTS, "criterion.points"),
         **inner("outcome", {"message": TEXT, "measured": VALUE}),
-        "expected": (VALUE, _expected),
+        "expected": (VALUE, _expectation),
         **inner("outcome", {"tolerance": nullable(POINTS), "unit": nullable(TEXT)}),
         "because": nullable(TEXT),
         "carried": (nullable(TEXT), lambda result: result.carried or None),
@@ -106,7 +106,7 @@ GRADE = Record({"grade": _GRADE}, ("grade",))  # of a student in a class, if a p
 _EVIDENCE = Record({**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files perhaps")})
 REPORT = Record(
     {
-        **named("grader/report/v1"),
+        **schema_key("grader/report/v1"),
         "grader": (GRADER, lambda report: {"version": report.version}),
         "rubric": RUBRIC,
         "submission": _SUBMISSION,

@@ -15,9 +15,9 @@ from grader.report.json_data import (
     Record,
     array,
     each,
-    named,
     nullable,
     record,
+    schema_key,
 )
 
 _STATUSES = ("errored", "graded", "missing", "unreadable")
@@ -79,7 +79,7 @@ _GROUP = record(
 )
 CLASS = Record(
     {
-        **named("grader/class/v1"),
+        **schema_key("grader/class/v1"),
         "grader": GRADER,
         "rubric": RUBRIC.schema,
         "run": record(each(TOTAL, "total graded unchanged errored")),
@@ -104,7 +104,7 @@ _RUN = record({"run": COUNT, "started": TEXT, "grader": GRADER, "rubric": record
 _CHANGE = {"id": TEXT, **each(nullable(POINTS), "before after")}
 DIFF = Record(
     {
-        **named("grader/diff/v1"),
+        **schema_key("grader/diff/v1"),
         **each(_RUN, "from to"),
         "students": array(
             record(

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.grading.report import Hint, Report, Result
 from grader.report.locations import excerpt_lines, location_text
-from grader.report.order import Failure, alike, failures, is_failure, is_manual, points_of, status_of
+from grader.report.order import FailedCriterion, alike, failures, is_failure, is_manual, points_of, status_of
 from grader.source import Location
 from grader.text import by_name, enumerated, printable, signed_points
 
@@ -109,7 +109,7 @@ def _hints(result: Result, report: Report) -> tuple[Hint, ...]:
     return tuple(hint._replace(message=sentence(hint.message)) for hint in full)
 
 
-def hint_of(failure: Failure, hint: Hint) -> Hint:
+def hint_of(failure: FailedCriterion, hint: Hint) -> Hint:
     """Return a hint of a failure, which says what it fixes besides."""
     if failure.first:
         return hint._replace(message=f"Fixed by the same edit as {failure.first}.", edits=())

@@ -12,7 +12,7 @@ from lxml import etree
 from grader.drawing.curves import SIDE, Curve, View, inner_edges
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
-from grader.drawing.sheet import WIDTH, Cell, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
+from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import result_details
@@ -29,7 +29,7 @@ from grader.report.svg_elements import (
     path_data,
     put,
     put_lines,
-    wrapped,
+    wrap,
 )
 from grader.text import printable
 
@@ -59,7 +59,7 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
         put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
         _put_view(put(root, "g"), cell, picture)
     put_key(put(root, "g"), sheet, picture, legend=legend)
-    return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
+    return _set_size(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
@@ -84,10 +84,10 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
         if callout.point is not None and callout.link not in shown:
             above.line("leader", circle(cell.place(callout.point), _RING))
     above.put(group)
-    return _sized(root, *_THUMBNAIL)
+    return _set_size(root, *_THUMBNAIL)
 
 
-def _sized(root: Any, width: float, height: float) -> Any:
+def _set_size(root: Any, width: float, height: float) -> Any:
     """Set the size of a drawing, and of its background, in pixels."""
     root.set("viewBox", f"0 0 {width:g} {height:.0f}")
     root.set("width", f"{width:g}")
@@ -111,10 +111,10 @@ def _empty(title: str, words: str, height: float) -> Any:
     """Return a drawing without a robot."""
     root = _root(title, words)
     put(root, "rect", "paper", {"width": WIDTH, "height": 0})
-    return _sized(root, WIDTH, height)
+    return _set_size(root, WIDTH, height)
 
 
-def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
+def _put_view(group: Any, cell: Panel, picture: Picture) -> None:
     labels, below, above = Labels(cell), Signs(), Signs()
     add_ground(below, cell, picture, labels)
     below.put(group)
@@ -126,7 +126,7 @@ def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
     above.put(group)
 
 
-def _put_bodies(group: Any, cell: Cell, bodies: Sequence[Seen]) -> None:
+def _put_bodies(group: Any, cell: Panel, bodies: Sequence[Seen]) -> None:
     """Add the shapes from back to front with their edges, then lighter what others hide; thinner where they are small."""
     sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
@@ -183,8 +183,8 @@ def inspection_svg(inspection: Inspection) -> str:
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    lines = [line for text in filter(None, words) for line in wrapped(text, _WIDTH)]
-    lines += [] if picture is not None else ["", *wrapped(reason, _WIDTH)]
+    lines = [line for text in filter(None, words) for line in wrap(text, _WIDTH)]
+    lines += [] if picture is not None else ["", *wrap(reason, _WIDTH)]
     top = _TITLE + LINE * len(lines) + 8.0
     root = drawing_element(picture, title, top) if picture is not None else _empty(title, reason, top)
     put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)

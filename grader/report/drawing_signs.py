@@ -7,7 +7,7 @@ from typing import Any
 from grader.drawing.curves import AXES
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.sheet import Cell, Place, seen_in
+from grader.drawing.sheet import Panel, Place, project
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
@@ -51,7 +51,7 @@ class Signs:
                 put(lines, "text", "", {"x": x, "y": y}, text)
 
 
-def add_ground(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_ground(signs: Signs, cell: Panel, picture: Picture, labels: Labels) -> None:
     """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
     ground = picture.scene.ground
     line = _ground_line(cell, ground) if ground is not None else None
@@ -72,7 +72,7 @@ def is_lifted(one: Transform, other: Transform) -> bool:
     return abs(one.translation[2] - other.translation[2]) > _SAME
 
 
-def _ground_line(cell: Cell, ground: Transform) -> tuple[Place, Place] | None:
+def _ground_line(cell: Panel, ground: Transform) -> tuple[Place, Place] | None:
     """Return both ends of the plane z = 0 of a frame in a cell, if it is seen edge-on and crosses the cell."""
     across, down, depth = cell.direction(ground.rotate((0.0, 0.0, 1.0)))
     if abs(depth) > 1e-3 or abs(down) < 0.05:
@@ -84,11 +84,11 @@ def _ground_line(cell: Cell, ground: Transform) -> tuple[Place, Place] | None:
     return ends[0], ends[1]
 
 
-def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_outlines(signs: Signs, cell: Panel, picture: Picture, labels: Labels) -> None:
     """Add the dashed outlines of the reference, and its frames with their axes and letters."""
     if picture.reference is None:
         return
-    for seen in seen_in(picture.reference, picture.outlines, cell.view):
+    for seen in project(picture.reference, picture.outlines, cell.view):
         signs.line("reference", path_data(cell, seen.outline, closed=True))
         (a, b), (c, d), _ = seen.extents
         labels.mark([cell.on_sheet((a, c, 0.0)), cell.on_sheet((b, d, 0.0))])
@@ -104,7 +104,7 @@ def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> 
                 _add_letter(signs, labels, start, tip, name)
 
 
-def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
+def add_frames(signs: Signs, cell: Panel, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
     """Add the frames of links with their axes and letters; of frames that look the same, only one."""
     shown: set[object] = set()
     for link in links:
@@ -115,13 +115,13 @@ def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links
             _add_frame(signs, cell, pose, labels)
 
 
-def _look_of(cell: Cell, pose: Transform) -> tuple[int, ...]:
+def _look_of(cell: Panel, pose: Transform) -> tuple[int, ...]:
     """Return a key that is equal for frames that look the same in a cell."""
     seen = (value for _, axis in _AXES for value in cell.direction(pose.rotate(axis)))
     return (*map(round, cell.place(pose.translation)), *(round(10.0 * value) for value in seen))
 
 
-def _add_frame(signs: Signs, cell: Cell, pose: Transform, labels: Labels) -> None:
+def _add_frame(signs: Signs, cell: Panel, pose: Transform, labels: Labels) -> None:
     start = cell.place(pose.translation)
     for name, axis in _AXES:
         tip, length = _tip(cell, start, pose.rotate(axis))
@@ -144,13 +144,13 @@ def _add_letter(signs: Signs, labels: Labels, start: Place, tip: Place, name: st
         signs.text("letter", (place[0], place[1] + 3.5), name)
 
 
-def _tip(cell: Cell, start: Place, axis: Vector, length: float = _AXIS) -> tuple[Place, float]:
+def _tip(cell: Panel, start: Place, axis: Vector, length: float = _AXIS) -> tuple[Place, float]:
     """Return the end of an axis on the sheet, and its apparent share of its length."""
     x, y, _ = cell.direction(axis)
     return (start[0] + length * x, start[1] + length * y), hypot(x, y)
 
 
-def add_wheels(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_wheels(signs: Signs, cell: Panel, picture: Picture, labels: Labels) -> None:
     """Add an arrow at each wheel for its driving direction at a positive turn, or a circle with a slash if it does not roll."""
     for wheel in picture.scene.wheels:
         start = cell.place(wheel.centre)
@@ -180,7 +180,7 @@ def _cross(middle: Place, half: float) -> Iterator[tuple[Place, Place]]:
     yield (x - half, y + half), (x + half, y - half)
 
 
-def add_callouts(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
+def add_callouts(signs: Signs, cell: Panel, picture: Picture, labels: Labels) -> None:
     """Add the numbers of callouts beside their points, with leader lines, none over another."""
     points = [(callout.number, cell.place(callout.point)) for callout in picture.callouts if callout.point is not None]
     for _, point in points:

@@ -11,7 +11,7 @@ from grader.grading.report import Report, Result
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
 from grader.report.details import SYMBOLS, Details, hint_of, result_details, sentence
 from grader.report.locations import diff_lines, location_text
-from grader.report.order import Failure, Group, earned_text, points_of, status_of
+from grader.report.order import CriteriaGroup, FailedCriterion, earned_text, points_of, status_of
 from grader.text import printable
 
 STYLES = {
@@ -69,7 +69,7 @@ class Page(NamedTuple):
         return Text(symbol(self.console, SYMBOLS[status], _ASCII[status]), STYLES[status])
 
 
-def show_failure(failure: Failure, page: Page, number: int) -> None:
+def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:
     """Print a criterion that failed: what it costs, what is and what should be, where, and what to do.
 
     Unless everything is printed, only the first failures have their source line, and long texts are cut.
@@ -87,14 +87,14 @@ def show_failure(failure: Failure, page: Page, number: int) -> None:
     texts += _hints(failure, details, page)
     reasons = [*_reasons(details, failure.result, page)] if page.room or is_first else []
     page.printed.update(text.plain for text in reasons)
-    reasons += _skipped(failure) if page.room else ()
+    reasons += _consequence(failure) if page.room else ()
     most_reasons = None if page.room else _MAX_REASON - (number > 0)
     texts += [block(console, text, INDENT, most=most_reasons) for text in reasons]
     page.leave_row()
     put(console, Text("\n").join(texts))
 
 
-def _head(failure: Failure, details: Details, page: Page) -> Text:
+def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
     status = status_of(failure.result)
     text = Text.assemble(page.mark(status), " ", (printable(failure.id), "bold"))
     text.append(f"  {failure.cost}", STYLES[status])
@@ -121,7 +121,7 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
         yield excerpt_block(page.console, source, where, INDENT, is_underlined=bool(page.room))
 
 
-def _hints(failure: Failure, details: Details, page: Page) -> Iterator[Text]:
+def _hints(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Text]:
     """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
     for hint in details.hints[: None if page.is_verbose else 1]:
         whole = block(page.console, Text(hint.message, "bold"), INDENT)
@@ -146,7 +146,7 @@ def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
         yield Text(details.expected, "dim")
 
 
-def _skipped(failure: Failure) -> Iterator[Text]:
+def _consequence(failure: FailedCriterion) -> Iterator[Text]:
     if failure.skipped:
         words = "criterion is" if len(failure.skipped) == 1 else "criteria are"
         points = points_of(failure.skipped)
@@ -167,7 +167,7 @@ def show_answer(result: Result, page: Page) -> None:
             page.inset(line, levels=2)
 
 
-def show_criteria(group: Group, page: Page, *, has_title: bool) -> None:
+def show_criteria(group: CriteriaGroup, page: Page, *, has_title: bool) -> None:
     """Print the criteria of a group, a line for each."""
     if has_title:
         page.console.print()

@@ -18,7 +18,7 @@ from grader.report.locations import (
     in_repository,
     location_text,
 )
-from grader.report.order import Failure, earned_text, failures, is_failure, points_of, undecided
+from grader.report.order import FailedCriterion, earned_text, failures, is_failure, points_of, undecided_results
 from grader.source import Location
 from grader.text import counted_points, printable
 
@@ -54,7 +54,7 @@ def findings(report: Report, base: Base) -> list[Finding]:
     """Return the findings of a submission; `base` is where that is in its repository."""
     source_of = cache(report.submission.source)  # reads each file once
     found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
-    found += _undecided(report, base)
+    found += _undecided_finding(report, base)
     found += _remarks(report, base)
     for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
         text = _text([printable(problem.message)], problem.location, base)
@@ -74,7 +74,7 @@ def _fallback(report: Report, base: Base, *results: Result) -> RepositoryLocatio
     return RepositoryLocation(base.archive or place or ".")
 
 
-def _of_criterion(failure: Failure, report: Report, source_of: SourceOf, base: Base) -> Finding:
+def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf, base: Base) -> Finding:
     result, skipped, is_bonus = failure.result, failure.skipped, failure.result.criterion.bonus
     details = result_details(result, report)
     lines = [*details.words, *details.advice, details.expected]
@@ -87,9 +87,9 @@ def _of_criterion(failure: Failure, report: Report, source_of: SourceOf, base: B
     return Finding(failure.id, level, _text(lines, where, base), location, fallback, failure.lost, details.hints)
 
 
-def _undecided(report: Report, base: Base) -> Iterator[Finding]:
+def _undecided_finding(report: Report, base: Base) -> Iterator[Finding]:
     """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
-    results = undecided(report)
+    results = undecided_results(report)
     if results:
         reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
         names = ", ".join(result.criterion.id for result in results)

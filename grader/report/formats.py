@@ -87,7 +87,7 @@ def json_schema(name: str) -> dict[str, Any]:
         return rubric_schema()
     title, place = _SCHEMAS[name]
     draft = "https://json-schema.org/draft/2020-12/schema"
-    return {"$schema": draft, "title": f"grader {title}", **_imported(place).schema}
+    return {"$schema": draft, "title": f"grader {title}", **_load(place).schema}
 
 
 def render(
@@ -106,23 +106,23 @@ def render(
     InputError if the environment does not say whose result it is (Classroom 50).
     """
     if kind.needs == "console":
-        return draw(partial(_imported(kind.function), report, verbose=verbose), screen)
-    text: str = _imported(kind.function)(report, *needed(kind, base, picture))
+        return draw(partial(_load(kind.function), report, verbose=verbose), screen)
+    text: str = _load(kind.function)(report, *inputs_of(kind, base, picture))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
 def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
     """Return an inspection in a format, for a screen or a file."""
-    function = partial(_imported(kind.function), inspection)
+    function = partial(_load(kind.function), inspection)
     return draw(function, screen) if kind.needs == "console" else without_commands(function())
 
 
-def _imported(place: str) -> Any:
+def _load(place: str) -> Any:
     module, _, name = place.partition(":")
     return getattr(import_module(f"grader.report.{module}"), name)
 
 
-def needed(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
+def inputs_of(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     match kind.needs:
         case "base":

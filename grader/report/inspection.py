@@ -21,8 +21,8 @@ from grader.report.json_data import (
     array,
     each,
     mapping,
-    named,
     nullable,
+    schema_key,
     to_json,
 )
 from grader.robot.kinematics import Configuration
@@ -92,7 +92,7 @@ _ROBOT = Record(
 )
 INSPECTION = Record(
     {
-        **named("grader/inspect/v1"),
+        **schema_key("grader/inspect/v1"),
         "path": TEXT,
         "verdict": ({"enum": ["clean", "degraded", "rejected"]}, "reading.verdict"),
         "problems": (Many(PROBLEM), "reading.problems"),

@@ -111,10 +111,10 @@ class Record:
     a record describes. Keys in `optional` are absent where they would be empty.
     """
 
-    keys: Mapping[str, "Kind | Key"]
+    keys: Mapping[str, "KeyType | Key"]
     optional: tuple[str, ...] = ()
 
-    def __iter__(self) -> "Iterator[tuple[str, Kind, Origin]]":
+    def __iter__(self) -> "Iterator[tuple[str, KeyType, Origin]]":
         """Yield each key with its type and its value."""
         for name, key in self.keys.items():
             yield (name, *key) if isinstance(key, tuple) else (name, key, name)
@@ -144,12 +144,12 @@ class Maybe:
     of: Record
 
 
-Kind = Schema | Record | Many | Maybe
+KeyType = Schema | Record | Many | Maybe
 Origin = str | Callable[[Any], Any]
-Key = tuple[Kind, Origin]
+Key = tuple[KeyType, Origin]
 
 
-def _schema(kind: Kind) -> Schema:
+def _schema(kind: KeyType) -> Schema:
     match kind:
         case Record():
             return kind.schema
@@ -160,7 +160,7 @@ def _schema(kind: Kind) -> Schema:
     return kind
 
 
-def _data(kind: Kind, origin: Origin, value: Any) -> Any:
+def _data(kind: KeyType, origin: Origin, value: Any) -> Any:
     found = attrgetter(origin)(value) if isinstance(origin, str) else origin(value)
     match kind:
         case Many():
@@ -174,12 +174,12 @@ def _data(kind: Kind, origin: Origin, value: Any) -> Any:
     return rounded(found) if isinstance(origin, str) else found
 
 
-def inner(owner: str, keys: Mapping[str, Kind]) -> dict[str, Key]:
+def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:
     """Return keys that have the attributes of their names of an attribute of a value."""
     return {name: (kind, f"{owner}.{name}") for name, kind in keys.items()}
 
 
-def named(schema: str) -> dict[str, Key]:
+def schema_key(schema: str) -> dict[str, Key]:
     """Return the key that names the schema of a document."""
     return {"schema": ({"const": schema}, lambda _: schema)}
 

@@ -150,7 +150,7 @@ def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
         for line, of_line in groupby(changes, key=lambda edit: edit.line):
             some = [edit for edit in of_line if edit.old or edit.new]
             if some:
-                lines += [f"@@ line {line} @@", *_changed(*_texts(some, source))]
+                lines += [f"@@ line {line} @@", *_diff(*_texts(some, source))]
     return [printable(line) for line in first_lines(lines, _MAX_LINES)]
 
 
@@ -169,7 +169,7 @@ def _texts(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     return before, after
 
 
-def _changed(before: str, after: str) -> Iterator[str]:
+def _diff(before: str, after: str) -> Iterator[str]:
     old, new = ([line.removesuffix("\r") for line in text.split("\n")] for text in (before, after))
     for kind, old_start, old_end, new_start, new_end in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
         if kind != "equal":

@@ -42,7 +42,7 @@ def is_manual(result: Result) -> bool:
     return result.criterion.check.function in MANUAL_CHECKS
 
 
-def undecided(report: Report) -> list[Result]:
+def undecided_results(report: Report) -> list[Result]:
     """Return the automatic criteria that need manual grading here, because their subject could not be read."""
     return [result for result in report.results if result.is_open and not is_manual(result)]
 
@@ -64,7 +64,7 @@ def points_of(results: Iterable[Result]) -> str:
     return worth(result.criterion for result in results).text
 
 
-class Failure(NamedTuple):
+class FailedCriterion(NamedTuple):
     """A criterion that failed or lost points, with the criteria that are skipped because of it.
 
     `also` are the failures that the same edit fixes; each of them names this criterion as `first`.
@@ -72,7 +72,7 @@ class Failure(NamedTuple):
 
     result: Result
     skipped: tuple[Result, ...] = ()
-    also: tuple["Failure", ...] = ()
+    also: tuple["FailedCriterion", ...] = ()
     first: str = ""
 
     @property
@@ -103,7 +103,7 @@ class Order(NamedTuple):
     are the others with a grader's comment.
     """
 
-    failures: tuple[Failure, ...]
+    failures: tuple[FailedCriterion, ...]
     skipped: tuple[Result, ...]
     pending: tuple[Result, ...]
     marked: tuple[Result, ...]
@@ -135,18 +135,20 @@ def in_order(report: Report) -> Order:
     )
 
 
-def failures(report: Report) -> tuple[Failure, ...]:
+def failures(report: Report) -> tuple[FailedCriterion, ...]:
     """Return the criteria that failed or lost points; those that one edit fixes follow each other.
 
     What keeps ROS 2 from loading the file comes first, then the costliest mistake. What is about a package that was not
     submitted, and then what is carried forward, comes last. Equals are in the rubric's order.
     """
     skipped = dict(alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or ""))
-    found = [Failure(result, skipped.get(result.criterion.id, ())) for result in report.results if is_failure(result)]
+    found = [
+        FailedCriterion(result, skipped.get(result.criterion.id, ())) for result in report.results if is_failure(result)
+    ]
     mistakes = [_together(some) for _, some in alike(found, _edit)]
     is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
 
-    def rank(mistake: tuple[Failure, ...]) -> tuple[bool, bool, bool, Decimal]:
+    def rank(mistake: tuple[FailedCriterion, ...]) -> tuple[bool, bool, bool, Decimal]:
         criteria = [failure.result.criterion for failure in mistake]
         is_last = not has_package and report.rubric.part(criteria[0].part).needs == "package"
         is_urgent = is_rejected and any(criterion.check.subject == "urdf" for criterion in criteria)
@@ -156,16 +158,16 @@ def failures(report: Report) -> tuple[Failure, ...]:
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
 
-def _edit(failure: Failure) -> str:
+def _edit(failure: FailedCriterion) -> str:
     """Return what failures have in common that one edit fixes."""
     hint = next(iter(failure.result.hints), None)
     return repr((hint.message, hint.at, [*hint.gains])) if hint and not failure.result.why_given else failure.id
 
 
-def _together(some: tuple[Failure, ...]) -> tuple[Failure, ...]:
+def _together(some: tuple[FailedCriterion, ...]) -> tuple[FailedCriterion, ...]:
     """Return failures that one edit fixes: first that at the edited line, of the file before the robot, else the costliest."""
 
-    def rank(failure: Failure) -> tuple[bool, bool, Decimal]:
+    def rank(failure: FailedCriterion) -> tuple[bool, bool, Decimal]:
         where, at = failure.result.outcome.location, failure.result.hints[0].at
         is_there = where is not None and (where.path, where.line) == (at.path, at.line)
         return not is_there, failure.result.criterion.check.subject != "urdf", -failure.lost
@@ -174,7 +176,7 @@ def _together(some: tuple[Failure, ...]) -> tuple[Failure, ...]:
     return first._replace(also=tuple(also)), *(one._replace(first=first.id) for one in also)
 
 
-class Group(NamedTuple):
+class CriteriaGroup(NamedTuple):
     """The criteria about one thing, in the rubric's order."""
 
     part: str
@@ -197,10 +199,10 @@ class Group(NamedTuple):
         return next(iter(statuses), "passed")
 
 
-def groups(report: Report) -> Iterator[Group]:
+def groups(report: Report) -> Iterator[CriteriaGroup]:
     """Yield the criteria in the rubric's order, those about one thing together; the others under the title of their part."""
     for (part, about), results in groupby(report.results, lambda one: (one.criterion.part, one.criterion.about)):
-        yield Group(part, about or report.rubric.part(part).title, tuple(results))
+        yield CriteriaGroup(part, about or report.rubric.part(part).title, tuple(results))
 
 
 def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[T, ...]]]:

@@ -23,9 +23,9 @@ from grader.report.json_data import (
     each,
     inner,
     mapping,
-    named,
     nullable,
     rounded,
+    schema_key,
     to_json,
 )
 from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
@@ -44,11 +44,11 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
     lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_near(test.mutants.margins)]
     lines += ["", f"Mutation score: {_percent(test.mutants)} %"]
-    text = "\n".join(folded for line in lines for folded in _folded(printable(line), width))
+    text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
 
 
-def _folded(line: str, width: int) -> list[str]:
+def _fold(line: str, width: int) -> list[str]:
     """Return a line that fits: a sentence is wrapped, a line of a diff or table is cut."""
     if len(line) <= width:
         return [line]
@@ -191,7 +191,7 @@ _MUTANTS = Record(
 _EQUIVALENTS = Record({"tried": mapping(TOTAL), "unused": mapping(TEXT), "lost": (_LOSSES, "losses")})
 RUBRIC_TEST = Record(
     {
-        **named("grader/rubric-test/v1"),
+        **schema_key("grader/rubric-test/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
         "rubric": (RUBRIC, "reference.rubric"),
         "seed": {"type": "integer"},

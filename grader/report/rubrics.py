@@ -13,7 +13,7 @@ from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.details import sentence
-from grader.report.markdown import code, escaped
+from grader.report.markdown import code, escape
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
@@ -41,9 +41,9 @@ def rubric_text(rubric: Rubric) -> str:
             bonus = " (bonus)" if criterion.bonus else ""
             lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}")
             if criterion.adjustment is not None:
-                lines.append(textwrap.indent(_filled(sentence(criterion.adjustment.message)), "    "))
+                lines.append(textwrap.indent(_fill(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
-                lines.append(textwrap.indent(_filled(f"Model answer: {printable(criterion.answer)}"), "    "))
+                lines.append(textwrap.indent(_fill(f"Model answer: {printable(criterion.answer)}"), "    "))
     return "\n".join(lines) + "\n"
 
 
@@ -57,7 +57,7 @@ def checks_text() -> str:
             listed.append(f"{name}\n  {error}\n")
             continue
         if check is not None:
-            fact = textwrap.indent(_filled(check.documentation.fact), "  ")
+            fact = textwrap.indent(_fill(check.documentation.fact), "  ")
             listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
     for name, package in unused_checks():
         listed.append(f"{name} ({package})\n  Not used: the grader has a check of this name.\n")
@@ -73,7 +73,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
     kind = kind_of(name.upper())
     if kind is not None:
-        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _filled(kind.explanation), EFFECTS[kind.effect]]
+        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(kind.explanation), EFFECTS[kind.effect]]
         return _paragraphs(texts)
     for criterion in rubric.criteria:
         if criterion.id == name:
@@ -81,7 +81,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     check = find_check(name)
     if check is not None:
         source = f", from the package {check.distribution}" if check.distribution else ""
-        texts = [f"{check.name}: a check for rubrics{source}", *map(_filled, check.documentation.paragraphs)]
+        texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
         return _paragraphs([*texts, _arguments(check).rstrip("\n")])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
@@ -98,12 +98,12 @@ def _paragraphs(texts: Iterable[str]) -> str:
 
 def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     yield f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})"
-    yield _filled(f"Passes when: {criterion.title}.")
+    yield _fill(f"Passes when: {criterion.title}.")
     if criterion.adjustment is not None:
-        yield _filled(sentence(criterion.adjustment.message))
-    yield _filled(criterion.feedback)
+        yield _fill(sentence(criterion.adjustment.message))
+    yield _fill(criterion.feedback)
     if criterion.requires:
-        yield _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
+        yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
     positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
     pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose)
@@ -116,14 +116,14 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
     given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
     texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
-    return "\n".join(map(_filled, filter(None, texts)))
+    return "\n".join(map(_fill, filter(None, texts)))
 
 
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
         default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
-        meaning = _filled(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
+        meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
 
@@ -147,7 +147,7 @@ def toml_text(value: object) -> str:
             return str(value)
 
 
-def _filled(text: str, width: int = _WIDTH) -> str:
+def _fill(text: str, width: int = _WIDTH) -> str:
     return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
 
 
@@ -187,4 +187,4 @@ def _row(criterion: Criterion, before: Criterion | None) -> list[str]:
 
 
 def _text(text: str) -> str:
-    return escaped(printable(" ".join(text.split())))
+    return escape(printable(" ".join(text.split())))

@@ -48,15 +48,15 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
         if criterion.id == name:
             title, command = printable(criterion.title), explain_command(name, report)
             fact = printable(f"Passes when: {criterion.title}. {criterion.check.documentation.fact}")
-            return _described(name, title, fact, printable(criterion.feedback) or fact, "error", command)
+            return _describe(name, title, fact, printable(criterion.feedback) or fact, "error", command)
     kind = kind_of(name)
     if kind is not None:
         explanation = " ".join(kind.explanation.split())
-        return _described(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
-    return _described(name, name, name, name, "warning", f"grader explain {name}")
+        return _describe(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
+    return _describe(name, name, name, name, "warning", f"grader explain {name}")
 
 
-def _described(name: str, title: str, text: str, advice: str, level: str, command: str) -> dict[str, Any]:
+def _describe(name: str, title: str, text: str, advice: str, level: str, command: str) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {"text": title},

@@ -14,7 +14,7 @@ from lxml import etree
 
 from grader.drawing.curves import Arc, Curve, Line
 from grader.drawing.scene import Rgba
-from grader.drawing.sheet import Cell, Place
+from grader.drawing.sheet import Panel, Place
 from grader.robot.transforms import Vector
 from grader.text import printable
 
@@ -107,7 +107,7 @@ def edge_look(rgba: Rgba) -> str:
     return "edge-on-light" if luminance > 0.18 else "edge-on-dark"
 
 
-def path_data(cell: Cell, curves: Iterable[Curve], *, closed: bool = False) -> str:
+def path_data(cell: Panel, curves: Iterable[Curve], *, closed: bool = False) -> str:
     """Return curves of a view as path data on the sheet; a curve that does not continue the one before begins a new subpath."""
     parts: list[str] = []
     last: _Point | None = None
@@ -130,7 +130,7 @@ def _line(start: _Point, end: _Point) -> str:
     return f"V{end[1]}" if start[0] == end[0] else f"L{end[0]} {end[1]}"
 
 
-def _arc(cell: Cell, arc: Arc, start: _Point, end: _Point) -> str:
+def _arc(cell: Panel, arc: Arc, start: _Point, end: _Point) -> str:
     """Return an elliptical arc of at most half a turn; a line if it is seen edge-on."""
     rx, ry = (number(cell.scale * hypot(*radius[:2])) for radius in (arc.major, arc.minor))
     if "0" in (rx, ry):
@@ -140,7 +140,7 @@ def _arc(cell: Cell, arc: Arc, start: _Point, end: _Point) -> str:
     return f"A{rx} {ry} {tilt} 0 {0 if turn > 0.0 else 1} {end[0]} {end[1]}"  # y points down on the sheet
 
 
-def _point(cell: Cell, point: Vector) -> _Point:
+def _point(cell: Panel, point: Vector) -> _Point:
     x, y = cell.on_sheet(point)
     return number(x), number(y)
 
@@ -166,14 +166,14 @@ _MAX_LENGTH = 1000  # characters: more do not fit into three lines
 
 def put_lines(group: Any, left: float, top: float, width: float, text: str, most: int = _MAX_LINES) -> float:
     """Add a text in lines, the first of them at `top`; return the position of the next line."""
-    lines = wrapped(text, width, most)
+    lines = wrap(text, width, most)
     paragraph = put(group, "text")
     for number, line in enumerate(lines):
         put(paragraph, "tspan", "", {"x": left, "y": top + number * LINE}, line)
     return top + len(lines) * LINE
 
 
-def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
+def wrap(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
     """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
     lines: list[str] = []
     line = ""
@@ -181,7 +181,7 @@ def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
         longer = f"{line} {word}" if line else word
         if line and text_width(longer) > width:
             if len(lines) == most - 1:
-                return [*lines, _shortened(line, width)]
+                return [*lines, _shorten(line, width)]
             lines.append(line)
             longer = word
         line = cut(longer, width)
@@ -190,10 +190,10 @@ def wrapped(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
 
 def cut(text: str, width: float) -> str:
     """Return a text, cut with "..." if it is wider."""
-    return text if text_width(text) <= width else _shortened(text, width)
+    return text if text_width(text) <= width else _shorten(text, width)
 
 
-def _shortened(text: str, width: float) -> str:
+def _shorten(text: str, width: float) -> str:
     while text and text_width(text) > width - SIZE:
         text = text[:-1]
     return f"{text.rstrip(' .,;:')}..."

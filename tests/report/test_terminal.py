@@ -14,7 +14,7 @@ from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
 from grader.report.console import excerpt_block, put
 from grader.report.inspection import Inspection, inspection_terminal, main_root
-from grader.report.order import Failure, earned_text, groups, in_order
+from grader.report.order import FailedCriterion, earned_text, groups, in_order
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source
@@ -100,7 +100,7 @@ def report_of(name: str) -> Report:
     return grade(RUBRIC, opened(URDF)) if name == "urdf" else SAMPLES[name].grade()
 
 
-def costs(report: Report) -> list[Failure]:
+def costs(report: Report) -> list[FailedCriterion]:
     """Return the failures that cost points."""
     return [failure for failure in in_order(report).failures if not failure.result.why_given]
 

@@ -53,7 +53,7 @@ class Slider(NamedTuple):
 
 def _sliders(scene: Scene) -> Iterator[Slider]:
     """Yield a slider for each joint that turns or slides, and whose child link has a pose in the picture."""
-    for number, joint in _placed(scene):
+    for number, joint in _joints_of(scene):
         if joint.type not in ("revolute", "continuous", "prismatic"):
             continue
         slides = joint.type == "prismatic"
@@ -86,14 +86,14 @@ def _range(joint: Joint) -> tuple[float, float]:
     return limit.lower, limit.upper
 
 
-def _still(scene: Scene) -> Iterator[str]:
+def _unmoved_joints(scene: Scene) -> Iterator[str]:
     """Yield a sentence for each joint that moves in the robot, but not on the page."""
-    for _, joint in _placed(scene):
+    for _, joint in _joints_of(scene):
         if joint.type in ("planar", "floating") and joint.name not in scene.robot.positions:
             yield f"{quoted(joint.name)} is {joint.type}: it stays at 0 here."
 
 
-def _placed(scene: Scene) -> Iterator[tuple[int, Joint]]:
+def _joints_of(scene: Scene) -> Iterator[tuple[int, Joint]]:
     """Yield the joints whose child link has a pose in the picture; of joints with the same name, the first."""
     names: set[str] = set()
     for number, joint in enumerate(scene.robot.robot.joints):
@@ -122,7 +122,7 @@ def render_robot_page(
     view = {
         "picture": picture,
         "sliders": sliders,
-        "still": tuple(_still(scene)),
+        "still": tuple(_unmoved_joints(scene)),
         "links": [*_links(scene)],
         "words": _words(picture, len(sliders)),
         "can_drive": any(wheel.is_free for wheel in scene.wheels),

@@ -10,7 +10,16 @@ from grader.report import content
 from grader.report.details import SYMBOLS, Details, result_details, skipped_text
 from grader.report.drawing_key import why_no_picture
 from grader.report.locations import SourceLine, diff_lines, location_text, source_lines
-from grader.report.order import Failure, Group, alike, earned_text, failures, groups, in_order, status_of
+from grader.report.order import (
+    CriteriaGroup,
+    FailedCriterion,
+    alike,
+    earned_text,
+    failures,
+    groups,
+    in_order,
+    status_of,
+)
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
 
@@ -84,11 +93,11 @@ def _criteria(report: Report) -> dict[str, object]:
     }
 
 
-def _part(title: str, some: list[Group]) -> tuple[str, str, list[Group]]:
+def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
     return title, earned_text(*(result for group in some for result in group.results)), some
 
 
-def _failure_card(failure: Failure, report: Report, printed: set[str]) -> Card:
+def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -> Card:
     """Return a failed criterion, with what is skipped because of it. Feedback is included once, and only without hints."""
     card = _card(failure.result, report)
     feedback = "" if card.hints or card.details.feedback in printed else card.details.feedback
