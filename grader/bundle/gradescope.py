@@ -62,7 +62,7 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 
 
 def package_files() -> dict[str, bytes]:
-    """Return the files of the package by their paths in a wheel: with the rubrics, without their reference solutions."""
+    """Return the files of the package by their paths in a wheel: with the rubrics, without their references."""
     own = {path: data for path, data in _files_of(_PACKAGE, _PACKAGE).items() if path.parts[0] != "rubrics"}
     rubrics = {PurePosixPath("rubrics", path.name): path.read_bytes() for path in shipped_rubrics().values()}
     return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
@@ -80,9 +80,9 @@ def _is_left_out(name: str) -> bool:
 
 
 def requirements(extra: str) -> list[str]:
-    """Return the requirements of the installed grader with one of its extras, for pip. Raises InputError if there is none.
+    """Return the requirements of the installed grader with one of its extras, for pip.
 
-    Those of an editable installation are as old as that: pip writes them.
+    Raises InputError if none is installed. Those of an editable installation are as old as that: pip writes them.
     """
     try:
         declared = requires(DISTRIBUTION) or []

@@ -42,7 +42,8 @@ class Body(NamedTuple):
 class Wheel(NamedTuple):
     """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive turn.
 
-    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it turns.
+    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it
+    turns.
     """
 
     link: str
@@ -56,8 +57,8 @@ class Wheel(NamedTuple):
 class Scene:
     """The content of a picture of a robot, in the frame of the link `frame`, whose z axis points up.
 
-    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order. `missing` are
-    sentences that say what is not shown, and why.
+    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order.
+    `missing` are sentences that say what is not shown, and why.
     """
 
     robot: Configuration
@@ -124,7 +125,7 @@ def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict
 
 
 def _bodies(robot: Configuration, poses: Mapping[str, Transform]) -> tuple[list[Body], list[str], list[str]]:
-    """Return the shapes of links that have a pose, and the names of links with a mesh, or with a shape that cannot be drawn."""
+    """Return the shapes of links with a pose, the links with a mesh, and those with a shape that cannot be drawn."""
     shown: list[Body] = []
     meshes: dict[str, None] = {}
     unshown: dict[str, None] = {}
@@ -172,7 +173,7 @@ def is_drawable(values: Vector) -> bool:
 
 
 def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
-    """Yield the links that are meant to roll, and those with a continuous joint and a round shape on the ground that roll."""
+    """Yield the links that are meant to roll, and those that roll with a round shape on the ground."""
     robot = scene.robot
     bottoms: dict[str, float] = {}
     for body in scene.bodies:

@@ -1,6 +1,7 @@
 """The sheet of a drawing: a scene in three views at one scale, side by side as in third-angle projection.
 
-The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points down.
+The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points
+down.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -37,8 +38,8 @@ class Seen(NamedTuple):
 def projection(scene: Scene, view: View) -> list[Seen]:
     """Return the bodies of a scene in a view from back to front.
 
-    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an exact
-    one needs the depths at each place of the view.
+    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an
+    exact one needs the depths at each place of the view.
     """
     return sorted(project(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
 
@@ -53,7 +54,7 @@ def project(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
 
 
 def with_fronts(bodies: Sequence[Seen]) -> Iterator[tuple[Seen, list[Seen]]]:
-    """Yield the bodies of a projection, each with those before it whose rectangles overlap its own, the nearest first."""
+    """Yield the bodies of a projection, each with those that may hide a part of it, the nearest first."""
     rows = [(*seen.extents[0], *seen.extents[1], seen) for seen in reversed(bodies)]
     for number in reversed(range(len(rows))):
         a, b, c, d, seen = rows[number]
@@ -102,7 +103,7 @@ class Panel(NamedTuple):
         return self.origin[0] + self.scale * point[0], self.origin[1] - self.scale * point[1]
 
     def direction(self, direction: Vector) -> Vector:
-        """Return a direction of the frame on the sheet, with y down; the third number is its component to the viewer."""
+        """Return a direction of the frame on the sheet, with y down, and its component to the viewer."""
         x, y, z = self.view.T_view_frame.rotate(direction)
         return (x, -y, z)
 

@@ -1,6 +1,7 @@
 """A report as annotations of its files: workflow commands for GitHub, and Code Climate's JSON for GitLab.
 
-GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a type counts the rest.
+GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a type counts the
+rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """

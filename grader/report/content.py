@@ -101,7 +101,7 @@ def package_line(report: Report) -> str:
 
 
 def summaries(report: Report) -> list[str]:
-    """Return what a report says first: how the grade came about, the URDF and the criteria, extra credit, the package."""
+    """Return what a report says first: how the grade came about, the URDF, the criteria, extra credit, the package."""
     return [*filter(None, (grade_line(report), summary(report), bonus_line(report), package_line(report)))]
 
 
@@ -123,7 +123,7 @@ def notes(report: Report) -> list[str]:
 
 
 def first_ignored(report: Report) -> list[str]:
-    """Return the other candidates for grading in a line, and the first ignored file; of many how many more there are."""
+    """Return the other candidates for grading in a line, and the first ignored file, with the number of the others."""
     others, ignored = [file.path for file in report.submission.other_candidates], report.submission.ignored
     lines = [f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"] if others else []
     more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
@@ -139,7 +139,7 @@ def ignored_lines(report: Report) -> list[str]:
 
 
 def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
-    """Yield the title of each part with its pieces of evidence and whether files were found; then the other pictures."""
+    """Yield the title of each part with its pieces of evidence and whether it was found; then the other pictures."""
     for part, exhibits in groupby(report.exhibits, key=lambda exhibits: exhibits.evidence.part):
         title = printable(report.rubric.part(part).title)
         yield title, [(_exhibits_text(found), bool(found.files)) for found in exhibits]

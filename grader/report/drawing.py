@@ -9,7 +9,7 @@ from typing import Any
 
 from lxml import etree
 
-from grader.drawing.curves import SIDE, Curve, View, inner_edges
+from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
@@ -63,7 +63,7 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view with the reference where it differs, and the driving directions of wheels.
+    """Return a small picture of a robot: one view, where the reference differs, and where wheels drive to.
 
     Rings mark the links of callouts without a visible difference.
     """
@@ -127,19 +127,13 @@ def _put_view(group: Any, cell: Panel, picture: Picture) -> None:
 
 
 def _put_bodies(group: Any, cell: Panel, bodies: Sequence[Seen]) -> None:
-    """Add the shapes from back to front with their edges, then lighter what others hide; thinner where they are small."""
+    """Add the shapes from back to front, then lighter the edges that others hide. Small shapes have thinner edges."""
     sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
     hidden: dict[str, list[Curve]] = {}
     for seen, fronts in with_fronts(bodies):
         inner = inner_edges(seen.body.shape, seen.pose)
-        look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
-        d = path_data(cell, seen.outline, closed=True)
-        body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
-        put(body, "title", text=seen.body.link[:_MAX_NAME])
-        # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
-        if visible := path_data(cell, (it.curve for it in inner if it.faces_viewer)):
-            put(group, "path", look, {"d": visible, **looks})
+        _put_body(group, cell, seen, inner, width)
         # What may be hidden is drawn again, whole, in the look for the colour of the shape that is around it.
         covered = [*(seen.outline if fronts else ()), *(it.curve for it in inner if fronts or not it.faces_viewer)]
         for curve, extents in ((curve, curve.extents()) for curve in covered):
@@ -148,6 +142,17 @@ def _put_bodies(group: Any, cell: Panel, bodies: Sequence[Seen]) -> None:
     for look, curves in sorted(hidden.items()):
         d = path_data(cell, curves)
         put(group, "path", look, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
+
+
+def _put_body(group: Any, cell: Panel, seen: Seen, inner: Sequence[Edge], width: float) -> None:
+    """Add a shape with its visible edges."""
+    look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
+    d = path_data(cell, seen.outline, closed=True)
+    body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
+    put(body, "title", text=seen.body.link[:_MAX_NAME])
+    # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
+    if visible := path_data(cell, (edge.curve for edge in inner if edge.faces_viewer)):
+        put(group, "path", look, {"d": visible, **looks})
 
 
 _STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"

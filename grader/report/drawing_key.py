@@ -1,4 +1,4 @@
-"""The words of a drawing: the key of its signs, the failed criteria that it marks, and the description of the picture for screen readers."""
+"""The words of a drawing: the key of its signs, the failed criteria, a description for screen readers."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -56,7 +56,7 @@ _Draw = Callable[[Signs, Place], None]
 
 
 def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None:
-    """Add the scale bar, and the meaning of each sign in the drawing; with a `legend` the criteria are listed below it."""
+    """Add the scale bar, and the meaning of each sign; with a `legend` the criteria are listed below it."""
     left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
     signs = Signs()
     length, words = sheet.bar

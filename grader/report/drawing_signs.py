@@ -1,4 +1,4 @@
-"""The signs of a drawing: ground, frames with axes, driving directions of wheels, outlines of the reference, numbers of callouts."""
+"""The signs of a drawing: ground, frames, driving directions of wheels, outlines of the reference, numbers."""
 
 from collections.abc import Iterable, Iterator
 from math import hypot
@@ -151,7 +151,7 @@ def _tip(cell: Panel, start: Place, axis: Vector, length: float = _AXIS) -> tupl
 
 
 def add_wheels(signs: Signs, cell: Panel, picture: Picture, labels: Labels) -> None:
-    """Add an arrow at each wheel for its driving direction at a positive turn, or a circle with a slash if it does not roll."""
+    """Add an arrow at each wheel for its driving direction; a circle with a slash if it does not roll."""
     for wheel in picture.scene.wheels:
         start = cell.place(wheel.centre)
         travel = cell.direction(wheel.travel) if wheel.travel else None

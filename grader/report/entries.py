@@ -31,7 +31,7 @@ _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has 
 
 
 class Page(NamedTuple):
-    """The report, the console, whether everything is printed, the feedback that is printed already, and how roomy it is.
+    """The report, the console, whether all is printed, the feedback that is printed already, and how roomy it is.
 
     A page of 24 rows is filled: the `room` is 2 as long as everything fits, then 1 without titles and groups, then 0
     without empty rows.
@@ -107,7 +107,7 @@ def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
 
 
 def _message(details: Details, result: Result) -> Text:
-    """Return the sentences of a failure: a mark and what the check found, or a fault of the grader, which stands out."""
+    """Return the sentences of a failure: a mark and what the check found, or a fault of the grader."""
     styles = ("bold", "dim") if result.manual_mark is not None else ("", "bold")
     if status_of(result) == "errored":
         styles = (STYLES["errored"], "")

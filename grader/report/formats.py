@@ -20,9 +20,9 @@ Need = Literal["", "console", "base", "identity", "picture"]
 class _Row(StrEnum):
     """A format: its name, `module:function` in this package, what that function needs, and the ending of its files.
 
-    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base` is
-    where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment; `picture`
-    is the relative address of the robot's drawing that is saved with the report.
+    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base`
+    is where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment;
+    `picture` is the relative address of the robot's drawing that is saved with the report.
     """
 
     function: str
@@ -101,9 +101,9 @@ def render(
 ) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
-    `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal`
-    shows everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises
-    InputError if the environment does not say whose result it is (Classroom 50).
+    `base` is where the submission is in its repository; without it its paths are the repository's. The format
+    `terminal` shows everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows.
+    Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
     if kind.needs == "console":
         return draw(partial(_load(kind.function), report, verbose=verbose), screen)

@@ -1,4 +1,4 @@
-"""JSON text that is the same bytes on every machine, and records: the keys of an object, from which data and schema follow."""
+"""JSON text that is the same bytes everywhere, and records of its keys, from which data and schemas follow."""
 
 import json
 import re
@@ -51,7 +51,7 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return plain data: points exact, floats to 1e-6, because machines differ in the last digits; no -0, NaN or infinity."""
+    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN or infinity."""
     match value:
         case float():
             return round(value, 6) + 0.0 if value - value == 0 else None
@@ -105,10 +105,10 @@ def each(kind: K, names: str) -> dict[str, K]:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A JSON object: for each key its type, and which attribute of the described value it has, or which function of that.
+    """A JSON object: for each key its type, and the attribute of the described value or the function of it.
 
-    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or what
-    a record describes. Keys in `optional` are absent where they would be empty.
+    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or
+    what a record describes. Keys in `optional` are absent where they would be empty.
     """
 
     keys: Mapping[str, "KeyType | Key"]

@@ -1,4 +1,4 @@
-"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and pages of an LMS.
+"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and LMS pages.
 
 Text of a submission is escape: it never becomes markup, HTML, a link or a mention.
 """
@@ -37,8 +37,8 @@ def render_markdown(report: Report, picture: str = "") -> str:
 def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there, so the
-    text names the files of `pictures`.
+    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there,
+    so the text names the files of `pictures`.
     """
     names = enumerated([code(printable(name)) for name in pictures])
     named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""

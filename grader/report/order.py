@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion: `adjusted` if the rubric adjusts it, else that of the manual mark or of the check.
+    """Return the status of a criterion: `adjusted` by the rubric, else that of the manual mark or the check.
 
     A manual mark is `passed` if it gives all points, and `partial` if it gives a part of them.
     """
@@ -54,7 +54,7 @@ def sum_text(results: tuple[Result, ...]) -> str:
 
 
 def earned_text(*results: Result) -> str:
-    """Return the points and the maximum of some criteria together: 8/14, above it with extra credit; –/14; 5/5 bonus."""
+    """Return the points and the maximum of criteria together: 8/14, above it with extra credit; –/14; 5/5 bonus."""
     most = worth(result.criterion for result in results)
     return f"{sum_text(results)}/{format_points(most.points) if most.points or not most.bonus else most.short}"
 
@@ -165,7 +165,7 @@ def _edit(failure: FailedCriterion) -> str:
 
 
 def _together(some: tuple[FailedCriterion, ...]) -> tuple[FailedCriterion, ...]:
-    """Return failures that one edit fixes: first that at the edited line, of the file before the robot, else the costliest."""
+    """Return failures that one edit fixes: at the edited line first, then of the file, then the costliest."""
 
     def rank(failure: FailedCriterion) -> tuple[bool, bool, Decimal]:
         where, at = failure.result.outcome.location, failure.result.hints[0].at
@@ -200,7 +200,7 @@ class CriteriaGroup(NamedTuple):
 
 
 def groups(report: Report) -> Iterator[CriteriaGroup]:
-    """Yield the criteria in the rubric's order, those about one thing together; the others under the title of their part."""
+    """Yield the criteria in the rubric's order, those about one thing together, else under the title of their part."""
     for (part, about), results in groupby(report.results, lambda one: (one.criterion.part, one.criterion.about)):
         yield CriteriaGroup(part, about or report.rubric.part(part).title, tuple(results))
 

@@ -1,13 +1,14 @@
-"""A report as the result file of a platform: Gradescope's results.json with a test for each criterion, or Classroom 50's result.json.
+"""A report as the result file of a platform: Gradescope's results.json or Classroom 50's result.json.
 
-In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give them in Gradescope. Extra
-credit has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the assignment; the score,
-which is given as a whole, may exceed them.
+In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give them in Gradescope.
+Extra credit has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the
+assignment; the score, which is given as a whole, may exceed them.
 https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 
-The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10, 100 and so on, so that none is
-rounded. Classroom 50 refuses scores above their maximum (schemas/result-v1.schema.json, validate_result of its runner.py). So the
-score is at most the maximum, even with extra credit. The test of a bonus shows its points, and is not part of the maximum.
+The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10, 100 and so on, so
+that none is rounded. Classroom 50 refuses scores above their maximum (schemas/result-v1.schema.json, validate_result of
+its runner.py). So the score is at most the maximum, even with extra credit. The test of a bonus shows its points, and
+is not part of the maximum.
 https://github.com/foundation50/classroom50
 """
 

@@ -141,10 +141,7 @@ def toml_text(value: object) -> str:
             return f"[{', '.join(map(toml_text, value))}]"
         case dict():
             return "{ " + ", ".join(f"{key} = {toml_text(item)}" for key, item in value.items()) + " }"
-        case None:
-            return "not checked"
-        case _:
-            return str(value)
+    return "not checked" if value is None else str(value)
 
 
 def _fill(text: str, width: int = _WIDTH) -> str:

@@ -1,4 +1,4 @@
-"""A report as SARIF 2.1.0, the subset that GitHub's code scanning reads: a result for each finding, a rule for each criterion or code.
+"""A report as SARIF 2.1.0, as GitHub reads it: a result for each finding, a rule for each criterion or code.
 
 https://docs.github.com/code-security/reference/code-scanning/sarif-files/sarif-support
 """

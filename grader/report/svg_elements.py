@@ -1,7 +1,7 @@
 """SVG elements: their looks in light and dark mode, curves as path data, escaped text and its estimated width.
 
-The looks for light mode and print are presentation attributes, which need no style sheet; a style sheet changes the colours of
-classes in dark mode.
+The looks for light mode and print are presentation attributes, which need no style sheet; a style sheet changes the
+colours of classes in dark mode.
 """
 
 from collections.abc import Iterable, Mapping
@@ -25,7 +25,7 @@ _LINE = {"fill": "none", "stroke-linecap": "round", "stroke-linejoin": "round"}
 _AXIS = {**_LINE, "stroke-width": "1.8"}
 _INK, _PAPER = "#1c1f23", "#ffffff"
 _DARK_INK, _DARK_PAPER = "#e8eaed", "#16191d"
-# The looks of each class: presentation attributes, and the colours that dark mode changes. No sign depends on colour alone.
+# The looks of each class: presentation attributes, and the colours in dark mode. No sign depends on colour alone.
 LOOKS: Mapping[str, tuple[Mapping[str, str], Mapping[str, str]]] = {
     "paper": ({"fill": _PAPER}, {"fill": _DARK_PAPER}),
     "rule": ({**_LINE, "stroke": "#c9ced6"}, {"stroke": "#3a4048"}),
@@ -108,7 +108,7 @@ def edge_look(rgba: Rgba) -> str:
 
 
 def path_data(cell: Panel, curves: Iterable[Curve], *, closed: bool = False) -> str:
-    """Return curves of a view as path data on the sheet; a curve that does not continue the one before begins a new subpath."""
+    """Return curves of a view as path data on the sheet; one that does not continue the one before begins a subpath."""
     parts: list[str] = []
     last: _Point | None = None
     for curve in curves:
@@ -153,8 +153,9 @@ def segments(lines: Iterable[tuple[Place, Place]]) -> str:
 
 def circle(centre: Place, radius: float) -> str:
     """Return a circle on the sheet as path data."""
-    half = f"{number(radius)} {number(radius)} 0 1 1"
-    return f"M{number(centre[0] - radius)} {number(centre[1])}a{half} {number(2 * radius)} 0a{half} {number(-2 * radius)} 0"
+    start = f"M{number(centre[0] - radius)} {number(centre[1])}"
+    half = f"a{number(radius)} {number(radius)} 0 1 1"
+    return f"{start}{half} {number(2 * radius)} 0{half} {number(-2 * radius)} 0"
 
 
 SIZE = 12.0  # pixels

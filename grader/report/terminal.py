@@ -67,7 +67,7 @@ def _package_line(page: Page) -> str:
 
 
 def _show_consequences(order: Order, page: Page) -> None:
-    """Print failures whose error is carried forward, unless they are above, and what is skipped although nothing failed."""
+    """Print failures with an error that is carried forward, and what is skipped although nothing failed."""
     carried = [failure.result for failure in order.failures if failure.result.why_given and not page.is_verbose]
     lines = [carried_text(carried)] if carried else []
     lines += [skipped_text(cause, some) for cause, some in alike(order.skipped, lambda one: one.because or "")]

@@ -1,4 +1,4 @@
-"""The data of a robot for the script of a page: links, joints, shapes and wheels, from which the script computes all poses."""
+"""The data of a robot for the script of a page: links, joints, shapes and wheels. The script computes all poses."""
 
 from collections.abc import Collection, Mapping
 from math import isfinite

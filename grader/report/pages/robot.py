@@ -33,10 +33,12 @@ _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 
 
 class Slider(NamedTuple):
-    """The control of a joint: its number in the file, its range and position in degrees or mm; `scale` makes them radians or metres.
+    """The control of a joint: its number in the file, its range and position in degrees or mm.
 
-    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a continuous joint
-    `wraps` after a full turn.
+    `scale` makes them radians or metres.
+
+    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a
+    continuous joint `wraps` after a full turn.
     """
 
     joint: int
@@ -78,7 +80,7 @@ def _note(joint: Joint, value: float, follows: bool) -> str:
 
 
 def _range(joint: Joint) -> tuple[float, float]:
-    """Return the range of a joint in radians or metres; without usable limits, half a turn or a metre in both directions."""
+    """Return the range of a joint in radians or metres; without usable limits, half a turn or a metre each way."""
     limit = joint.limit
     most = _MAX_SLIDE if joint.type == "prismatic" else pi
     if joint.type == "continuous" or limit is None or not 0.0 < limit.upper - limit.lower < _MAX_RANGE:

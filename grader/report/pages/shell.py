@@ -1,4 +1,4 @@
-"""The common parts of all pages: templates that escape all text, one file without requests, a content security policy."""
+"""The common parts of all pages: templates that escape all text, one file without requests, a policy."""
 
 import hashlib
 import json
@@ -35,7 +35,7 @@ def render_page(template: str, values: Mapping[str, object], data: Mapping[str, 
     """Return a page as one HTML file.
 
     Args:
-        template: The name of the template. It extends base.html and gets the `values`. Text is escaped, and made printable.
+        template: The name of the template. It extends base.html and gets the `values`. Text is escaped and printable.
         values: The values of the template; markup only as `Markup`.
         data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.

@@ -98,7 +98,7 @@ def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[Criteri
 
 
 def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -> Card:
-    """Return a failed criterion, with what is skipped because of it. Feedback is included once, and only without hints."""
+    """Return a failed criterion, with what is skipped because of it, and feedback once, only without hints."""
     card = _card(failure.result, report)
     feedback = "" if card.hints or card.details.feedback in printed else card.details.feedback
     printed.add(feedback)
