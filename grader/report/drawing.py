@@ -10,14 +10,13 @@ from typing import Any
 from lxml import etree
 
 from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
-from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import result_details
 from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
-from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
+from grader.report.drawing_signs import ViewSigns
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import (
     DARK_RULES,
@@ -69,12 +68,10 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     """
     root = _root(f"The robot in the {view.title} view", description(picture))
     cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
-    labels, above, group = Labels(cell), Signs(), put(root, "g")
+    signs, group = ViewSigns(cell, picture), put(root, "g")
     _put_bodies(group, cell, projection(picture.scene, view))
-    add_ground(above, cell, picture, labels)
-    add_outlines(above, cell, picture, labels)
-    add_frames(above, cell, picture, labels, [link for link in picture.frames if link in picture.scene.poses])
-    add_wheels(above, cell, picture, labels)
+    signs.add_ground()
+    _add_robot_signs(signs, [link for link in picture.frames if link in picture.scene.poses])
     shown = {
         *picture.frames,
         *(body.link for body in picture.outlines),
@@ -82,8 +79,8 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     }
     for callout in picture.callouts:
         if callout.point is not None and callout.link not in shown:
-            above.line("leader", circle(cell.place(callout.point), _RING))
-    above.put(group)
+            signs.line("leader", circle(cell.place(callout.point), _RING))
+    signs.put(group)
     return _set_size(root, *_THUMBNAIL)
 
 
@@ -115,15 +112,19 @@ def _empty(title: str, words: str, height: float) -> Any:
 
 
 def _put_view(group: Any, cell: Panel, picture: Picture) -> None:
-    labels, below, above = Labels(cell), Signs(), Signs()
-    add_ground(below, cell, picture, labels)
-    below.put(group)
+    signs = ViewSigns(cell, picture)
+    signs.add_ground()
+    signs.put(group)
     _put_bodies(group, cell, projection(picture.scene, cell.view))
-    add_outlines(above, cell, picture, labels)
-    add_frames(above, cell, picture, labels, framed_links(picture))
-    add_wheels(above, cell, picture, labels)
-    add_callouts(above, cell, picture, labels)
-    above.put(group)
+    _add_robot_signs(signs, framed_links(picture))
+    signs.add_callouts()
+    signs.put(group)
+
+
+def _add_robot_signs(signs: ViewSigns, framed: Iterable[str]) -> None:
+    signs.add_outlines()
+    signs.add_frames(framed)
+    signs.add_wheels()
 
 
 def _put_bodies(group: Any, cell: Panel, bodies: Sequence[Seen]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 from grader.drawing.picture import Callout, Picture, picture_of
 from grader.drawing.sheet import WIDTH, Place, Sheet
 from grader.grading.report import Report
-from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
+from grader.report.drawing_signs import Signs, is_lifted, wheel_sign
 from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
 from grader.submission.urdf import Absent
@@ -75,7 +75,7 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     scene, reference = picture.scene, picture.reference
     if any(callout.point is not None for callout in picture.callouts):
         yield (
-            lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1),
+            lambda signs, at: signs.badge((at[0] + 12.0, at[1]), 1),
             f"points lost{': see below' if legend else ''}",
         )
     grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
@@ -113,7 +113,7 @@ def put_legend(root: Any, top: float, callouts: Sequence[Callout], notes: Sequen
     badges, strong, plain = Signs(), put(root, "g", "strong"), put(root, "g", "text")
     left, width, y = _LEFT + _INDENT, WIDTH - 2.0 * _LEFT - _INDENT, top + 28.0
     for callout in callouts:
-        add_badge(badges, (_LEFT + 9.0, y - 4.0), callout.number)
+        badges.badge((_LEFT + 9.0, y - 4.0), callout.number)
         y = put_lines(strong, left, y, width, heading(callout))
         for result in callout.results:
             criterion = result.criterion
