@@ -38,10 +38,10 @@ class Rectangle(NamedTuple):
 
 
 class Labels:
-    """The labels of one cell: the rectangles that they have taken, and those of signs that they should not cover."""
+    """The labels of one panel: the rectangles that they have taken, and those of signs that they should not cover."""
 
-    def __init__(self, cell: Panel) -> None:
-        self._room = Rectangle(cell.left, cell.top + TITLE, cell.left + cell.width, cell.top + cell.height)
+    def __init__(self, panel: Panel) -> None:
+        self._room = Rectangle(panel.left, panel.top + TITLE, panel.left + panel.width, panel.top + panel.height)
         self._taken: list[Rectangle] = []
         self._marks: list[Rectangle] = []
 
@@ -61,8 +61,8 @@ class Labels:
     def put_near(self, place: Place, size: float) -> Place:
         """Put a square label near a place and return its centre.
 
-        The label overlaps no other label. Of the free places, the one with the lowest cost is taken: its distance, and the
-        signs that it covers.
+        It overlaps no other label. Of the free places, that with the lowest cost is taken: its distance, and the signs
+        that it covers.
         """
         best, lowest = place, 1e6
         for ring, direction in product(_RINGS, range(_DIRECTIONS)):
@@ -87,7 +87,6 @@ class Labels:
 
     def _is_free(self, box: Rectangle) -> bool:
         room = self._room
-        is_inside = (
-            room.left <= box.left and box.right <= room.right and room.top <= box.top and box.bottom <= room.bottom
-        )
-        return is_inside and not any(box.overlaps(other) for other in self._taken)
+        if box.left < room.left or box.right > room.right or box.top < room.top or box.bottom > room.bottom:
+            return False
+        return not any(box.overlaps(other) for other in self._taken)

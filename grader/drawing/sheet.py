@@ -109,9 +109,9 @@ class Panel(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """The cells of the three views, the position of the key, the total height, and pixels per metre."""
+    """The panels of the three views, the position of the key, the total height, and pixels per metre."""
 
-    cells: tuple[Panel, ...]
+    panels: tuple[Panel, ...]
     key: Place
     height: float
     scale: float
@@ -127,34 +127,32 @@ class Sheet(NamedTuple):
 
 
 def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
-    """Return the sheet for a picture; its cells begin at `top`."""
+    """Return the sheet for a picture; its panels begin at `top`."""
     low, high = _bounds(picture)
     x, y, z = (max(most - least, _SMALLEST) for least, most in zip(low, high, strict=True))
     room = WIDTH - 4.0 * MARGIN
     scale = min(room / (x + y), (WIDTH - KEY_WIDTH - 2.0 * MARGIN) / x, _MAX_HEIGHT / (y + z))
-    right = max(y * scale + 2.0 * MARGIN, KEY_WIDTH)
-    columns = ((0.0, WIDTH - right), (WIDTH - right, right))
-    rows = (max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT), z * scale + 2.0 * MARGIN + TITLE)
-    middle = _middle(low, high)
-    cells = []
-    for view, column, row in ((TOP, 0, 0), (SIDE, 0, 1), (FRONT, 1, 1)):
-        left, width = columns[column]
-        cells.append(_cell(view, (left, top + sum(rows[:row])), (width, rows[row]), middle, scale, TITLE))
-    return Sheet(tuple(cells), (columns[1][0], top), top + sum(rows), scale)
+    right, upper = max(y * scale + 2.0 * MARGIN, KEY_WIDTH), max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT)
+    left, lower, middle = WIDTH - right, z * scale + 2.0 * MARGIN + TITLE, _middle(low, high)
+    panels = (
+        _panel(TOP, (0.0, top), (left, upper), middle, scale, TITLE),
+        _panel(SIDE, (0.0, top + upper), (left, lower), middle, scale, TITLE),
+        _panel(FRONT, (left, top + upper), (right, lower), middle, scale, TITLE),
+    )
+    return Sheet(panels, (left, top), top + (upper + lower), scale)
 
 
-def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Panel:
-    """Return the cell of a single view, in a rectangle of this size in pixels."""
+def single_panel(picture: Picture, view: View, width: float, height: float, margin: float) -> Panel:
+    """Return the panel of a single view, in a rectangle of this size in pixels."""
     low, high = _bounds(picture)
     (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
-    scale = min(
-        (width - 2.0 * margin) / max(abs(c - a), _SMALLEST), (height - 2.0 * margin) / max(abs(d - b), _SMALLEST)
-    )
-    return _cell(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
+    pairs = ((width, abs(c - a)), (height, abs(d - b)))
+    scale = min((room - 2.0 * margin) / max(size, _SMALLEST) for room, size in pairs)
+    return _panel(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
 
 
-def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Panel:
-    """Return a cell with the robot centred below the title."""
+def _panel(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Panel:
+    """Return a panel with the robot centred below the title."""
     u, v, _ = view.T_view_frame.apply(middle)
     origin = corner[0] + size[0] / 2.0 - scale * u, corner[1] + (title + size[1]) / 2.0 + scale * v
     return Panel(view, *corner, *size, origin, scale)

@@ -11,7 +11,7 @@ from lxml import etree
 
 from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
 from grader.drawing.picture import Picture, picture_of, plain_picture
-from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
+from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_panel, with_fronts
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import result_details
@@ -54,9 +54,9 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     titles = put(root, "g", "faint")
     notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
-    for cell in sheet.cells:
-        put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
-        _put_view(put(root, "g"), cell, picture)
+    for panel in sheet.panels:
+        put(titles, "text", "", {"x": panel.left + 14.0, "y": panel.top + 14.0}, panel.view.title)
+        _put_view(put(root, "g"), panel, picture)
     put_key(put(root, "g"), sheet, picture, legend=legend)
     return _set_size(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
@@ -67,9 +67,9 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     Rings mark the links of callouts without a visible difference.
     """
     root = _root(f"The robot in the {view.title} view", description(picture))
-    cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
-    signs, group = ViewSigns(cell, picture), put(root, "g")
-    _put_bodies(group, cell, projection(picture.scene, view))
+    panel = single_panel(picture, view, *_THUMBNAIL, _MARGIN)
+    signs, group = ViewSigns(panel, picture), put(root, "g")
+    _put_bodies(group, panel, projection(picture.scene, view))
     signs.add_ground()
     _add_robot_signs(signs, [link for link in picture.frames if link in picture.scene.poses])
     shown = {
@@ -79,7 +79,7 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     }
     for callout in picture.callouts:
         if callout.point is not None and callout.link not in shown:
-            signs.line("leader", circle(cell.place(callout.point), _RING))
+            signs.line("leader", circle(panel.place(callout.point), _RING))
     signs.put(group)
     return _set_size(root, *_THUMBNAIL)
 
@@ -111,11 +111,11 @@ def _empty(title: str, words: str, height: float) -> Any:
     return _set_size(root, WIDTH, height)
 
 
-def _put_view(group: Any, cell: Panel, picture: Picture) -> None:
-    signs = ViewSigns(cell, picture)
+def _put_view(group: Any, panel: Panel, picture: Picture) -> None:
+    signs = ViewSigns(panel, picture)
     signs.add_ground()
     signs.put(group)
-    _put_bodies(group, cell, projection(picture.scene, cell.view))
+    _put_bodies(group, panel, projection(picture.scene, panel.view))
     _add_robot_signs(signs, framed_links(picture))
     signs.add_callouts()
     signs.put(group)
@@ -127,32 +127,32 @@ def _add_robot_signs(signs: ViewSigns, framed: Iterable[str]) -> None:
     signs.add_wheels()
 
 
-def _put_bodies(group: Any, cell: Panel, bodies: Sequence[Seen]) -> None:
+def _put_bodies(group: Any, panel: Panel, bodies: Sequence[Seen]) -> None:
     """Add the shapes from back to front, then lighter the edges that others hide. Small shapes have thinner edges."""
-    sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
+    sizes = [panel.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
     hidden: dict[str, list[Curve]] = {}
     for seen, fronts in with_fronts(bodies):
         inner = inner_edges(seen.body.shape, seen.pose)
-        _put_body(group, cell, seen, inner, width)
+        _put_body(group, panel, seen, inner, width)
         # What may be hidden is drawn again, whole, in the look for the colour of the shape that is around it.
         covered = [*(seen.outline if fronts else ()), *(it.curve for it in inner if fronts or not it.faces_viewer)]
         for curve, extents in ((curve, curve.extents()) for curve in covered):
             around = next((other for other in fronts if other.encloses(extents)), seen)
             hidden.setdefault(edge_look(around.body.rgba), []).append(curve)
     for look, curves in sorted(hidden.items()):
-        d = path_data(cell, curves)
+        d = path_data(panel, curves)
         put(group, "path", look, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
 
 
-def _put_body(group: Any, cell: Panel, seen: Seen, inner: Sequence[Edge], width: float) -> None:
+def _put_body(group: Any, panel: Panel, seen: Seen, inner: Sequence[Edge], width: float) -> None:
     """Add a shape with its visible edges."""
     look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
-    d = path_data(cell, seen.outline, closed=True)
+    d = path_data(panel, seen.outline, closed=True)
     body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
     put(body, "title", text=seen.body.link[:_MAX_NAME])
     # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
-    if visible := path_data(cell, (edge.curve for edge in inner if edge.faces_viewer)):
+    if visible := path_data(panel, (edge.curve for edge in inner if edge.faces_viewer)):
         put(group, "path", look, {"d": visible, **looks})
 
 

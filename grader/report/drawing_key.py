@@ -10,6 +10,7 @@ from grader.grading.report import Report
 from grader.report.drawing_signs import Signs, is_lifted, wheel_sign
 from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
+from grader.robot.transforms import Vector
 from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, printable
 
@@ -72,26 +73,28 @@ def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None
 
 def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     """Yield the signs of a drawing with their meanings."""
-    scene, reference = picture.scene, picture.reference
+    travels = [wheel.travel is not None for wheel in picture.scene.wheels]
     if any(callout.point is not None for callout in picture.callouts):
-        yield (
-            lambda signs, at: signs.badge((at[0] + 12.0, at[1]), 1),
-            f"points lost{': see below' if legend else ''}",
-        )
-    grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
-    is_elsewhere = grounds[0] is not None and grounds[1] is not None and is_lifted(grounds[0], grounds[1])
-    if picture.outlines or picture.frames or is_elsewhere:
+        yield lambda signs, at: signs.badge((at[0] + 12.0, at[1]), 1), f"points lost{': see below' if legend else ''}"
+    if picture.outlines or picture.frames or _is_lifted(picture):
         yield partial(_draw_line, "reference"), "reference solution"
-    if any(wheel.travel is not None for wheel in scene.wheels):
-        yield (
-            lambda signs, at: signs.line("arrow", wheel_sign((at[0] - 3.0, at[1]), (1.0, 0.0, 0.0))),
-            "driving direction, positive turn",
-        )
-    if any(wheel.travel is None for wheel in scene.wheels):
-        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "wheel does not roll"
+    if any(travels):
+        yield partial(_draw_wheel, -3.0, (1.0, 0.0, 0.0)), "driving direction, positive turn"
+    if not all(travels):
+        yield partial(_draw_wheel, 12.0, None), "wheel does not roll"
     yield _draw_axes, "frame of a link: x, y, z"
-    if len(scene.bodies) > 1:
+    if len(picture.scene.bodies) > 1:
         yield partial(_draw_line, "hidden"), "hidden edge"
+
+
+def _is_lifted(picture: Picture) -> bool:
+    ground, reference = picture.scene.ground, picture.reference
+    expected = reference.ground if reference is not None else None
+    return ground is not None and expected is not None and is_lifted(ground, expected)
+
+
+def _draw_wheel(left: float, travel: Vector | None, signs: Signs, at: Place) -> None:
+    signs.line("arrow", wheel_sign((at[0] + left, at[1]), travel))
 
 
 def _draw_line(look: str, signs: Signs, at: Place) -> None:

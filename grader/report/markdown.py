@@ -93,10 +93,9 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
         yield f"{item}\n\n{indent(text, '  ')}" if text else item
     for cause, some in alike(order.skipped, lambda result: result.because or ""):
         yield escape(skipped_text(cause, some))
-    for title, results in (("Needs manual grading", order.pending), *order.remarks):
-        if results:
-            yield f"## {title}"
-            yield from (_item(result, report, shown, answers=answers) for result in results)
+    for title, results in order.sections:
+        yield f"## {title}"
+        yield from (_item(result, report, shown, answers=answers) for result in results)
     if order.passed:
         yield "## Passed"
     yield from filter(None, map(_fold_passed, groups(report)))

@@ -117,6 +117,11 @@ class Order(NamedTuple):
         found = (("Marked manually", self.marked), ("Adjusted", self.adjusted), ("Comments", self.commented))
         return tuple((title, results) for title, results in found if results)
 
+    @property
+    def sections(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
+        """What needs manual grading, and the remarks."""
+        return (*((("Needs manual grading", self.pending),) if self.pending else ()), *self.remarks)
+
 
 def in_order(report: Report) -> Order:
     """Return the criteria of a report in the order in which people read them."""

@@ -77,7 +77,6 @@ def _shares(report: Report) -> tuple[float, float]:
 def _criteria(report: Report) -> dict[str, object]:
     order, printed = in_order(report), set[str]()
     skipped = alike(order.skipped, lambda result: result.because or "")
-    sections = (("Needs manual grading", order.pending), *order.remarks)
     by_part = groupby(groups(report), key=lambda group: group.part)
     results = (*(failure.result for failure in order.failures), *order.pending, *order.marked)
     return {
@@ -87,7 +86,7 @@ def _criteria(report: Report) -> dict[str, object]:
         "location_text": location_text,
         "failures": [_failure_card(failure, report, printed) for failure in order.failures],
         "skipped": [skipped_text(cause, some) for cause, some in skipped],
-        "sections": [(title, [_card(result, report) for result in some]) for title, some in sections if some],
+        "sections": [(title, [_card(result, report) for result in some]) for title, some in order.sections],
         "cards": {result.criterion.id for result in results},  # that others refer to
         "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
     }
