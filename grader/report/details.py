@@ -70,6 +70,12 @@ def result_details(result: Result, report: Report) -> Details:
     )
 
 
+def remarks_on(result: Result, report: Report) -> tuple[str, ...]:
+    """Return why a criterion is adjusted, and a grader's comment; nothing without either."""
+    details = result_details(result, report)
+    return details.words if result.is_adjusted else tuple(filter(None, [details.comment]))
+
+
 def _sentences(result: Result) -> tuple[str, ...]:
     """Return what a criterion's points are due to: an adjustment, a manual mark, or what the check found."""
     outcome, given = result.outcome, result.manual_mark

@@ -14,7 +14,7 @@ from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_panel, with_fronts
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
-from grader.report.details import result_details
+from grader.report.details import remarks_on
 from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
 from grader.report.drawing_signs import ViewSigns
 from grader.report.inspection import Inspection, effect
@@ -51,7 +51,6 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     """
     root = _root(title or "Three views of the robot", description(picture))
     sheet = sheet_of(picture, top)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     titles = put(root, "g", "faint")
     notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
     for panel in sheet.panels:
@@ -66,7 +65,7 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
 
     Rings mark the links of callouts without a visible difference.
     """
-    root = _root(f"The robot in the {view.title} view", description(picture))
+    root = _root(f"The robot in the {view.title} view", description(picture), has_paper=False)
     panel = single_panel(picture, view, *_THUMBNAIL, _MARGIN)
     signs, group = ViewSigns(panel, picture), put(root, "g")
     _put_bodies(group, panel, projection(picture.scene, view))
@@ -94,21 +93,16 @@ def _set_size(root: Any, width: float, height: float) -> Any:
     return root
 
 
-def _root(title: str, words: str) -> Any:
-    root = etree.Element(
-        f"{{{SVG}}}svg", {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}, nsmap=_NAMESPACES
-    )
+def _root(title: str, words: str, *, has_paper: bool = True) -> Any:
+    """Return the root of a drawing, without its size."""
+    looks = {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}
+    root = etree.Element(f"{{{SVG}}}svg", looks, nsmap=_NAMESPACES)
     put(root, "title", text=title[:_MAX_TITLE])
     if words:
         put(root, "desc", text=words)
+    if has_paper:
+        put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     return root
-
-
-def _empty(title: str, words: str, height: float) -> Any:
-    """Return a drawing without a robot."""
-    root = _root(title, words)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
-    return _set_size(root, WIDTH, height)
 
 
 def _put_view(group: Any, panel: Panel, picture: Picture) -> None:
@@ -163,19 +157,10 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    words = (grade_line(report), summary(report), bonus_line(report), *_remark_lines(report))
-    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
-
-
-def _remark_lines(report: Report) -> list[str]:
-    """Return the adjustments and comments, a line for each."""
-    lines: list[str] = []
+    words = [grade_line(report), summary(report), bonus_line(report)]
     for result in report.results:
-        details, name = result_details(result, report), printable(result.criterion.id)
-        lines += [
-            f"{name}: {text}" for text in (*(details.sentences if result.is_adjusted else ()), details.comment) if text
-        ]
-    return lines
+        words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result, report)]
+    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
 
 
 def inspection_svg(inspection: Inspection) -> str:
@@ -192,7 +177,8 @@ def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str
     lines = [line for text in filter(None, words) for line in wrap(text, _WIDTH)]
     lines += [] if picture is not None else ["", *wrap(reason, _WIDTH)]
     top = _TITLE + LINE * len(lines) + 8.0
-    root = drawing_element(picture, title, top) if picture is not None else _empty(title, reason, top)
+    empty = _set_size(_root(title, reason), WIDTH, top)
+    root = drawing_element(picture, title, top) if picture is not None else empty
     put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
     faint = put(root, "g", "faint")
     for number, line in enumerate(lines, 1):

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 from grader.grading.report import Hint, Report, Result
 from grader.report.content import other_problems
-from grader.report.details import result_details, sentence
+from grader.report.details import remarks_on, result_details, sentence
 from grader.report.locations import (
     Base,
     RepositoryLocation,
@@ -100,10 +100,9 @@ def _undecided_finding(report: Report, base: Base) -> Iterator[Finding]:
 def _remarks(report: Report, base: Base) -> Iterator[Finding]:
     """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
     for result in report.results:
-        if not is_failure(result) and (result.is_adjusted or result.comment):
-            details = result_details(result, report)
-            text = "\n".join(details.words if result.is_adjusted else (details.comment,))
-            yield Finding(result.criterion.id, "note", text, None, _fallback(report, base, result))
+        remarks = remarks_on(result, report) if not is_failure(result) else ()
+        if remarks:
+            yield Finding(result.criterion.id, "note", "\n".join(remarks), None, _fallback(report, base, result))
 
 
 def _text(lines: list[str], where: Location | None, base: Base) -> str:

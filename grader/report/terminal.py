@@ -12,7 +12,7 @@ from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped
-from grader.report.details import carried_text, pending_reason, result_details, skipped_text
+from grader.report.details import carried_text, pending_reason, remarks_on, result_details, skipped_text
 from grader.report.entries import INDENT, Page, show_answer, show_criteria, show_failure
 from grader.report.order import Order, alike, earned_text, groups, in_order, is_manual, status_of
 from grader.text import counted, enumerated, first_lines, printable
@@ -104,7 +104,7 @@ def _show_remarks(order: Order, page: Page) -> None:
             if page.is_verbose and not result.is_adjusted:
                 show_answer(result, page)
                 continue
-            words = " ".join(details.words) if result.is_adjusted else details.comment or details.sentences[0]
+            words = " ".join(remarks_on(result, page.report)) or details.sentences[0]
             page.item(status_of(result), (printable(result.criterion.id), "bold"), f"  {earned_text(result)}: {words}")
 
 
