@@ -72,8 +72,10 @@ def result_details(result: Result, report: Report) -> Details:
 
 def remarks_on(result: Result, report: Report) -> tuple[str, ...]:
     """Return why a criterion is adjusted, and a grader's comment; nothing without either."""
+    if not (result.is_adjusted or result.comment):
+        return ()
     details = result_details(result, report)
-    return details.words if result.is_adjusted else tuple(filter(None, [details.comment]))
+    return details.words if result.is_adjusted else (details.comment,)
 
 
 def _sentences(result: Result) -> tuple[str, ...]:

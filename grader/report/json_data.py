@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from operator import attrgetter
@@ -52,17 +52,15 @@ def exact(points: Decimal | None) -> int | float | None:
 
 def rounded(value: Any) -> Any:
     """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN or infinity."""
-    match value:
-        case float():
-            return round(value, 6) + 0.0 if value - value == 0 else None
-        case Decimal():
-            return exact(value)
-        case tuple() | list():
-            return [rounded(item) for item in value]
-        case Mapping():
-            return {key: rounded(item) for key, item in value.items()}
-        case _:
-            return value
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, float):
+        return round(value, 6) + 0.0 if value - value == 0 else None
+    if isinstance(value, Decimal):
+        return exact(value)
+    if isinstance(value, Mapping):
+        return {key: rounded(item) for key, item in value.items()}
+    return [rounded(item) for item in value]
 
 
 K = TypeVar("K")
@@ -103,31 +101,32 @@ def each(kind: K, names: str) -> dict[str, K]:
     return dict.fromkeys(names.split(), kind)
 
 
-@dataclass(frozen=True, slots=True)
 class Record:
     """A JSON object: for each key its type, and the attribute of the described value or the function of it.
 
-    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or
-    what a record describes. Keys in `optional` are absent where they would be empty.
+    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or what
+    a record describes. Keys in `optional` are absent where they would be empty.
     """
 
-    keys: Mapping[str, "KeyType | Key"]
-    optional: tuple[str, ...] = ()
-
-    def __iter__(self) -> "Iterator[tuple[str, KeyType, Origin]]":
-        """Yield each key with its type and its value."""
-        for name, key in self.keys.items():
-            yield (name, *key) if isinstance(key, tuple) else (name, key, name)
+    # mypy does not check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
+    def __init__(self, keys: Mapping[str, "KeyType | Key"], optional: tuple[str, ...] = ()) -> None:
+        self.keys, self.optional = keys, optional
+        pairs = {name: key if isinstance(key, tuple) else (key, name) for name, key in keys.items()}
+        self._kinds = {name: kind for name, (kind, _) in pairs.items()}
+        self._readers = {name: _reader(*pair) for name, pair in pairs.items()}
 
     @property
     def schema(self) -> Schema:
         """The schema of the object."""
-        return record({name: _schema(kind) for name, kind, _ in self}, self.optional)
+        return record({name: _schema(kind) for name, kind in self._kinds.items()}, self.optional)
 
     def data(self, value: Any) -> dict[str, Any]:
         """Return the object that describes a value."""
-        found = {name: _data(kind, origin, value) for name, kind, origin in self}
-        return {name: item for name, item in found.items() if item or name not in self.optional}
+        found = {name: read(value) for name, read in self._readers.items()}
+        for name in self.optional:
+            if not found[name]:
+                del found[name]
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,18 +159,22 @@ def _schema(kind: KeyType) -> Schema:
     return kind
 
 
-def _data(kind: KeyType, origin: Origin, value: Any) -> Any:
-    found = attrgetter(origin)(value) if isinstance(origin, str) else origin(value)
+def _reader(kind: KeyType, origin: Origin) -> Callable[[Any], Any]:
+    """Return the function from a value to what a key of its record has."""
+    get = attrgetter(origin) if isinstance(origin, str) else origin
     match kind:
         case Many():
-            return list(map(kind.of.data, found))
-        case Record() | Maybe() if found is None:
-            return None
-        case Record():
-            return kind.data(found)
+            return lambda value: list(map(kind.of.data, get(value)))
         case Maybe():
-            return kind.of.data(found)
-    return rounded(found) if isinstance(origin, str) else found
+            return lambda value: _optional(kind.of, get(value))
+        case Record():
+            return lambda value: _optional(kind, get(value))
+    is_plain = callable(origin) or kind.get("type") in ("string", "integer", "boolean")
+    return get if is_plain else lambda value: rounded(get(value))
+
+
+def _optional(of: Record, found: Any) -> dict[str, Any] | None:
+    return of.data(found) if found is not None else None
 
 
 def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:
