@@ -104,8 +104,8 @@ def each(kind: K, names: str) -> dict[str, K]:
 class Record:
     """A JSON object: for each key its type, and the attribute of the described value or the function of it.
 
-    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or what
-    a record describes. Keys in `optional` are absent where they would be empty.
+    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or
+    what a record describes. Keys in `optional` are absent where they would be empty.
     """
 
     # mypy does not check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
