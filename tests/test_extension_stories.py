@@ -142,8 +142,8 @@ def test_a_new_rubric(project: Path) -> None:
 def test_a_new_format(project: Path) -> None:
     """A format is a module, a row of the registry, a row of the documentation and a line of the changelog."""
     (project / "grader/report/line.py").write_text(FORMAT, encoding="utf-8")
-    row = '    LINE = "line", "line", "line:render_line"'
-    replace(project / "grader/report/formats.py", "\n\n    def __new__", f"\n{row}\n\n    def __new__")
+    row, last = '    LINE = "line", "line:render_line"', '"drawing:render_svg"\n'
+    replace(project / "grader/report/formats.py", last, f"{last}{row}\n")
     replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
     add_to_changelog(project, "The format `line`.")
     python(project, "-m", "grader", "grade", "submissions/several-mistakes", "--format", "line", "--fail-under", "0")

@@ -47,7 +47,7 @@ def schema(
 
       grader schema rubric > rubric.schema.json
     """
+    from grader.report.formats import json_schema
     from grader.report.json_data import to_json
-    from grader.report.schemas import json_schema
 
     return to_json(json_schema(name))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
-from grader.robot.transforms import Rotation, Transform, Vector, cross, unit
+from grader.robot.transforms import Rotation, Transform, Vector, cross, minus, unit
 
 
 class View(NamedTuple):
@@ -51,8 +51,7 @@ class Line(NamedTuple):
 
     def at(self, share: float) -> Vector:
         """Return the point at a share of the length, from 0 to 1."""
-        (a, b, c), (d, e, f) = self.start, self.end
-        return (a + share * (d - a), b + share * (e - b), c + share * (f - c))
+        return _step(self.start, minus(self.end, self.start), share)
 
     def extents(self) -> Extents:
         """Return the least and the largest coordinates."""
@@ -74,9 +73,7 @@ class Arc(NamedTuple):
     def at(self, share: float) -> Vector:
         """Return the point at a share of the angle, from 0 to 1."""
         angle = self.start + share * (self.end - self.start)
-        c, s = cos(angle), sin(angle)
-        (x, y, z), (a, b, d), (e, f, g) = self.centre, self.major, self.minor
-        return (x + c * a + s * e, y + c * b + s * f, z + c * d + s * g)
+        return _step(_step(self.centre, self.major, cos(angle)), self.minor, sin(angle))
 
     def extents(self) -> Extents:
         """Return the least and the largest coordinates of the whole circle."""
@@ -98,7 +95,7 @@ def inner_edges(shape: Shape, pose: Transform) -> list[Edge]:
     """Return the edges of a shape with T_view_shape that do not look like a part of its outline."""
     match shape:
         case Box(size=size):
-            return [*_box_edges(_columns(pose, (size[0] / 2.0, size[1] / 2.0, size[2] / 2.0)), pose)]
+            return [*_box_edges(_columns(pose, _scale(size, 0.5)), pose)]
         case Cylinder(radius=radius, length=length):
             tube = _Tube.of(radius, length, pose)
             near, far = Edge(tube.rim(tube.near, 0.0, pi), True), Edge(tube.rim(tube.far, pi, tau), False)
@@ -108,7 +105,7 @@ def inner_edges(shape: Shape, pose: Transform) -> list[Edge]:
 
 
 def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
-    """Return the closed outline of a shape with T_view_shape: curves, each of which starts at the end of the one before."""
+    """Return the closed outline of a shape with T_view_shape: curves, each from the end of the one before."""
     match shape:
         case Box(size=size):
             corners = [*_zonogon(pose.translation, _columns(pose, size))]
@@ -118,7 +115,7 @@ def outline(shape: Shape, pose: Transform) -> tuple[Curve, ...]:
             near, far = tube.rim(tube.near, 0.0, -pi), tube.rim(tube.far, pi, 0.0)
             return (near, Line(near.at(1.0), far.at(0.0)), far, Line(far.at(1.0), near.at(0.0)))
         case Sphere(radius=radius):
-            return (_ball(radius, pose),)
+            return (Arc(pose.translation, (radius, 0.0, 0.0), (0.0, radius, 0.0), 0.0, tau),)
 
 
 class _Tube(NamedTuple):
@@ -137,21 +134,12 @@ class _Tube(NamedTuple):
     @classmethod
     def of(cls, radius: float, length: float, pose: Transform) -> "_Tube":
         axis = pose.rotate(VIEWER)
-        if axis[2] < 0.0:
-            axis = (-axis[0], -axis[1], -axis[2])
-        across = unit(cross(axis, VIEWER)) if hypot(axis[0], axis[1]) > _EDGE_ON else _ALIGNED
-        across = across or _ALIGNED
-        up = cross(across, axis)
-        near = _moved(pose.translation, axis, length / 2.0)
-        far = _moved(pose.translation, axis, -length / 2.0)
-        return cls(
-            near,
-            far,
-            _scaled(across, radius),
-            _scaled(up, radius),
-            axis[2] > _EDGE_ON,
-            hypot(axis[0], axis[1]) > _EDGE_ON,
-        )
+        axis = _scale(axis, -1.0) if axis[2] < 0.0 else axis
+        shows_side = hypot(axis[0], axis[1]) > _EDGE_ON
+        across = (unit(cross(axis, VIEWER)) if shows_side else None) or _ALIGNED
+        near, far = (_step(pose.translation, axis, share) for share in (length / 2.0, -length / 2.0))
+        major, minor = _scale(across, radius), _scale(cross(across, axis), radius)
+        return cls(near, far, major, minor, axis[2] > _EDGE_ON, shows_side)
 
     def rim(self, centre: Vector, start: float, end: float) -> Arc:
         return Arc(centre, self.major, self.minor, start, end)
@@ -163,40 +151,35 @@ def _box_edges(halves: tuple[Vector, Vector, Vector], pose: Transform) -> Iterat
         if not any(halves[axis][:2]):
             continue
         for signs in product((-1.0, 1.0), repeat=2):
-            middle = _moved(_moved(pose.translation, halves[first], signs[0]), halves[second], signs[1])
-            line = Line(_moved(middle, halves[axis], -1.0), _moved(middle, halves[axis], 1.0))
+            middle = _step(_step(pose.translation, halves[first], signs[0]), halves[second], signs[1])
+            line = Line(_step(middle, halves[axis], -1.0), _step(middle, halves[axis], 1.0))
             leans = signs[0] * to_viewer[first], signs[1] * to_viewer[second]
             if min(leans) > _EDGE_ON or max(leans) < -_EDGE_ON:  # the viewer sees both faces beside it, or none
                 yield Edge(line, faces_viewer=leans[0] > 0.0)
 
 
-def _ball(radius: float, pose: Transform) -> Arc:
-    return Arc(pose.translation, (radius, 0.0, 0.0), (0.0, radius, 0.0), 0.0, tau)
-
-
 def _columns(pose: Transform, sizes: Vector) -> tuple[Vector, Vector, Vector]:
     """Return the vectors from a centre along the axes of a shape."""
-    a, b, c, d, e, f, g, h, i = pose.rotation
     x, y, z = sizes
-    return (a * x, d * x, g * x), (b * y, e * y, h * y), (c * z, f * z, i * z)
+    return pose.rotate((x, 0.0, 0.0)), pose.rotate((0.0, y, 0.0)), pose.rotate((0.0, 0.0, z))
 
 
 def _zonogon(centre: Vector, sides: tuple[Vector, ...]) -> Iterator[Vector]:
     """Yield the corners of the outline of a box: its edges one after the other, by their direction, and back."""
-    upward = [side if side[1] > 0.0 or (side[1] == 0.0 and side[0] > 0.0) else _scaled(side, -1.0) for side in sides]
+    upward = [side if side[1] > 0.0 or (side[1] == 0.0 and side[0] > 0.0) else _scale(side, -1.0) for side in sides]
     upward.sort(key=lambda side: atan2(side[1], side[0]))
     corner = centre
     for side in upward:
-        corner = _moved(corner, side, -0.5)
+        corner = _step(corner, side, -0.5)
     for way in (1.0, -1.0):
         for side in upward:
             yield corner
-            corner = _moved(corner, side, way)
+            corner = _step(corner, side, way)
 
 
-def _moved(point: Vector, along: Vector, share: float) -> Vector:
+def _step(point: Vector, along: Vector, share: float) -> Vector:
     return (point[0] + share * along[0], point[1] + share * along[1], point[2] + share * along[2])
 
 
-def _scaled(vector: Vector, factor: float) -> Vector:
+def _scale(vector: Vector, factor: float) -> Vector:
     return (vector[0] * factor, vector[1] * factor, vector[2] * factor)

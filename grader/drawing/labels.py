@@ -1,10 +1,11 @@
 """Positions for labels: near what they label, without overlaps."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from itertools import product
 from math import cos, hypot, sin, tau
 from typing import NamedTuple
 
-from grader.drawing.sheet import TITLE, Cell, Place
+from grader.drawing.sheet import TITLE, Panel, Place
 
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what is labelled
 _DIRECTIONS = 16
@@ -37,10 +38,10 @@ class Rectangle(NamedTuple):
 
 
 class Labels:
-    """The labels of one cell. `taken` are the rectangles of labels, `marks` those of signs that labels should not cover."""
+    """The labels of one panel: the rectangles that they have taken, and those of signs that they should not cover."""
 
-    def __init__(self, cell: Cell) -> None:
-        self._room = Rectangle(cell.left, cell.top + TITLE, cell.left + cell.width, cell.top + cell.height)
+    def __init__(self, panel: Panel) -> None:
+        self._room = Rectangle(panel.left, panel.top + TITLE, panel.left + panel.width, panel.top + panel.height)
         self._taken: list[Rectangle] = []
         self._marks: list[Rectangle] = []
 
@@ -50,9 +51,9 @@ class Labels:
 
     def take(self, place: Place, width: float, height: float) -> bool:
         """Put a label with its centre at a place if it is free; return whether it is."""
-        box = Rectangle.around([place], 0.0)
-        box = Rectangle(box.left - width / 2, box.top - height / 2, box.right + width / 2, box.bottom + height / 2)
-        if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
+        x, y = place
+        box = Rectangle(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+        if not self._is_free(box):
             return False
         self._taken.append(box)
         return True
@@ -60,38 +61,32 @@ class Labels:
     def put_near(self, place: Place, size: float) -> Place:
         """Put a square label near a place and return its centre.
 
-        The label overlaps no other label. Of the free places, the one with the lowest cost is taken: its distance, and the signs that it covers.
+        It overlaps no other label. Of the free places, that with the lowest cost is taken: its distance, and the signs
+        that it covers.
         """
         best, lowest = place, 1e6
-        for ring, centre, box in self._free(place, size):
+        for ring, direction in product(_RINGS, range(_DIRECTIONS)):
             if ring >= lowest:  # nothing farther away costs less
                 break
-            cost = ring + self._cost(place, centre, box)
+            angle = tau * (direction + 2) / _DIRECTIONS  # up and to the right first
+            centre = place[0] + ring * cos(angle), place[1] - ring * sin(angle)
+            box = Rectangle.around([centre], size / 2.0 + 1.0)
+            cost = ring + self._cost(place, centre, box) if self._is_free(box) else lowest
             if cost < lowest:
                 best, lowest = centre, cost
         self._taken.append(Rectangle.around([best], size / 2.0))
         return best
 
-    def _free(self, place: Place, size: float) -> Iterator[tuple[float, Place, Rectangle]]:
-        """Yield the free places around a place, the nearest first, with their distance and the label's rectangle."""
-        for ring in _RINGS:
-            for number in range(_DIRECTIONS):
-                angle = tau * (number + 2) / _DIRECTIONS  # up and to the right first
-                centre = place[0] + ring * cos(angle), place[1] - ring * sin(angle)
-                box = Rectangle.around([centre], size / 2.0 + 1.0)
-                if self._is_outside(box) or any(box.overlaps(other) for other in self._taken):
-                    continue
-                yield ring, centre, box
-
     def _cost(self, place: Place, centre: Place, box: Rectangle) -> float:
+        """Return the cost of a label: the signs that it covers, and the labels that its leader line crosses."""
         covered = sum(30.0 for mark in self._marks if box.overlaps(mark))
-        steps = max(1, round(hypot(centre[0] - place[0], centre[1] - place[1]) / _STEP))
-        line = [
-            (place[0] + (centre[0] - place[0]) * step / steps, place[1] + (centre[1] - place[1]) * step / steps)
-            for step in range(2, steps)
-        ]
+        across, down = centre[0] - place[0], centre[1] - place[1]
+        steps = max(1, round(hypot(across, down) / _STEP))
+        line = [(place[0] + across * step / steps, place[1] + down * step / steps) for step in range(2, steps)]
         return covered + sum(40.0 for other in self._taken if any(map(other.contains, line)))
 
-    def _is_outside(self, box: Rectangle) -> bool:
+    def _is_free(self, box: Rectangle) -> bool:
         room = self._room
-        return box.left < room.left or box.right > room.right or box.top < room.top or box.bottom > room.bottom
+        if box.left < room.left or box.right > room.right or box.top < room.top or box.bottom > room.bottom:
+            return False
+        return not any(box.overlaps(other) for other in self._taken)

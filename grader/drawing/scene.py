@@ -24,6 +24,7 @@ _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
 _LEVEL = 0.005  # metres: shapes whose bottoms differ by less stand on the same ground
 _UP: Vector = (0.0, 0.0, 1.0)
+_MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
@@ -42,7 +43,8 @@ class Body(NamedTuple):
 class Wheel(NamedTuple):
     """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive turn.
 
-    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it turns.
+    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it
+    turns.
     """
 
     link: str
@@ -56,8 +58,8 @@ class Wheel(NamedTuple):
 class Scene:
     """The content of a picture of a robot, in the frame of the link `frame`, whose z axis points up.
 
-    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order. `missing` are
-    sentences that say what is not shown, and why.
+    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order.
+    `missing` are sentences that say what is not shown, and why.
     """
 
     robot: Configuration
@@ -89,27 +91,21 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
 
     `wheels` are links that are meant to roll; other links count as wheels if they roll and stand on the ground.
     """
-    poses, unplaced = _poses(robot, frame)
-    shown, meshes, unshown = _bodies(robot, poses)
-    drawn = tuple(shown[:MAX_BODIES])
-    scene = Scene(robot, frame, poses, drawn, (), ())
-    reasons = {
-        **unplaced,
-        "mesh files are not opened": meshes,
-        "the size or place of a shape is zero, too large or not known": unshown,
-    }
+    omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
+    poses = dict(_poses(robot, frame, omitted))
+    omitted |= {_MESHES: {}, _UNKNOWN: {}}
+    bodies = [*_bodies(robot, poses, omitted)]
+    scene = Scene(robot, frame, poses, tuple(bodies[:MAX_BODIES]), (), ())
     missing = [
-        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in reasons.items() if names
+        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items() if names
     ]
-    if len(shown) > MAX_BODIES:
-        missing.append(f"Not shown: {counted(len(shown) - MAX_BODIES, 'more shape')}")
+    if len(bodies) > MAX_BODIES:
+        missing.append(f"Not shown: {counted(len(bodies) - MAX_BODIES, 'more shape')}")
     return replace(scene, wheels=(*_wheels(scene, wheels),), missing=tuple(missing))
 
 
-def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict[str, list[str]]]:
-    """Return the poses of links, and the links with visuals that have no pose, by reason."""
-    poses: dict[str, Transform] = {}
-    unplaced: dict[str, list[str]] = {}
+def _poses(robot: Configuration, frame: str, omitted: dict[str, dict[str, None]]) -> Iterator[tuple[str, Transform]]:
+    """Yield the poses of links."""
     for link in robot.robot.links:
         try:
             pose = robot.pose(link.name, relative_to=frame)
@@ -117,32 +113,27 @@ def _poses(robot: Configuration, frame: str) -> tuple[dict[str, Transform], dict
         except _NOT_KNOWN as error:
             reason = str(error)
         if not reason:
-            poses[link.name] = pose
+            yield link.name, pose
         elif link.visuals:
-            unplaced.setdefault(reason, []).append(link.name)
-    return poses, unplaced
+            omitted.setdefault(reason, {})[link.name] = None
 
 
-def _bodies(robot: Configuration, poses: Mapping[str, Transform]) -> tuple[list[Body], list[str], list[str]]:
-    """Return the shapes of links that have a pose, and the names of links with a mesh, or with a shape that cannot be drawn."""
-    shown: list[Body] = []
-    meshes: dict[str, None] = {}
-    unshown: dict[str, None] = {}
+def _bodies(
+    robot: Configuration, poses: Mapping[str, Transform], omitted: dict[str, dict[str, None]]
+) -> Iterator[Body]:
+    """Yield the shapes of links that have a pose."""
     for link in robot.robot.links:
         if link.name not in poses:
             continue
         if link.unresolved.keys() & {"visual", ""}:
-            unshown[link.name] = None
+            omitted[_UNKNOWN][link.name] = None
         for visual in link.visuals:
             if isinstance(visual.geometry, Mesh):
-                meshes[link.name] = None
-                continue
-            body = _body(link.name, visual, visual.geometry)
-            if body is not None:
-                shown.append(body)
+                omitted[_MESHES][link.name] = None
+            elif (body := _body(link.name, visual, visual.geometry)) is not None:
+                yield body
             else:
-                unshown[link.name] = None
-    return shown, [*meshes], [*unshown]
+                omitted[_UNKNOWN][link.name] = None
 
 
 def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
@@ -157,10 +148,10 @@ def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
     pose = placed_by(Transform(), visual.origin)
     if is_empty(shape) or not is_drawable(sizes) or not is_drawable(pose.translation):
         return None
-    return Body(link, drawn, pose, _clamped(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
+    return Body(link, drawn, pose, _clamp(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
 
 
-def _clamped(rgba: Rgba) -> Rgba:
+def _clamp(rgba: Rgba) -> Rgba:
     """Return a colour with channels from 0 to 1; one that is no finite number is 0."""
     red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
     return red, green, blue, alpha
@@ -172,7 +163,7 @@ def is_drawable(values: Vector) -> bool:
 
 
 def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
-    """Yield the links that are meant to roll, and those with a continuous joint and a round shape on the ground that roll."""
+    """Yield the links that are meant to roll, and those that roll with a round shape on the ground."""
     robot = scene.robot
     bottoms: dict[str, float] = {}
     for body in scene.bodies:

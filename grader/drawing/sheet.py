@@ -1,9 +1,11 @@
 """The sheet of a drawing: a scene in three views at one scale, side by side as in third-angle projection.
 
-The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points down.
+The top view is above the side view, and the front view to the right of it. Lengths on the sheet are pixels, y points
+down.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from math import floor, log10
 from typing import NamedTuple
 
@@ -36,13 +38,13 @@ class Seen(NamedTuple):
 def projection(scene: Scene, view: View) -> list[Seen]:
     """Return the bodies of a scene in a view from back to front.
 
-    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an exact one needs
-    the depths at each place of the view.
+    The depth of a body is that of its nearest point. Bodies that are slanted can be painted in the wrong order: an
+    exact one needs the depths at each place of the view.
     """
-    return sorted(seen_in(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
+    return sorted(project(scene, scene.bodies, view), key=lambda seen: seen.extents[2][1])
 
 
-def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
+def project(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
     """Return bodies of a scene in a view."""
     found = ((body, view.T_view_frame @ scene.pose(body)) for body in bodies)
     return [
@@ -52,15 +54,17 @@ def seen_in(scene: Scene, bodies: Iterable[Body], view: View) -> list[Seen]:
 
 
 def with_fronts(bodies: Sequence[Seen]) -> Iterator[tuple[Seen, list[Seen]]]:
-    """Yield the bodies of a projection, each with those in front of it whose rectangles in the view overlap its own."""
-    rows = [(*seen.extents[0], *seen.extents[1], seen) for seen in bodies]
-    for number, (a, b, c, d, seen) in enumerate(rows, 1):
-        fronts = [
+    """Yield the bodies of a projection, each with those that may hide a part of it, the nearest first."""
+    rows = [(*seen.extents[0], *seen.extents[1], seen) for seen in reversed(bodies)]
+    for number in reversed(range(len(rows))):
+        a, b, c, d, seen = rows[number]
+        fronts = (
             other
-            for e, f, g, h, other in rows[number:]
+            for e, f, g, h, other in islice(rows, number)
             if a < f - _SAME and e < b - _SAME and c < h - _SAME and g < d - _SAME
-        ]
-        yield seen, [other for other in fronts if other.body.rgba[3] >= _TRANSPARENT][-_MAX_FRONTS:]
+        )
+        opaque = (other for other in fronts if other.body.rgba[3] >= _TRANSPARENT)
+        yield seen, list(islice(opaque, _MAX_FRONTS))
 
 
 Place = tuple[float, float]
@@ -79,7 +83,7 @@ _FAR = 2.0  # times the size of the robot: a ground farther away is not in the p
 _UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
 
 
-class Cell(NamedTuple):
+class Panel(NamedTuple):
     """A view on a sheet: its rectangle, the position of the frame's origin, and pixels per metre."""
 
     view: View
@@ -99,15 +103,15 @@ class Cell(NamedTuple):
         return self.origin[0] + self.scale * point[0], self.origin[1] - self.scale * point[1]
 
     def direction(self, direction: Vector) -> Vector:
-        """Return a direction of the frame on the sheet, with y down; the third number is its component to the viewer."""
+        """Return a direction of the frame on the sheet, with y down, and its component to the viewer."""
         x, y, z = self.view.T_view_frame.rotate(direction)
         return (x, -y, z)
 
 
 class Sheet(NamedTuple):
-    """The cells of the three views, the position of the key, the total height, and pixels per metre."""
+    """The panels of the three views, the position of the key, the total height, and pixels per metre."""
 
-    cells: tuple[Cell, ...]
+    panels: tuple[Panel, ...]
     key: Place
     height: float
     scale: float
@@ -123,37 +127,35 @@ class Sheet(NamedTuple):
 
 
 def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
-    """Return the sheet for a picture; its cells begin at `top`."""
+    """Return the sheet for a picture; its panels begin at `top`."""
     low, high = _bounds(picture)
     x, y, z = (max(most - least, _SMALLEST) for least, most in zip(low, high, strict=True))
     room = WIDTH - 4.0 * MARGIN
     scale = min(room / (x + y), (WIDTH - KEY_WIDTH - 2.0 * MARGIN) / x, _MAX_HEIGHT / (y + z))
-    right = max(y * scale + 2.0 * MARGIN, KEY_WIDTH)
-    columns = ((0.0, WIDTH - right), (WIDTH - right, right))
-    rows = (max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT), z * scale + 2.0 * MARGIN + TITLE)
-    middle = _middle(low, high)
-    cells = []
-    for view, column, row in ((TOP, 0, 0), (SIDE, 0, 1), (FRONT, 1, 1)):
-        left, width = columns[column]
-        cells.append(_cell(view, (left, top + sum(rows[:row])), (width, rows[row]), middle, scale, TITLE))
-    return Sheet(tuple(cells), (columns[1][0], top), top + sum(rows), scale)
+    right, upper = max(y * scale + 2.0 * MARGIN, KEY_WIDTH), max(y * scale + 2.0 * MARGIN + TITLE, KEY_HEIGHT)
+    left, lower, middle = WIDTH - right, z * scale + 2.0 * MARGIN + TITLE, _middle(low, high)
+    panels = (
+        _panel(TOP, (0.0, top), (left, upper), middle, scale, TITLE),
+        _panel(SIDE, (0.0, top + upper), (left, lower), middle, scale, TITLE),
+        _panel(FRONT, (left, top + upper), (right, lower), middle, scale, TITLE),
+    )
+    return Sheet(panels, (left, top), top + (upper + lower), scale)
 
 
-def single_cell(picture: Picture, view: View, width: float, height: float, margin: float) -> Cell:
-    """Return the cell of a single view, in a rectangle of this size in pixels."""
+def single_panel(picture: Picture, view: View, width: float, height: float, margin: float) -> Panel:
+    """Return the panel of a single view, in a rectangle of this size in pixels."""
     low, high = _bounds(picture)
     (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
-    scale = min(
-        (width - 2.0 * margin) / max(abs(c - a), _SMALLEST), (height - 2.0 * margin) / max(abs(d - b), _SMALLEST)
-    )
-    return _cell(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
+    pairs = ((width, abs(c - a)), (height, abs(d - b)))
+    scale = min((room - 2.0 * margin) / max(size, _SMALLEST) for room, size in pairs)
+    return _panel(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
 
 
-def _cell(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Cell:
-    """Return a cell with the robot centred below the title."""
+def _panel(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Panel:
+    """Return a panel with the robot centred below the title."""
     u, v, _ = view.T_view_frame.apply(middle)
     origin = corner[0] + size[0] / 2.0 - scale * u, corner[1] + (title + size[1]) / 2.0 + scale * v
-    return Cell(view, *corner, *size, origin, scale)
+    return Panel(view, *corner, *size, origin, scale)
 
 
 def _middle(low: Vector, high: Vector) -> Vector:

@@ -1,24 +1,30 @@
-"""A report as annotations of its files: workflow commands for GitHub, and Code Climate's JSON for a merge request on GitLab.
+"""A report as annotations of its files: workflow commands for GitHub, and Code Climate's JSON for GitLab.
 
-GitHub shows ten annotations of each type in a step and drops the others silently, so the last one of a type counts the rest.
+GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a type counts the
+rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 from grader.grading.report import Report
-from grader.report.content import score_text
+from grader.report.content import note_lines, provenance, score_text, summary_lines
 from grader.report.findings import Finding, Level, findings
 from grader.report.json_data import to_json_list
 from grader.report.locations import Base, RepositoryLocation
-from grader.report.plain_text import note_lines, provenance, summary_lines
-from grader.text import counted_points, printable
+from grader.report.order import alike, status_of
+from grader.text import printable
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
-_COMMANDS: dict[Level, str] = {"error": "error", "warning": "warning", "note": "notice"}
+# The names of each level: GitHub's command, Code Climate's severity.
+_NAMES: dict[Level, tuple[str, str]] = {
+    "error": ("error", "major"),
+    "warning": ("warning", "minor"),
+    "note": ("notice", "info"),
+}
 
 
 def render_github(report: Report, base: Base) -> str:
@@ -27,38 +33,30 @@ def render_github(report: Report, base: Base) -> str:
     if base.is_outside:  # a file of the repository may have the same path
         found = [finding._replace(location=None) for finding in found]
     lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
-    for level in _COMMANDS:
+    for level, (name, _) in _NAMES.items():
         some = [finding for finding in found if finding.level == level]
-        lines += _annotations(level, some, room=_MAX_ANNOTATIONS - (level == "note"))
+        room = _MAX_ANNOTATIONS - (level == "note")
+        listed = some if len(some) <= room else [*some[: room - 1], _rest(some[room - 1 :])]
+        lines += [command(name, one.location, f"{one.rule}{one.cost}", one.text) for one in listed]
     return "".join(lines)
 
 
-def _annotations(level: Level, found: Sequence[Finding], room: int) -> Iterator[str]:
-    shown = found if len(found) <= room else found[: room - 1]
-    for finding in shown:
-        yield command(_COMMANDS[level], finding.location, f"{finding.rule}{_cost(finding.lost)}", finding.text)
-    rest = found[len(shown) :]
-    if rest:
-        names = ", ".join(dict.fromkeys(finding.rule for finding in rest))
-        cost = _cost(sum((finding.lost for finding in rest), Decimal(0)))
-        yield command(_COMMANDS[level], None, f"{len(rest)} more{cost}", f"See the report for: {names}")
-
-
-def _cost(lost: Decimal) -> str:
-    return f" ({counted_points(lost)} lost)" if lost else ""
+def _rest(found: Sequence[Finding]) -> Finding:
+    names = ", ".join(dict.fromkeys(finding.rule for finding in found))
+    lost = sum((finding.lost for finding in found), Decimal(0))
+    text = f"See the report for: {names}"
+    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, location=None)
 
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
-    pending = [result.criterion.id for result in report.results if result.is_open]
+    pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
+    skipped = alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or "")
     lines = [*summary_lines(report), provenance(report)]  # first, because the rest may be cut off
-    if pending:
-        lines.append(f"Needs manual grading: {', '.join(pending)}")
-    skipped: dict[str, list[str]] = {}
-    for result in report.results:
-        if result.because is not None and result.manual_mark is None and not result.is_adjusted:
-            skipped.setdefault(result.because, []).append(result.criterion.id)
-    lines += [f"Skipped because {cause} failed: {', '.join(names)}" for cause, names in skipped.items()]
+    lines += [f"Needs manual grading: {pending}"] if pending else []
+    for cause, results in skipped:
+        names = ", ".join(result.criterion.id for result in results)
+        lines += [f"Skipped because {cause} failed: {names}"] if cause else []
     lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]
     return "\n".join((*lines, *note_lines(report)))
 
@@ -71,34 +69,29 @@ def command(name: str, location: RepositoryLocation | None, title: str, text: st
     return f"::{name} {listed}::{_data(message)}\n"
 
 
-def _position(location: RepositoryLocation | None) -> Iterable[tuple[str, str]]:
+def _position(location: RepositoryLocation | None) -> Iterator[tuple[str, str]]:
     if location is not None:
         yield "file", printable(location.path)
-    if location is not None and location.line is not None:
-        yield from (("line", str(location.line)), ("endLine", str(location.line)))
-        yield from (("col", str(location.column)), ("endColumn", str(max(location.column, location.end - 1))))
+        if location.line is not None:
+            last = max(location.column, location.end - 1)
+            yield from (("line", str(location.line)), ("endLine", str(location.line)))
+            yield from (("col", str(location.column)), ("endColumn", str(last)))
 
 
 def _data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
-_SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
-
-
 def render_codeclimate(report: Report, base: Base) -> str:
     """Return the findings of a report; an empty list if there is nothing to fix."""
-    issues = []
-    for finding in findings(report, base):
-        location = finding.location or finding.fallback
-        cost = f" ({counted_points(finding.lost)} lost)" if finding.lost else ""
-        issues.append(
-            {
-                "description": finding.text.replace("\n", " ") + cost or finding.rule,
-                "check_name": finding.rule,
-                "fingerprint": finding.fingerprint,
-                "severity": _SEVERITIES[finding.level],
-                "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
-            }
-        )
-    return to_json_list(issues)
+    return to_json_list([_issue(finding, finding.location or finding.fallback) for finding in findings(report, base)])
+
+
+def _issue(finding: Finding, location: RepositoryLocation) -> dict[str, object]:
+    return {
+        "description": finding.text.replace("\n", " ") + finding.cost or finding.rule,
+        "check_name": finding.rule,
+        "fingerprint": finding.fingerprint,
+        "severity": _NAMES[finding.level][1],
+        "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
+    }

@@ -9,9 +9,9 @@ from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import Agreement, ClassSummary
-from grader.report.as_json import kinds
+from grader.report.as_json import KINDS
 from grader.report.class_schemas import COUNTS
-from grader.report.json_data import edit, exact, fields, rounded, to_json
+from grader.report.json_data import EDIT, exact, fields, rounded, to_json
 
 
 def render_class_json(
@@ -74,7 +74,7 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
 
 def _fix(fix: CommonFix) -> dict[str, Any]:
     """Return a change that several students need as plain data."""
-    return {**fields(fix, "action count criteria points"), "example": list(map(edit, fix.example))}
+    return {**fields(fix, "action count criteria points"), "example": list(map(EDIT.data, fix.example))}
 
 
 def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
             {
                 "id": row.criterion.id,
                 "max_points": exact(row.criterion.points),
-                **kinds(row.criterion),
+                **KINDS.data(row.criterion),
                 **fields(row, f"{COUNTS} share discrimination"),
             }
             for row in statistics.criteria

@@ -1,52 +1,26 @@
-"""The JSON Schemas (draft 2020-12) of a class and of the changes between two runs, and the building blocks of all schemas."""
+"""The JSON Schemas (draft 2020-12) of a class and of the changes between two runs."""
 
-from typing import Any
+from grader.report.json_data import (
+    ADJUSTMENT,
+    COUNT,
+    EDIT,
+    FLAG,
+    GRADER,
+    HASH,
+    POINTS,
+    RUBRIC,
+    TEXT,
+    TOTAL,
+    VALUE,
+    Record,
+    array,
+    each,
+    nullable,
+    record,
+    schema_key,
+)
 
-_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COUNTS = "passed manual_marks carried failed skipped pending errored"  # of the results of a criterion
-TEXT: dict[str, Any] = {"type": "string"}
-NUMBER: dict[str, Any] = {"type": "number"}
-COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
-POINTS: dict[str, Any] = {"type": "number", "minimum": 0}
-TOTAL: dict[str, Any] = {"type": "integer", "minimum": 0}
-FLAG: dict[str, Any] = {"type": "boolean"}
-HASH: dict[str, Any] = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
-
-
-def record(properties: dict[str, Any], optional: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return the schema of an object with exactly these properties."""
-    required = [name for name in properties if name not in optional]
-    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
-
-
-def document(title: str, properties: dict[str, Any], optional: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return the schema of a whole document."""
-    return {"$schema": _DRAFT, "title": f"grader {title}", **record(properties, optional)}
-
-
-def array(items: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of an array."""
-    return {"type": "array", "items": items}
-
-
-def nullable(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return a schema that also allows null."""
-    return {"anyOf": [schema, {"type": "null"}]}
-
-
-def each(schema: dict[str, Any], names: str) -> dict[str, Any]:
-    """Return properties of one type, from their names between spaces."""
-    return dict.fromkeys(names.split(), schema)
-
-
-GRADER = record({"version": TEXT})
-RUBRIC = record({**each(TEXT, "id title"), "sha256": HASH})
-PLACE = {"path": TEXT, **each(COUNT, "line column")}
-EDIT = record({**PLACE, **each(TEXT, "old new renamed")}, ("renamed",))
-VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
-ADJUSTMENT = record({"action": {"enum": ["drop", "full"]}, "reason": TEXT})
-
-
 _STATUSES = ("errored", "graded", "missing", "unreadable")
 _CRITERION_STATISTICS = record(
     {
@@ -56,7 +30,7 @@ _CRITERION_STATISTICS = record(
         "share": nullable(POINTS),
         "discrimination": nullable({"type": "number", "minimum": -1, "maximum": 1}),
         "bonus": {"const": True},
-        "adjustment": ADJUSTMENT,
+        "adjustment": ADJUSTMENT.schema,
     },
     optional=("bonus", "adjustment"),
 )
@@ -72,7 +46,9 @@ _STATISTICS = record(
         "failures": array(record({**each(TEXT, "criterion message"), "count": COUNT})),
     }
 )
-_FIX = record({"action": TEXT, "count": COUNT, "criteria": array(TEXT), "points": POINTS, "example": array(EDIT)})
+_FIX = record(
+    {"action": TEXT, "count": COUNT, "criteria": array(TEXT), "points": POINTS, "example": array(EDIT.schema)}
+)
 _STUDENT = record(
     {
         **each(TEXT, "id name email reason"),
@@ -102,12 +78,11 @@ _GROUP = record(
         "shares": {"type": "object", "additionalProperties": nullable(POINTS)},
     }
 )
-CLASS_SCHEMA = document(
-    "class",
+CLASS = Record(
     {
-        "schema": {"const": "grader/class/v1"},
+        **schema_key("grader/class/v1"),
         "grader": GRADER,
-        "rubric": RUBRIC,
+        "rubric": RUBRIC.schema,
         "run": record(each(TOTAL, "total graded unchanged errored")),
         "statistics": _STATISTICS,
         "fixes": array(_FIX),
@@ -128,10 +103,9 @@ CLASS_SCHEMA = document(
 
 _RUN = record({"run": COUNT, "started": TEXT, "grader": GRADER, "rubric": record({"sha256": HASH})})
 _CHANGE = {"id": TEXT, **each(nullable(POINTS), "before after")}
-DIFF_SCHEMA = document(
-    "diff",
+DIFF = Record(
     {
-        "schema": {"const": "grader/diff/v1"},
+        **schema_key("grader/diff/v1"),
         **each(_RUN, "from to"),
         "students": array(
             record(
@@ -144,5 +118,5 @@ DIFF_SCHEMA = document(
                 }
             )
         ),
-    },
+    }
 )

@@ -54,7 +54,7 @@ def excerpt_block(
 def show_problems(
     console: Console, problems: tuple[Problem, ...], source_of: Callable[[str], Source | None], main: str | None
 ) -> None:
-    """Print problems with their code and location, errors with their source line. In the file `main` only the line is named."""
+    """Print problems with their code and location, errors with their source line. In `main` only the line is named."""
     for problem in problems[:_MAX_PROBLEMS]:
         style = SEVERITY_STYLES[problem.severity]
         head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))

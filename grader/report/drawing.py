@@ -3,21 +3,20 @@
 The element needs no style sheet, script or other file. A page that contains it adds `DARK_RULES` for dark mode.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from statistics import median
 from typing import Any
 
 from lxml import etree
 
 from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
-from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture, picture_of, plain_picture
-from grader.drawing.sheet import WIDTH, Cell, Seen, framed_links, projection, sheet_of, single_cell, with_fronts
+from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_panel, with_fronts
 from grader.grading.report import Report
-from grader.report.content import bonus_line, grade_line, score_text, summary, why_no_picture
-from grader.report.details import result_details
-from grader.report.drawing_key import description, put_key, put_legend
-from grader.report.drawing_signs import Signs, add_callouts, add_frames, add_ground, add_outlines, add_wheels
+from grader.report.content import bonus_line, grade_line, score_text, summary
+from grader.report.details import remarks_on
+from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
+from grader.report.drawing_signs import ViewSigns
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import (
     DARK_RULES,
@@ -29,7 +28,7 @@ from grader.report.svg_elements import (
     path_data,
     put,
     put_lines,
-    wrapped,
+    wrap,
 )
 from grader.text import printable
 
@@ -52,29 +51,26 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     """
     root = _root(title or "Three views of the robot", description(picture))
     sheet = sheet_of(picture, top)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     titles = put(root, "g", "faint")
     notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
-    for cell in sheet.cells:
-        put(titles, "text", "", {"x": cell.left + 14.0, "y": cell.top + 14.0}, cell.view.title)
-        _put_view(put(root, "g"), cell, picture)
+    for panel in sheet.panels:
+        put(titles, "text", "", {"x": panel.left + 14.0, "y": panel.top + 14.0}, panel.view.title)
+        _put_view(put(root, "g"), panel, picture)
     put_key(put(root, "g"), sheet, picture, legend=legend)
-    return _sized(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
+    return _set_size(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
 def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view with the reference where it differs, and the driving directions of wheels.
+    """Return a small picture of a robot: one view, where the reference differs, and where wheels drive to.
 
     Rings mark the links of callouts without a visible difference.
     """
-    root = _root(f"The robot in the {view.title} view", description(picture))
-    cell = single_cell(picture, view, *_THUMBNAIL, _MARGIN)
-    labels, above, group = Labels(cell), Signs(), put(root, "g")
-    _put_bodies(group, cell, projection(picture.scene, view))
-    add_ground(above, cell, picture, labels)
-    add_outlines(above, cell, picture, labels)
-    add_frames(above, cell, picture, labels, [link for link in picture.frames if link in picture.scene.poses])
-    add_wheels(above, cell, picture, labels)
+    root = _root(f"The robot in the {view.title} view", description(picture), has_paper=False)
+    panel = single_panel(picture, view, *_THUMBNAIL, _MARGIN)
+    signs, group = ViewSigns(panel, picture), put(root, "g")
+    _put_bodies(group, panel, projection(picture.scene, view))
+    signs.add_ground()
+    _add_robot_signs(signs, [link for link in picture.frames if link in picture.scene.poses])
     shown = {
         *picture.frames,
         *(body.link for body in picture.outlines),
@@ -82,19 +78,12 @@ def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
     }
     for callout in picture.callouts:
         if callout.point is not None and callout.link not in shown:
-            above.line("leader", circle(cell.place(callout.point), _RING))
-    above.put(group)
-    return _sized(root, *_THUMBNAIL)
+            signs.line("leader", circle(panel.place(callout.point), _RING))
+    signs.put(group)
+    return _set_size(root, *_THUMBNAIL)
 
 
-def empty_element(title: str, words: str, height: float) -> Any:
-    """Return a drawing without a robot: paper of a height in pixels."""
-    root = _root(title, words)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
-    return _sized(root, WIDTH, height)
-
-
-def _sized(root: Any, width: float, height: float) -> Any:
+def _set_size(root: Any, width: float, height: float) -> Any:
     """Set the size of a drawing, and of its background, in pixels."""
     root.set("viewBox", f"0 0 {width:g} {height:.0f}")
     root.set("width", f"{width:g}")
@@ -104,56 +93,61 @@ def _sized(root: Any, width: float, height: float) -> Any:
     return root
 
 
-def _root(title: str, words: str) -> Any:
-    root = etree.Element(
-        f"{{{SVG}}}svg", {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}, nsmap=_NAMESPACES
-    )
+def _root(title: str, words: str, *, has_paper: bool = True) -> Any:
+    """Return the root of a drawing, without its size."""
+    looks = {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}
+    root = etree.Element(f"{{{SVG}}}svg", looks, nsmap=_NAMESPACES)
     put(root, "title", text=title[:_MAX_TITLE])
     if words:
         put(root, "desc", text=words)
+    if has_paper:
+        put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     return root
 
 
-def _put_view(group: Any, cell: Cell, picture: Picture) -> None:
-    labels, below, above = Labels(cell), Signs(), Signs()
-    add_ground(below, cell, picture, labels)
-    below.put(group)
-    _put_bodies(group, cell, projection(picture.scene, cell.view))
-    add_outlines(above, cell, picture, labels)
-    add_frames(above, cell, picture, labels, framed_links(picture))
-    add_wheels(above, cell, picture, labels)
-    add_callouts(above, cell, picture, labels)
-    above.put(group)
+def _put_view(group: Any, panel: Panel, picture: Picture) -> None:
+    signs = ViewSigns(panel, picture)
+    signs.add_ground()
+    signs.put(group)
+    _put_bodies(group, panel, projection(picture.scene, panel.view))
+    _add_robot_signs(signs, framed_links(picture))
+    signs.add_callouts()
+    signs.put(group)
 
 
-def _put_bodies(group: Any, cell: Cell, bodies: Sequence[Seen]) -> None:
-    """Add the shapes from back to front with their edges, then lighter what others hide; thinner where the shapes are small."""
-    sizes = [cell.scale * max(high - low for low, high in seen.extents) for seen in bodies]
+def _add_robot_signs(signs: ViewSigns, framed: Iterable[str]) -> None:
+    signs.add_outlines()
+    signs.add_frames(framed)
+    signs.add_wheels()
+
+
+def _put_bodies(group: Any, panel: Panel, bodies: Sequence[Seen]) -> None:
+    """Add the shapes from back to front, then lighter the edges that others hide. Small shapes have thinner edges."""
+    sizes = [panel.scale * max(high - low for low, high in seen.extents) for seen in bodies]
     width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
     hidden: dict[str, list[Curve]] = {}
     for seen, fronts in with_fronts(bodies):
         inner = inner_edges(seen.body.shape, seen.pose)
-        look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
-        d = path_data(cell, seen.outline, closed=True)
-        body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
-        put(body, "title", text=seen.body.link[:_MAX_NAME])
-        # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
-        if front := path_data(cell, (it.curve for it in inner if it.faces_viewer)):
-            put(group, "path", look, {"d": front, **looks})
-        for name, curve in _hidden(seen, inner, fronts):
-            hidden.setdefault(name, []).append(curve)
-    for name, curves in sorted(hidden.items()):
-        d = path_data(cell, curves)
-        put(group, "path", name, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
+        _put_body(group, panel, seen, inner, width)
+        # What may be hidden is drawn again, whole, in the look for the colour of the shape that is around it.
+        covered = [*(seen.outline if fronts else ()), *(it.curve for it in inner if fronts or not it.faces_viewer)]
+        for curve, extents in ((curve, curve.extents()) for curve in covered):
+            around = next((other for other in fronts if other.encloses(extents)), seen)
+            hidden.setdefault(edge_look(around.body.rgba), []).append(curve)
+    for look, curves in sorted(hidden.items()):
+        d = path_data(panel, curves)
+        put(group, "path", look, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
 
 
-def _hidden(seen: Seen, inner: Sequence[Edge], fronts: Sequence[Seen]) -> Iterator[tuple[str, Curve]]:
-    """Yield the edges of a body that may be hidden, whole, each with a look for the colour of the shape that is around it."""
-    outline = seen.outline if fronts else ()
-    for curve in (*outline, *(edge.curve for edge in inner if fronts or not edge.faces_viewer)):
-        extents = curve.extents()
-        around = next((other for other in reversed(fronts) if other.encloses(extents)), seen)
-        yield edge_look(around.body.rgba), curve
+def _put_body(group: Any, panel: Panel, seen: Seen, inner: Sequence[Edge], width: float) -> None:
+    """Add a shape with its visible edges."""
+    look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
+    d = path_data(panel, seen.outline, closed=True)
+    body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
+    put(body, "title", text=seen.body.link[:_MAX_NAME])
+    # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
+    if visible := path_data(panel, (edge.curve for edge in inner if edge.faces_viewer)):
+        put(group, "path", look, {"d": visible, **looks})
 
 
 _STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
@@ -163,19 +157,10 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    words = (grade_line(report), summary(report), bonus_line(report), *_remark_lines(report))
-    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
-
-
-def _remark_lines(report: Report) -> list[str]:
-    """Return the adjustments and comments, a line for each."""
-    lines: list[str] = []
+    words = [grade_line(report), summary(report), bonus_line(report)]
     for result in report.results:
-        details, name = result_details(result, report), printable(result.criterion.id)
-        lines += [
-            f"{name}: {text}" for text in (*(details.sentences if result.is_adjusted else ()), details.comment) if text
-        ]
-    return lines
+        words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result, report)]
+    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
 
 
 def inspection_svg(inspection: Inspection) -> str:
@@ -189,10 +174,11 @@ def inspection_svg(inspection: Inspection) -> str:
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    lines = [line for text in filter(None, words) for line in wrapped(text, _WIDTH)]
-    lines += [] if picture is not None else ["", *wrapped(reason, _WIDTH)]
+    lines = [line for text in filter(None, words) for line in wrap(text, _WIDTH)]
+    lines += [] if picture is not None else ["", *wrap(reason, _WIDTH)]
     top = _TITLE + LINE * len(lines) + 8.0
-    root = drawing_element(picture, title, top) if picture is not None else empty_element(title, reason, top)
+    empty = _set_size(_root(title, reason), WIDTH, top)
+    root = drawing_element(picture, title, top) if picture is not None else empty
     put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
     faint = put(root, "g", "faint")
     for number, line in enumerate(lines, 1):

@@ -1,4 +1,4 @@
-"""The words of a drawing: the key of its signs, the failed criteria that it marks, and the description of the picture for screen readers."""
+"""The words of a drawing: the key of its signs, the failed criteria, a description for screen readers."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -7,18 +7,31 @@ from typing import Any
 from grader.drawing.picture import Callout, Picture, picture_of
 from grader.drawing.sheet import WIDTH, Place, Sheet
 from grader.grading.report import Report
-from grader.report.content import points_of
-from grader.report.drawing_signs import Signs, add_badge, is_lifted, wheel_sign
+from grader.report.drawing_signs import Signs, is_lifted, wheel_sign
+from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
+from grader.robot.transforms import Vector
+from grader.submission.urdf import Absent
 from grader.text import counted_points, enumerated, printable
 
 _NOWHERE = "not in the picture"
 
 
-def drawn(report: Report) -> str:
+def alt_text(report: Report) -> str:
     """Return a description of the drawing of a report; empty if there is no robot."""
     picture = picture_of(report)
     return f"Top, side and front view of the robot. {description(picture)}".strip() if picture is not None else ""
+
+
+def why_no_picture(report: Report) -> str:
+    """Return why a report has no picture of the robot."""
+    submission = report.submission
+    urdf = submission.originals.urdf if submission.originals is not None else Absent()
+    if submission.has_urdf and isinstance(urdf, Absent):
+        return "No picture: the submission has changed or moved since it was graded."
+    if submission.robot is None or not submission.robot.links:
+        return "No picture: no robot could be read from the submission."
+    return "No picture: no link of the robot has a pose."
 
 
 def heading(callout: Callout) -> str:
@@ -44,7 +57,7 @@ _Draw = Callable[[Signs, Place], None]
 
 
 def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None:
-    """Add the scale bar, and the meaning of each sign in the drawing; with a `legend` the criteria are listed below it."""
+    """Add the scale bar, and the meaning of each sign; with a `legend` the criteria are listed below it."""
     left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
     signs = Signs()
     length, words = sheet.bar
@@ -60,26 +73,28 @@ def put_key(group: Any, sheet: Sheet, picture: Picture, *, legend: bool) -> None
 
 def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     """Yield the signs of a drawing with their meanings."""
-    scene, reference = picture.scene, picture.reference
+    travels = [wheel.travel is not None for wheel in picture.scene.wheels]
     if any(callout.point is not None for callout in picture.callouts):
-        yield (
-            lambda signs, at: add_badge(signs, (at[0] + 12.0, at[1]), 1),
-            f"points lost{': see below' if legend else ''}",
-        )
-    grounds = (scene.ground, reference.ground) if reference is not None else (None, None)
-    is_elsewhere = grounds[0] is not None and grounds[1] is not None and is_lifted(grounds[0], grounds[1])
-    if picture.outlines or picture.frames or is_elsewhere:
+        yield lambda signs, at: signs.badge((at[0] + 12.0, at[1]), 1), f"points lost{': see below' if legend else ''}"
+    if picture.outlines or picture.frames or _is_lifted(picture):
         yield partial(_draw_line, "reference"), "reference solution"
-    if any(wheel.travel is not None for wheel in scene.wheels):
-        yield (
-            lambda signs, at: signs.line("arrow", wheel_sign((at[0] - 3.0, at[1]), (1.0, 0.0, 0.0))),
-            "driving direction, positive turn",
-        )
-    if any(wheel.travel is None for wheel in scene.wheels):
-        yield lambda signs, at: signs.line("arrow", wheel_sign((at[0] + 12.0, at[1]), None)), "wheel does not roll"
+    if any(travels):
+        yield partial(_draw_wheel, -3.0, (1.0, 0.0, 0.0)), "driving direction, positive turn"
+    if not all(travels):
+        yield partial(_draw_wheel, 12.0, None), "wheel does not roll"
     yield _draw_axes, "frame of a link: x, y, z"
-    if len(scene.bodies) > 1:
+    if len(picture.scene.bodies) > 1:
         yield partial(_draw_line, "hidden"), "hidden edge"
+
+
+def _is_lifted(picture: Picture) -> bool:
+    ground, reference = picture.scene.ground, picture.reference
+    expected = reference.ground if reference is not None else None
+    return ground is not None and expected is not None and is_lifted(ground, expected)
+
+
+def _draw_wheel(left: float, travel: Vector | None, signs: Signs, at: Place) -> None:
+    signs.line("arrow", wheel_sign((at[0] + left, at[1]), travel))
 
 
 def _draw_line(look: str, signs: Signs, at: Place) -> None:
@@ -101,7 +116,7 @@ def put_legend(root: Any, top: float, callouts: Sequence[Callout], notes: Sequen
     badges, strong, plain = Signs(), put(root, "g", "strong"), put(root, "g", "text")
     left, width, y = _LEFT + _INDENT, WIDTH - 2.0 * _LEFT - _INDENT, top + 28.0
     for callout in callouts:
-        add_badge(badges, (_LEFT + 9.0, y - 4.0), callout.number)
+        badges.badge((_LEFT + 9.0, y - 4.0), callout.number)
         y = put_lines(strong, left, y, width, heading(callout))
         for result in callout.results:
             criterion = result.criterion

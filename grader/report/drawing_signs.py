@@ -1,4 +1,4 @@
-"""The signs of a drawing: ground, frames with axes, driving directions of wheels, outlines of the reference, numbers of callouts."""
+"""The signs of a drawing: ground, frames, driving directions of wheels, outlines of the reference, numbers."""
 
 from collections.abc import Iterable, Iterator
 from math import hypot
@@ -7,7 +7,7 @@ from typing import Any
 from grader.drawing.curves import AXES
 from grader.drawing.labels import Labels
 from grader.drawing.picture import Picture
-from grader.drawing.sheet import Cell, Place, seen_in
+from grader.drawing.sheet import Panel, Place, project
 from grader.report.svg_elements import circle, path_data, put, segments
 from grader.robot.transforms import Transform, Vector
 
@@ -39,7 +39,7 @@ class Signs:
         self._texts.setdefault(look, []).append((place, text))
 
     def put(self, group: Any) -> None:
-        """Add all signs, the lines with a halo that separates them from what is below."""
+        """Add the recorded signs, the lines with a halo that separates them from what is below, and forget them."""
         halo = [path for look, paths in self._paths.items() if look not in _NO_HALO for path in paths]
         if halo:
             put(group, "path", "halo", {"d": "".join(halo)})
@@ -49,115 +49,127 @@ class Signs:
             lines = put(group, "g", look)
             for (x, y), text in texts:
                 put(lines, "text", "", {"x": x, "y": y}, text)
+        self._paths, self._texts = {}, {}
+
+    def badge(self, centre: Place, number: int) -> None:
+        """Record a number in a disc."""
+        self.line("badge", circle(centre, _RADIUS))
+        self.text("number", (centre[0], centre[1] + 4.2), str(number))
 
 
-def add_ground(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
-    ground = picture.scene.ground
-    line = _ground_line(cell, ground) if ground is not None else None
-    if line is not None:
-        signs.line("ground", segments([line]))
-        place = line[0][0] + 15.0, line[0][1] + 11.0
-        labels.take(place, 40.0, 12.0)
-        signs.text("letter", place, "ground")
-    expected = picture.reference.ground if picture.reference is not None else None
-    if expected is not None and ground is not None and is_lifted(expected, ground):
-        line = _ground_line(cell, expected)
-        if line is not None:
-            signs.line("reference", segments([line]))
+class ViewSigns(Signs):
+    """The signs of a picture in one panel, with its labels."""
+
+    def __init__(self, panel: Panel, picture: Picture) -> None:
+        super().__init__()
+        self._panel, self._picture, self._labels = panel, picture, Labels(panel)
+
+    def add_ground(self) -> None:
+        """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
+        ground, reference = self._picture.scene.ground, self._picture.reference
+        if ground is None:
+            return
+        for start, end in self._ground_line(ground):
+            self.line("ground", segments([(start, end)]))
+            place = start[0] + 15.0, start[1] + 11.0
+            self._labels.take(place, 40.0, 12.0)
+            self.text("letter", place, "ground")
+        expected = reference.ground if reference is not None else None
+        if expected is not None and is_lifted(expected, ground):
+            for line in self._ground_line(expected):
+                self.line("reference", segments([line]))
+
+    def _ground_line(self, ground: Transform) -> Iterator[tuple[Place, Place]]:
+        """Yield the ends of the plane z = 0 of a frame in the panel, if it is seen edge-on and crosses the panel."""
+        panel = self._panel
+        across, down, depth = panel.direction(ground.rotate((0.0, 0.0, 1.0)))
+        if abs(depth) > 1e-3 or abs(down) < 0.05:
+            return
+        x, y = panel.place(ground.translation)
+        left, right = panel.left + 6.0, panel.left + panel.width - 6.0
+        start, end = ((end, y - (end - x) * across / down) for end in (left, right))
+        if all(panel.top <= height <= panel.top + panel.height for _, height in (start, end)):
+            yield start, end
+
+    def add_outlines(self) -> None:
+        """Add the dashed outlines of the reference, and its frames with their axes and letters."""
+        panel, picture, reference = self._panel, self._picture, self._picture.reference
+        if reference is None:
+            return
+        for seen in project(reference, picture.outlines, panel.view):
+            self.line("reference", path_data(panel, seen.outline, closed=True))
+            (a, b), (c, d), _ = seen.extents
+            self._labels.mark([panel.on_sheet((a, c, 0.0)), panel.on_sheet((b, d, 0.0))])
+        for link in picture.frames:
+            pose, own = reference.poses[link], picture.scene.poses.get(link)
+            if own is not None and self._look_of(pose) == self._look_of(own):
+                continue  # in this view it covers the robot's own
+            for name, start, tip, share, _ in self._axes(pose, _LONG_AXIS):
+                if share > _END_ON:
+                    self.line("reference", segments([(start, tip)]))
+                    self._add_letter(start, tip, name)
+
+    def add_frames(self, links: Iterable[str]) -> None:
+        """Add the frames of links with their axes and letters; of frames that look the same, only one."""
+        frames: dict[tuple[int, ...], Transform] = {}
+        for link in links:
+            pose = self._picture.scene.poses[link]
+            frames.setdefault(self._look_of(pose), pose)
+        for pose in frames.values():
+            for name, start, tip, share, depth in self._axes(pose, _AXIS):
+                if share > _END_ON:
+                    self.line(f"axis-{name}", segments([(start, tip)]))
+                    self._labels.mark([start, tip])
+                    self._add_letter(start, tip, name)
+                elif depth > 0.0:
+                    self.line(f"dot-{name}", circle(start, 3.0))  # to the viewer
+                else:
+                    self.line(f"axis-{name}", circle(start, 2.5))
+
+    def _axes(self, pose: Transform, length: float) -> Iterator[tuple[str, Place, Place, float, float]]:
+        """Yield the name, the ends, the apparent share of its length and the depth of each axis of a frame."""
+        start = self._panel.place(pose.translation)
+        for name, axis in _AXES:
+            x, y, depth = self._panel.direction(pose.rotate(axis))
+            yield name, start, (start[0] + length * x, start[1] + length * y), hypot(x, y), depth
+
+    def _look_of(self, pose: Transform) -> tuple[int, ...]:
+        """Return a key that is equal for frames that look the same in the panel."""
+        directions = (value for _, axis in _AXES for value in self._panel.direction(pose.rotate(axis)))
+        return (*map(round, self._panel.place(pose.translation)), *(round(10.0 * value) for value in directions))
+
+    def _add_letter(self, start: Place, tip: Place, name: str) -> None:
+        """Add the letter of an axis behind its tip, unless another one is there."""
+        across, down = tip[0] - start[0], tip[1] - start[1]
+        way = 1.0 + _LETTER / hypot(across, down)
+        place = start[0] + across * way, start[1] + down * way
+        if self._labels.take(place, 9.0, 11.0):
+            self.text("letter", (place[0], place[1] + 3.5), name)
+
+    def add_wheels(self) -> None:
+        """Add an arrow at each wheel for its driving direction; a circle with a slash if it does not roll."""
+        for wheel in self._picture.scene.wheels:
+            start = self._panel.place(wheel.centre)
+            travel = self._panel.direction(wheel.travel) if wheel.travel else None
+            self.line("arrow", wheel_sign(start, travel))
+            across, down, _ = travel or (0.0, 0.0, 0.0)
+            self._labels.mark([start, (start[0] + _ARROW * across, start[1] + _ARROW * down)], 5.0)
+
+    def add_callouts(self) -> None:
+        """Add the numbers of callouts beside their points, with leader lines, none over another."""
+        callouts = self._picture.callouts
+        points = [(one.number, self._panel.place(one.point)) for one in callouts if one.point is not None]
+        for _, point in points:
+            self._labels.mark([point], 5.0)
+        for number, point in points:
+            centre = self._labels.put_near(point, 2.0 * _RADIUS + 2.0)
+            self.line("leader", segments([(point, centre)]) + circle(point, 1.5))
+            self.badge(centre, number)
 
 
 def is_lifted(one: Transform, other: Transform) -> bool:
     """Return whether two grounds differ in height."""
     return abs(one.translation[2] - other.translation[2]) > _SAME
-
-
-def _ground_line(cell: Cell, ground: Transform) -> tuple[Place, Place] | None:
-    """Return both ends of the plane z = 0 of a frame in a cell, if it is seen edge-on and crosses the cell."""
-    across, down, depth = cell.direction(ground.rotate((0.0, 0.0, 1.0)))
-    if abs(depth) > 1e-3 or abs(down) < 0.05:
-        return None
-    x, y = cell.place(ground.translation)
-    ends = [(end, y - (end - x) * across / down) for end in (cell.left + 6.0, cell.left + cell.width - 6.0)]
-    if not all(cell.top <= height <= cell.top + cell.height for _, height in ends):
-        return None
-    return ends[0], ends[1]
-
-
-def add_outlines(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add the dashed outlines of the reference, and its frames with their axes and letters."""
-    if picture.reference is None:
-        return
-    for seen in seen_in(picture.reference, picture.outlines, cell.view):
-        signs.line("reference", path_data(cell, seen.outline, closed=True))
-        (a, b), (c, d), _ = seen.extents
-        labels.mark([cell.on_sheet((a, c, 0.0)), cell.on_sheet((b, d, 0.0))])
-    for link in picture.frames:
-        pose = picture.reference.poses[link]
-        if link in picture.scene.poses and _look_of(cell, pose) == _look_of(cell, picture.scene.poses[link]):
-            continue  # in this view it covers the robot's own
-        start = cell.place(pose.translation)
-        for name, axis in _AXES:
-            tip, length = _tip(cell, start, pose.rotate(axis), _LONG_AXIS)
-            if length > _END_ON:
-                signs.line("reference", segments([(start, tip)]))
-                _add_letter(signs, labels, start, tip, name)
-
-
-def add_frames(signs: Signs, cell: Cell, picture: Picture, labels: Labels, links: Iterable[str]) -> None:
-    """Add the frames of links with their axes and letters; of frames that look the same, only one."""
-    shown: set[object] = set()
-    for link in links:
-        pose = picture.scene.poses[link]
-        look = _look_of(cell, pose)
-        if look not in shown:
-            shown.add(look)
-            _add_frame(signs, cell, pose, labels)
-
-
-def _look_of(cell: Cell, pose: Transform) -> tuple[int, ...]:
-    """Return a key that is equal for frames that look the same in a cell."""
-    seen = (value for _, axis in _AXES for value in cell.direction(pose.rotate(axis)))
-    return (*map(round, cell.place(pose.translation)), *(round(10.0 * value) for value in seen))
-
-
-def _add_frame(signs: Signs, cell: Cell, pose: Transform, labels: Labels) -> None:
-    start = cell.place(pose.translation)
-    for name, axis in _AXES:
-        tip, length = _tip(cell, start, pose.rotate(axis))
-        if length > _END_ON:
-            signs.line(f"axis-{name}", segments([(start, tip)]))
-            labels.mark([start, tip])
-            _add_letter(signs, labels, start, tip, name)
-        elif cell.direction(pose.rotate(axis))[2] > 0.0:
-            signs.line(f"dot-{name}", circle(start, 3.0))  # to the viewer
-        else:
-            signs.line(f"axis-{name}", circle(start, 2.5))
-
-
-def _add_letter(signs: Signs, labels: Labels, start: Place, tip: Place, name: str) -> None:
-    """Add the letter of an axis behind its tip, unless another one is there."""
-    long = hypot(tip[0] - start[0], tip[1] - start[1])
-    way = 1.0 + _LETTER / long
-    place = start[0] + (tip[0] - start[0]) * way, start[1] + (tip[1] - start[1]) * way
-    if labels.take(place, 9.0, 11.0):
-        signs.text("letter", (place[0], place[1] + 3.5), name)
-
-
-def _tip(cell: Cell, start: Place, axis: Vector, length: float = _AXIS) -> tuple[Place, float]:
-    """Return the end of an axis on the sheet, and its apparent share of its length."""
-    x, y, _ = cell.direction(axis)
-    return (start[0] + length * x, start[1] + length * y), hypot(x, y)
-
-
-def add_wheels(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add an arrow at each wheel for its driving direction at a positive turn, or a circle with a slash if it does not roll."""
-    for wheel in picture.scene.wheels:
-        start = cell.place(wheel.centre)
-        travel = cell.direction(wheel.travel) if wheel.travel else None
-        signs.line("arrow", wheel_sign(start, travel))
-        across, down, _ = travel or (0.0, 0.0, 0.0)
-        labels.mark([start, (start[0] + _ARROW * across, start[1] + _ARROW * down)], 5.0)
 
 
 def wheel_sign(start: Place, travel: Vector | None) -> str:
@@ -167,31 +179,9 @@ def wheel_sign(start: Place, travel: Vector | None) -> str:
         return circle(start, 8.0) + segments([((x - 5.6, y + 5.6), (x + 5.6, y - 5.6))])
     across, down, depth = travel
     if hypot(across, down) < _END_ON:
-        return circle(start, 7.0) + (circle(start, 1.2) if depth > 0.0 else segments(_cross(start, 4.0)))
+        cross = [((x - 4.0, y - sign * 4.0), (x + 4.0, y + sign * 4.0)) for sign in (1.0, -1.0)]
+        return circle(start, 7.0) + (circle(start, 1.2) if depth > 0.0 else segments(cross))
     tip = x + _ARROW * across, y + _ARROW * down
     back, side = (-_HEAD * across, -_HEAD * down), (-_HEAD * 0.7 * down, _HEAD * 0.7 * across)
     barbs = [(tip, (tip[0] + back[0] + sign * side[0], tip[1] + back[1] + sign * side[1])) for sign in (1.0, -1.0)]
     return segments([(start, tip), *barbs])
-
-
-def _cross(middle: Place, half: float) -> Iterator[tuple[Place, Place]]:
-    x, y = middle
-    yield (x - half, y - half), (x + half, y + half)
-    yield (x - half, y + half), (x + half, y - half)
-
-
-def add_callouts(signs: Signs, cell: Cell, picture: Picture, labels: Labels) -> None:
-    """Add the numbers of callouts beside their points, with leader lines, none over another."""
-    points = [(callout.number, cell.place(callout.point)) for callout in picture.callouts if callout.point is not None]
-    for _, point in points:
-        labels.mark([point], 5.0)
-    for number, point in points:
-        centre = labels.put_near(point, 2.0 * _RADIUS + 2.0)
-        signs.line("leader", segments([(point, centre)]) + circle(point, 1.5))
-        add_badge(signs, centre, number)
-
-
-def add_badge(signs: Signs, centre: Place, number: int) -> None:
-    """Add a number in a disc."""
-    signs.line("badge", circle(centre, _RADIUS))
-    signs.text("number", (centre[0], centre[1] + 4.2), str(number))

@@ -1,4 +1,4 @@
-"""One criterion in the report for a terminal: a failure with what to do, or what needs manual grading."""
+"""The criteria in the report for a terminal: a failure with what to do, what needs manual grading, lists."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -8,10 +8,10 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report, Result
-from grader.report import content
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import SYMBOLS, Details, diff_lines, location_text, result_details, sentence, status_of
-from grader.report.order import Failure, hint_of
+from grader.report.details import SYMBOLS, Details, hint_of, result_details, sentence
+from grader.report.locations import diff_lines, location_text
+from grader.report.order import CriteriaGroup, FailedCriterion, earned_text, points_of, status_of
 from grader.text import printable
 
 STYLES = {
@@ -24,22 +24,23 @@ STYLES = {
     "partial": "bold yellow",
 }
 _ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
-_CHANGES = {"-": "red", "+": "green"}
+_DIFF_STYLES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_FIRST = 3  # failures with their source line
 _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 
 
 class Page(NamedTuple):
-    """The report, the console, whether everything is shown, the feedback that is printed already, and how roomy it is.
+    """The report, the console, whether all is printed, the feedback that is printed already, and how roomy it is.
 
-    A page of 24 rows is filled: the `room` is 2 as long as everything fits, then 1 without titles and groups, then 0 without empty rows.
+    A page of 24 rows is filled: the `room` is 2 as long as everything fits, then 1 without titles and groups, then 0
+    without empty rows.
     """
 
     report: Report
     console: Console
     is_verbose: bool
-    shown: set[str]
+    printed: set[str]
     room: int
 
     def leave_row(self) -> None:
@@ -47,43 +48,56 @@ class Page(NamedTuple):
         if self.room:
             self.console.print()
 
+    def title(self, text: str, style: str = "bold") -> None:
+        """Print a title."""
+        wrapped(self.console, Text(text, style), 0)
 
-def mark(status: str, console: Console) -> Text:
-    """Return the symbol of a status in its colour."""
-    return Text(symbol(console, SYMBOLS[status], _ASCII[status]), STYLES[status])
+    def line(self, text: str, style: str = "") -> None:
+        """Print a line of its own, with an indent where it wraps."""
+        wrapped(self.console, Text(text, style), INDENT, Text())
+
+    def inset(self, text: str, style: str = "", levels: int = 1) -> None:
+        """Print a text below a title or an item."""
+        wrapped(self.console, Text(text, style), levels * INDENT)
+
+    def item(self, status: str, *parts: str | tuple[str, str]) -> None:
+        """Print texts, with their styles, behind the symbol of a status."""
+        wrapped(self.console, Text.assemble(*parts), INDENT, self.mark(status) + Text(" "))
+
+    def mark(self, status: str) -> Text:
+        """Return the symbol of a status in its colour."""
+        return Text(symbol(self.console, SYMBOLS[status], _ASCII[status]), STYLES[status])
 
 
-def show_failure(failure: Failure, page: Page, number: int) -> None:
+def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:
     """Print a criterion that failed: what it costs, what is and what should be, where, and what to do.
 
-    Unless everything is shown, only the first failures have their source line, and long texts are cut.
+    Unless everything is printed, only the first failures have their source line, and long texts are cut.
     """
-    result, console = failure.result, page.console
-    details = result_details(result, page.report)
-    head, message = _head(failure, details, page), _message(details, result)
-    texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
+    console, details = page.console, result_details(failure.result, page.report)
     is_first = page.is_verbose or number < _MAX_FIRST
-    if not page.room:
-        texts = [
-            block(console, Text(": ").join((head, message)), INDENT, Text(), _MAX_ROWS if is_first else _MAX_REASON)
-        ]
+    head, message = _head(failure, details, page), _message(details, failure.result)
+    if page.room:
+        texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
+    else:
+        most = _MAX_ROWS if is_first else _MAX_REASON
+        texts = [block(console, Text(": ").join((head, message)), INDENT, Text(), most)]
     texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
     texts += _hints(failure, details, page)
-    reasons = [*_reasons(details, result, page)] if page.room or is_first else []
-    page.shown.update(text.plain for text in reasons)
-    skipped = [_skipped(failure)] if failure.skipped and page.room else []
-    most = None if page.room else _MAX_REASON - (number > 0)
-    texts += [block(console, text, INDENT, most=most) for text in (*reasons, *skipped)]
+    reasons = [*_reasons(details, failure.result, page)] if page.room or is_first else []
+    page.printed.update(text.plain for text in reasons)
+    reasons += _consequence(failure) if page.room else ()
+    most_reasons = None if page.room else _MAX_REASON - (number > 0)
+    texts += [block(console, text, INDENT, most=most_reasons) for text in reasons]
     page.leave_row()
     put(console, Text("\n").join(texts))
 
 
-def _head(failure: Failure, details: Details, page: Page) -> Text:
-    result = failure.result
-    status = {"errored": "errored", "partial": "partial"}.get(status_of(result), "failed")
-    text = Text.assemble(mark(status, page.console), " ", (printable(result.criterion.id), "bold"))
-    text.append(f"  {content.cost_text(failure)}", STYLES[status])
+def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
+    status = status_of(failure.result)
+    text = Text.assemble(page.mark(status), " ", (printable(failure.id), "bold"))
+    text.append(f"  {failure.cost}", STYLES[status])
     if failure.skipped and not page.room:
         text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
@@ -93,9 +107,9 @@ def _head(failure: Failure, details: Details, page: Page) -> Text:
 
 
 def _message(details: Details, result: Result) -> Text:
-    """Return the sentences of a failure: a mark and then what the check found, or a fault of the grader, which stands out."""
+    """Return the sentences of a failure: a mark and what the check found, or a fault of the grader."""
     styles = ("bold", "dim") if result.manual_mark is not None else ("", "bold")
-    if result.outcome.status == "errored" and result.manual_mark is None:
+    if status_of(result) == "errored":
         styles = (STYLES["errored"], "")
     return Text(" ").join(Text(text, style) for text, style in zip(details.sentences, styles, strict=False))
 
@@ -107,49 +121,67 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
         yield excerpt_block(page.console, source, where, INDENT, is_underlined=bool(page.room))
 
 
-def _hints(failure: Failure, details: Details, page: Page) -> Iterator[Text]:
+def _hints(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Text]:
     """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
     for hint in details.hints[: None if page.is_verbose else 1]:
         whole = block(page.console, Text(hint.message, "bold"), INDENT)
-        is_long = not page.is_verbose and hint.action and _height(whole) >= _MAX_ROWS
+        is_long = not page.is_verbose and hint.action and whole.plain.count("\n") + 1 >= _MAX_ROWS
         if is_long:
             short = hint_of(failure, hint._replace(message=f"{sentence(hint.action)} --verbose shows the edits."))
             whole = block(page.console, Text(short.message, "bold"), INDENT)
         yield whole
-        if page.is_verbose:
-            lines = diff_lines(hint.edits, page.report.submission.source)
-            yield from (block(page.console, Text(line, _CHANGES.get(line[0], "dim")), 2 * INDENT) for line in lines)
+        for line in diff_lines(hint.edits, page.report.submission.source) if page.is_verbose else ():
+            yield block(page.console, Text(line, _DIFF_STYLES.get(line[0], "dim")), 2 * INDENT)
 
 
 def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
-    """Yield the feedback where there is no hint, and what should be where the message does not say it; with room for it both."""
-    if details.feedback and details.feedback not in page.shown and (page.is_verbose or not details.hints):
+    """Yield the feedback where there is no hint, and what should be where the message does not say it.
+
+    With room for it, both.
+    """
+    if details.feedback and details.feedback not in page.printed and (page.is_verbose or not details.hints):
         yield Text(details.feedback, "italic")
     is_clear = result.outcome.expected is not None or (not page.room and bool(details.advice))
     if details.expected and (page.room > 1 or not is_clear):
         yield Text(details.expected, "dim")
 
 
-def _skipped(failure: Failure) -> Text:
-    number, points = len(failure.skipped), content.points_of(failure.skipped)
-    words = "criterion is" if number == 1 else "criteria are"
-    return Text(f"{number} {words} skipped because of it ({points}).", "yellow")
-
-
-def _height(text: Text) -> int:
-    return text.plain.count("\n") + 1
+def _consequence(failure: FailedCriterion) -> Iterator[Text]:
+    if failure.skipped:
+        words = "criterion is" if len(failure.skipped) == 1 else "criteria are"
+        points = points_of(failure.skipped)
+        yield Text(f"{len(failure.skipped)} {words} skipped because of it ({points}).", "yellow")
 
 
 def show_answer(result: Result, page: Page) -> None:
     """Print what needs manual grading, or has a manual mark, with the answer that was found and the model answer."""
-    details, console = result_details(result, page.report), page.console
-    title = Text.assemble((printable(result.criterion.title), "bold"), (f"  {result.criterion.id}", "dim"))
-    title.append(f"  {content.earned_text((result,))}")
-    wrapped(console, title, INDENT, mark(status_of(result), console) + Text(" "))
+    details, criterion = result_details(result, page.report), result.criterion
+    name = ((printable(criterion.title), "bold"), (f"  {criterion.id}", "dim"))
+    page.item(status_of(result), *name, f"  {earned_text(result)}")
     for text in details.words:
-        wrapped(console, Text(text), INDENT)
-    for name, lines in (("Found", details.answer), ("Model answer", details.model_answer)):
+        page.inset(text)
+    for title, lines in (("Found", details.answer), ("Model answer", details.model_answer)):
         if lines:
-            wrapped(console, Text(f"{name}:", "bold"), INDENT)
+            page.inset(f"{title}:", "bold")
         for line in lines:
-            wrapped(console, Text(line), 2 * INDENT)
+            page.inset(line, levels=2)
+
+
+def show_criteria(group: CriteriaGroup, page: Page, *, has_title: bool) -> None:
+    """Print the criteria of a group, a line for each."""
+    if has_title:
+        page.console.print()
+        wrapped(page.console, Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim")), 0)
+    for result in group.results:
+        start = Text.assemble("  ", page.mark(status_of(result)), f" {earned_text(result):<5} ")
+        wrapped(page.console, _line(result), len(start), start)
+
+
+def _line(result: Result) -> Text:
+    """Return a criterion in a line: its title if it passed, else its name, because a title would read as a fact."""
+    status = status_of(result)
+    if status == "passed":
+        return Text(printable(result.criterion.title))
+    is_consequence = status == "skipped" and result.because is not None
+    reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
+    return Text.assemble(printable(result.criterion.id), (reason, "dim"))

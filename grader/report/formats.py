@@ -1,7 +1,6 @@
 """The formats of a report: the one registry from which options, completion, files and documentation take them."""
 
 import os
-from collections.abc import Callable
 from enum import StrEnum
 from functools import partial
 from importlib import import_module
@@ -18,56 +17,49 @@ if TYPE_CHECKING:
 Need = Literal["", "console", "base", "identity", "picture"]
 
 
-class Format(StrEnum):
-    """A format of a report: its name, the ending of its files, `module:function` in this package, and what that function needs.
+class _Row(StrEnum):
+    """A format: its name, `module:function` in this package, what that function needs, and the ending of its files.
 
-    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base` is where
-    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment; `picture` is the relative address
-    of the robot's drawing that is saved with the report.
+    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base`
+    is where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment;
+    `picture` is the relative address of the robot's drawing that is saved with the report.
     """
 
-    ending: str
     function: str
     needs: Need
+    ending: str
 
-    # The endings differ, so that one folder can contain a report in every format under one name.
-    TERMINAL = "terminal", "txt", "terminal:render_terminal", "console"
-    MARKDOWN = "markdown", "md", "markdown:render_markdown", "picture"
-    JSON = "json", "json", "as_json:render_json"
-    JUNIT = "junit", "xml", "junit:render_junit", "base"
-    SARIF = "sarif", "sarif", "sarif:render_sarif", "base"
-    GITHUB = "github", "github.txt", "annotations:render_github", "base"
-    GRADESCOPE = "gradescope", "gradescope.json", "platforms:render_gradescope"
-    CLASSROOM50 = "classroom50", "classroom50.json", "platforms:render_classroom50", "identity"
-    HTML = "html", "html", "pages.student:render_html"
-    CODECLIMATE = "codeclimate", "codeclimate.json", "annotations:render_codeclimate", "base"
-    SVG = "svg", "svg", "drawing:render_svg"
-
-    def __new__(cls, name: str, ending: str = "", function: str = "", needs: Need = "") -> Self:
+    def __new__(cls, name: str, function: str = "", needs: Need = "", ending: str = "") -> Self:
         """Return a member with its row; the defaults are for a look-up by name alone."""
         member = str.__new__(cls, name)
         member._value_ = name
-        member.ending, member.function, member.needs = ending, function, needs
+        member.function, member.needs, member.ending = function, needs, ending or name
         return member
 
 
-class InspectFormat(StrEnum):
-    """A format of an inspection: its name and `module:function` in this package; with the need `console` it prints."""
+class Format(_Row):
+    """The formats of a report. Their endings differ, so that one folder can contain a report in all of them."""
 
-    function: str
-    needs: Need
+    TERMINAL = "terminal", "terminal:render_terminal", "console", "txt"
+    MARKDOWN = "markdown", "markdown:render_markdown", "picture", "md"
+    JSON = "json", "as_json:render_json"
+    JUNIT = "junit", "junit:render_junit", "base", "xml"
+    SARIF = "sarif", "sarif:render_sarif", "base"
+    GITHUB = "github", "annotations:render_github", "base", "github.txt"
+    GRADESCOPE = "gradescope", "platforms:render_gradescope", "", "gradescope.json"
+    CLASSROOM50 = "classroom50", "platforms:render_classroom50", "identity", "classroom50.json"
+    HTML = "html", "pages.student:render_html"
+    CODECLIMATE = "codeclimate", "annotations:render_codeclimate", "base", "codeclimate.json"
+    SVG = "svg", "drawing:render_svg"
+
+
+class InspectFormat(_Row):
+    """The formats of an inspection."""
 
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
     SVG = "svg", "drawing:inspection_svg"
-    HTML = "html", "pages.inspection:inspection_html"
-
-    def __new__(cls, name: str, function: str = "", needs: Need = "") -> Self:
-        """Return a member with its row."""
-        member = str.__new__(cls, name)
-        member._value_ = name
-        member.function, member.needs = function, needs
-        return member
+    HTML = "html", "pages.robot:inspection_html"
 
 
 class OutputFormat(StrEnum):
@@ -75,6 +67,27 @@ class OutputFormat(StrEnum):
 
     TERMINAL = "terminal"
     JSON = "json"
+
+
+# The record or the schema of each JSON document: its title, and where it is.
+_SCHEMAS = {
+    "report": ("report", "as_json:REPORT"),
+    "inspect": ("inspection", "inspection:INSPECTION"),
+    "rubric-test": ("rubric test", "rubric_test:RUBRIC_TEST"),
+    "class": ("class", "class_schemas:CLASS"),
+    "diff": ("diff", "class_schemas:DIFF"),
+}
+
+
+def json_schema(name: str) -> dict[str, Any]:
+    """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
+    from grader.grading.schema import rubric_schema
+
+    if name == "rubric":
+        return rubric_schema()
+    title, place = _SCHEMAS[name]
+    draft = "https://json-schema.org/draft/2020-12/schema"
+    return {"$schema": draft, "title": f"grader {title}", **_load(place).schema}
 
 
 def render(
@@ -88,41 +101,38 @@ def render(
 ) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
-    `base` is where the submission is in its repository; without it its paths are the repository's. The format `terminal` shows
-    everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows. Raises InputError if the
-    environment does not say whose result it is (Classroom 50).
+    `base` is where the submission is in its repository; without it its paths are the repository's. The format
+    `terminal` shows everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows.
+    Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
-    function = _function(kind)
     if kind.needs == "console":
-        return draw(partial(function, report, verbose=verbose), screen)
-    text: str = function(report, *needed(kind, base, picture))
+        return draw(partial(_load(kind.function), report, verbose=verbose), screen)
+    text: str = _load(kind.function)(report, *inputs_of(kind, base, picture))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
 def render_inspection(inspection: "Inspection", kind: InspectFormat, screen: Screen) -> str:
     """Return an inspection in a format, for a screen or a file."""
-    function = _function(kind)
-    if kind.needs == "console":
-        return draw(partial(function, inspection), screen)
-    return without_commands(function(inspection))
+    function = partial(_load(kind.function), inspection)
+    return draw(function, screen) if kind.needs == "console" else without_commands(function())
 
 
-def _function(kind: Format | InspectFormat) -> Callable[..., Any]:
-    module, _, name = kind.function.partition(":")
-    function: Callable[..., Any] = getattr(import_module(f"grader.report.{module}"), name)
-    return function
+def _load(place: str) -> Any:
+    module, _, name = place.partition(":")
+    return getattr(import_module(f"grader.report.{module}"), name)
 
 
-def needed(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
+def inputs_of(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
-    if kind.needs == "base":
-        from grader.report.locations import Base
+    match kind.needs:
+        case "base":
+            from grader.report.locations import Base
 
-        return (base or Base(),)
-    if kind.needs == "identity":
-        from grader.report.platforms import identity_from
+            return (base or Base(),)
+        case "identity":
+            from grader.report.platforms import identity_from
 
-        return (identity_from(os.environ),)
-    if kind.needs == "picture":
-        return (picture,)
+            return (identity_from(os.environ),)
+        case "picture":
+            return (picture,)
     return ()

@@ -4,14 +4,27 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
-from typing import Any
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
-from grader.report.console import show_problems, symbol, wrapped
-from grader.report.json_data import problem, rounded, to_json
+from grader.report.as_json import PROBLEM
+from grader.report.console import put, show_problems, symbol, wrapped
+from grader.report.json_data import (
+    NUMBER,
+    TEXT,
+    Many,
+    Maybe,
+    Record,
+    Schema,
+    array,
+    each,
+    mapping,
+    nullable,
+    schema_key,
+    to_json,
+)
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
@@ -54,25 +67,45 @@ def main_root(robot: Configuration) -> str | None:
     return next(iter(robot.main_tree), None)
 
 
-def inspection_json(inspection: Inspection) -> str:
-    """Return the inspection as JSON, schema grader/inspect/v1. An undefined pose is null."""
-    poses = {name: rounded_matrix(pose) if isinstance(pose, Transform) else None for name, pose in inspection.poses()}
-    return to_json(
-        {
-            "schema": "grader/inspect/v1",
-            "path": inspection.path,
-            "verdict": inspection.reading.verdict,
-            "problems": [problem(found) for found in inspection.reading.problems],
-            "robot": _robot(inspection.robot) if inspection.robot is not None else None,
-            "relative_to": inspection.relative_to,
-            "poses": poses,
-        }
-    )
+def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
+    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ beyond that."""
+    poses = inspection.poses()
+    return {name: _rows(pose) if isinstance(pose, Transform) else None for name, pose in poses}
 
 
-def rounded_matrix(pose: Transform) -> list[list[float]]:
-    """Return a pose as rows of numbers, rounded to 1e-12, because machines differ beyond that."""
+def _rows(pose: Transform) -> list[list[float]]:
     return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
+
+
+def _vector(items: Schema, length: int) -> Schema:
+    return {**array(items), "minItems": length, "maxItems": length}
+
+
+_JOINT = Record({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
+_ROBOT = Record(
+    {
+        "name": (TEXT, "robot.name"),
+        "root": (nullable(TEXT), main_root),
+        "links": (array(TEXT), lambda robot: [link.name for link in robot.robot.links]),
+        "joints": (Many(_JOINT), "robot.joints"),
+    }
+)
+INSPECTION = Record(
+    {
+        **schema_key("grader/inspect/v1"),
+        "path": TEXT,
+        "verdict": ({"enum": ["clean", "degraded", "rejected"]}, "reading.verdict"),
+        "problems": (Many(PROBLEM), "reading.problems"),
+        "robot": Maybe(_ROBOT),
+        "relative_to": nullable(TEXT),
+        "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
+    }
+)
+
+
+def inspection_json(inspection: Inspection) -> str:
+    """Return the inspection as JSON. An undefined pose is null."""
+    return to_json(INSPECTION.data(inspection))
 
 
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
@@ -80,29 +113,29 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     words = effect(reading)
-    console.print(
-        Text.assemble((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
-    )
+    head = ((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
+    console.print(Text.assemble(*head))
     if reading.problems:
-        console.print()
-        console.print(Text("Problems", style="bold"))
+        _print_title(console, "Problems")
         show_problems(console, reading.problems, lambda _: reading.source, inspection.path)
     if robot is None:
         return
-    console.print()
-    console.print(Text("Tree", style="bold"))
+    _print_title(console, "Tree")
     signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
     for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-        line = Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim"))
-        console.print(line, overflow="ignore", no_wrap=True, crop=False)
+        put(console, Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
     _print_rest(console, len(robot.roots) + len(robot.holding))
-    console.print()
     frame = printable(inspection.relative_to or "")
-    console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
+    _print_title(console, f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)")
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
         wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
     _print_rest(console, len(robot.robot.links))
+
+
+def _print_title(console: Console, title: str) -> None:
+    console.print()
+    console.print(Text(title, "bold"))
 
 
 def _print_rest(console: Console, count: int) -> None:
@@ -155,15 +188,3 @@ def _pose_text(pose: Transform) -> str:
 
 def _numbers(values: tuple[float, ...]) -> str:
     return " ".join(f"{round(value, 4) + 0.0:g}" for value in values)
-
-
-def _robot(robot: Configuration) -> dict[str, Any]:
-    return {
-        "name": robot.robot.name,
-        "root": main_root(robot),
-        "links": [link.name for link in robot.robot.links],
-        "joints": [
-            {name: rounded(getattr(joint, name)) for name in ("name", "type", "parent", "child", "axis")}
-            for joint in robot.robot.joints
-        ],
-    }

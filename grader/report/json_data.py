@@ -1,13 +1,12 @@
-"""JSON text and values that are the same bytes on every machine."""
+"""JSON text that is the same bytes everywhere, and records of its keys, from which data and schemas follow."""
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
-from typing import Any
-
-from grader.problems import Problem
-from grader.source import Edit, Location
+from operator import attrgetter
+from typing import Any, TypeVar
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
@@ -52,40 +51,149 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return a value rounded to 1e-6, because machines differ in the last digits; never -0, None if it is not finite."""
+    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN or infinity."""
+    if value is None or isinstance(value, str | int):
+        return value
     if isinstance(value, float):
         return round(value, 6) + 0.0 if value - value == 0 else None
-    if isinstance(value, tuple | list):
-        return [rounded(item) for item in value]
-    return dict(value) if isinstance(value, Mapping) else value
-
-
-def plain(value: Any) -> Any:
-    """Return points as a JSON number, and any other value rounded."""
-    return exact(value) if isinstance(value, Decimal) else rounded(value)
+    if isinstance(value, Decimal):
+        return exact(value)
+    if isinstance(value, Mapping):
+        return {key: rounded(item) for key, item in value.items()}
+    return [rounded(item) for item in value]
 
 
 def fields(value: object, names: str) -> dict[str, Any]:
     """Return some fields of an object as plain data; `names` are separated by spaces."""
-    return {name: plain(getattr(value, name)) for name in names.split()}
+    return {name: rounded(getattr(value, name)) for name in names.split()}
 
 
-def location(where: Location | None) -> dict[str, Any] | None:
-    """Return a location as plain data."""
-    if where is None:
-        return None
-    place: dict[str, Any] = {"path": where.path, "line": where.line, "column": where.column}
-    calls = [{"macro": macro, "location": location(called)} for macro, called in where.calls]
-    return {**place, "calls": calls} if calls else place
+K = TypeVar("K")
+Schema = dict[str, Any]
+TEXT: Schema = {"type": "string"}
+NUMBER: Schema = {"type": "number"}
+COUNT: Schema = {"type": "integer", "minimum": 1}
+POINTS: Schema = {"type": "number", "minimum": 0}
+TOTAL: Schema = {"type": "integer", "minimum": 0}
+FLAG: Schema = {"type": "boolean"}
+HASH: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+VALUE: Schema = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 
 
-def problem(found: Problem) -> dict[str, Any]:
-    """Return a problem as plain data."""
-    words = {"code": found.code, "severity": found.severity, "message": found.message}
-    return {**words, "location": location(found.location)}
+def record(properties: Mapping[str, Schema], optional: Sequence[str] = ()) -> Schema:
+    """Return the schema of an object with exactly these properties."""
+    required = [name for name in properties if name not in optional]
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
-def edit(change: Edit) -> dict[str, Any]:
-    """Return an edit as plain data; only the name of a file that is renamed has the key `renamed`."""
-    data = change._asdict()
-    return data if change.renamed else {key: value for key, value in data.items() if key != "renamed"}
+def array(items: Schema) -> Schema:
+    """Return the schema of an array."""
+    return {"type": "array", "items": items}
+
+
+def mapping(values: Schema) -> Schema:
+    """Return the schema of an object with any keys."""
+    return {"type": "object", "additionalProperties": values}
+
+
+def nullable(schema: Schema) -> Schema:
+    """Return a schema that also allows null."""
+    return {"anyOf": [schema, {"type": "null"}]}
+
+
+def each(kind: K, names: str) -> dict[str, K]:
+    """Return keys of one type, from their names between spaces."""
+    return dict.fromkeys(names.split(), kind)
+
+
+class Record:
+    """A JSON object: for each key its type, and the attribute of the described value or the function of it.
+
+    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or
+    what a record describes. Keys in `optional` are absent where they would be empty.
+    """
+
+    # mypy does not check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
+    def __init__(self, keys: Mapping[str, "KeyType | Key"], optional: tuple[str, ...] = ()) -> None:
+        self.keys, self.optional = keys, optional
+        pairs = {name: key if isinstance(key, tuple) else (key, name) for name, key in keys.items()}
+        self._kinds = {name: kind for name, (kind, _) in pairs.items()}
+        self._readers = {name: _reader(*pair) for name, pair in pairs.items()}
+
+    @property
+    def schema(self) -> Schema:
+        """The schema of the object."""
+        return record({name: _schema(kind) for name, kind in self._kinds.items()}, self.optional)
+
+    def data(self, value: Any) -> dict[str, Any]:
+        """Return the object that describes a value."""
+        found = {name: read(value) for name, read in self._readers.items()}
+        for name in self.optional:
+            if not found[name]:
+                del found[name]
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Many:
+    """An array of records."""
+
+    of: Record
+
+
+@dataclass(frozen=True, slots=True)
+class Maybe:
+    """A record or null."""
+
+    of: Record
+
+
+KeyType = Schema | Record | Many | Maybe
+Origin = str | Callable[[Any], Any]
+Key = tuple[KeyType, Origin]
+
+
+def _schema(kind: KeyType) -> Schema:
+    match kind:
+        case Record():
+            return kind.schema
+        case Many():
+            return array(kind.of.schema)
+        case Maybe():
+            return nullable(kind.of.schema)
+    return kind
+
+
+def _reader(kind: KeyType, origin: Origin) -> Callable[[Any], Any]:
+    """Return the function from a value to what a key of its record has."""
+    get = attrgetter(origin) if isinstance(origin, str) else origin
+    match kind:
+        case Many():
+            return lambda value: list(map(kind.of.data, get(value)))
+        case Maybe():
+            return lambda value: _optional(kind.of, get(value))
+        case Record():
+            return lambda value: _optional(kind, get(value))
+    is_plain = callable(origin) or kind.get("type") in ("string", "integer", "boolean")
+    return get if is_plain else lambda value: rounded(get(value))
+
+
+def _optional(of: Record, found: Any) -> dict[str, Any] | None:
+    return of.data(found) if found is not None else None
+
+
+def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:
+    """Return keys that have the attributes of their names of an attribute of a value."""
+    return {name: (kind, f"{owner}.{name}") for name, kind in keys.items()}
+
+
+def schema_key(schema: str) -> dict[str, Key]:
+    """Return the key that names the schema of a document."""
+    return {"schema": ({"const": schema}, lambda _: schema)}
+
+
+GRADER = record({"version": TEXT})
+RUBRIC = Record({**each(TEXT, "id title"), "sha256": HASH})
+PLACE = {"path": TEXT, **each(COUNT, "line column")}
+EDIT = Record({**PLACE, **each(TEXT, "old new renamed")}, ("renamed",))
+ADJUSTMENT = Record({"action": {"enum": ["drop", "full"]}, "reason": TEXT})

@@ -1,7 +1,7 @@
 """A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
 
-A failure is the student's, an error the grader's. What needs manual grading and extra credit that was not earned are skipped.
-There are no times: the same submission gives the same report.
+A failure is the student's, an error the grader's. What needs manual grading and extra credit that was not earned are
+skipped. There are no times: the same submission gives the same report.
 """
 
 from itertools import groupby
@@ -10,56 +10,47 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import counting_text, earned_text, other_problems, score_text
-from grader.report.details import result_details
+from grader.report.content import counting_text, other_problems, problem_line, provenance, score_text, submission_lines
+from grader.report.details import criterion_lines, result_details
 from grader.report.locations import Base, archive_around
-from grader.report.order import is_failure
-from grader.report.plain_text import criterion_lines, problem_line, provenance, submission_lines
+from grader.report.order import earned_text, is_failure, status_of
 from grader.text import format_points, printable
+
+# The element for each status of a criterion that is not passed.
+_KINDS = {"failed": "failure", "partial": "failure", "errored": "error", "skipped": "skipped", "pending": "skipped"}
+_COUNTS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
 
 def render_junit(report: Report, base: Base) -> str:
     """Return the report; its paths are those in the repository, where the submission is at `base`."""
     top = etree.Element("testsuites", {"name": printable(report.rubric.title), **_counts(report.results)})
-    titles = {part.id: part.title for part in report.rubric.parts}
-    said = [
-        score_text(report),
-        *submission_lines(report),
-        *map(problem_line, other_problems(report)),
-        provenance(report),
-    ]
-    suites = [
-        (titles[part], tuple(some)) for part, some in groupby(report.results, key=lambda result: result.criterion.part)
-    ]
+    problems = map(problem_line, other_problems(report))
+    said = [score_text(report), *submission_lines(report), *problems, provenance(report)]
+    parts = groupby(report.results, key=lambda result: result.criterion.part)
+    suites = [(report.rubric.part(part).title, tuple(some)) for part, some in parts]
     for number, (title, results) in enumerate(suites or [(report.rubric.title, ())]):
         suite = etree.SubElement(top, "testsuite", {"name": printable(title), **_counts(results)})
         if number == 0:  # the format has no other place for it that every reader shows
-            _properties(suite, _submission_properties(report))
+            _properties(suite, _facts(report))
         for result in results:
             _case(suite, result, report, base)
         if number == 0:
-            etree.SubElement(suite, "system-out").text = "\n".join(said) + "\n"
+            _put(suite, "system-out", said)
     etree.indent(top)
     return etree.tostring(top, encoding="utf-8", xml_declaration=True).decode() + "\n"
 
 
 def _counts(results: tuple[Result, ...]) -> dict[str, str]:
     kinds = [_kind(result) for result in results]
-    named = {"failures": "failure", "errors": "error", "skipped": "skipped"}
-    return {"tests": str(len(kinds)), **{key: str(kinds.count(kind)) for key, kind in named.items()}}
+    return {"tests": str(len(kinds)), **{key: str(kinds.count(kind)) for key, kind in _COUNTS.items()}}
 
 
 def _kind(result: Result) -> str:
     """Return the element for the status of a criterion; empty if it has all points."""
-    if is_failure(result) and result.criterion.bonus:
-        return "skipped"
-    if is_failure(result):
-        return "error" if result.outcome.status == "errored" and result.manual_mark is None else "failure"
-    is_decided = result.manual_mark is not None or result.is_adjusted
-    return "skipped" if not is_decided and result.outcome.status in ("skipped", "pending") else ""
+    return "skipped" if is_failure(result) and result.criterion.bonus else _KINDS.get(status_of(result), "")
 
 
-def _submission_properties(report: Report) -> dict[str, str]:
+def _facts(report: Report) -> dict[str, str]:
     submission = report.submission
     return {
         "score": format_points(report.score),
@@ -75,27 +66,20 @@ def _submission_properties(report: Report) -> dict[str, str]:
 
 
 def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
-    criterion = result.criterion
-    case = etree.SubElement(
-        suite,
-        "testcase",
-        name=printable(f"{criterion.title} ({criterion.id})"),
-        classname=f"{report.rubric.id}.{criterion.part}",
-    )
+    criterion, kind, lines = result.criterion, _kind(result), criterion_lines(result, report)
+    name, group = printable(f"{criterion.title} ({criterion.id})"), f"{report.rubric.id}.{criterion.part}"
+    case = etree.SubElement(suite, "testcase", name=name, classname=group)
     where = result_details(result, report).location
     if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))
-    _properties(case, {"points": earned_text((result,))})
-    lines = criterion_lines(result, report)
-    kind = _kind(result)
-    if not kind:
-        etree.SubElement(case, "system-out").text = "\n".join(lines) + "\n"
-        return
-    found = etree.SubElement(
-        case, kind, type="manual mark" if result.manual_mark else result.outcome.status, message=lines[0]
-    )
-    found.text = "\n".join(lines) + "\n"
+    _properties(case, {"points": earned_text(result)})
+    why = {"type": "manual mark" if result.manual_mark else result.outcome.status, "message": lines[0]} if kind else {}
+    _put(case, kind or "system-out", lines, why)
+
+
+def _put(parent: Any, tag: str, lines: list[str], attributes: dict[str, str] | None = None) -> None:
+    etree.SubElement(parent, tag, attributes).text = "\n".join(lines) + "\n"
 
 
 def _properties(element: Any, values: dict[str, str]) -> None:

@@ -1,16 +1,27 @@
-"""Locations in a submission: the source line around them, and their path in the repository."""
+"""Locations in a submission: in words, with their source line or an edit of it, and their path in the repository."""
 
 import re
+from collections.abc import Callable, Iterator, Sequence
+from difflib import SequenceMatcher
+from itertools import groupby
 from typing import NamedTuple
 
-from grader.source import Location, Source
-from grader.text import printable
+from grader.source import Edit, Location, Source
+from grader.text import first_lines, printable
 
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
 _ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
+SourceOf = Callable[[str], Source | None]
+# A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
+SourceLine = tuple[int, str, str | None, str]
+_EXCERPT_WIDTH = 120
+_AROUND = 2  # lines of the source before and after the marked one
+_MAX_WIDTH = 160  # characters of a line on a page
 _MARGIN = 4  # characters before the marked part, if the line is cut
 _MAX_CALLS = 3  # macros of xacro that are named
 _MAX_TEXT = 500  # characters of a line: a whole file may be one line
+_MAX_LENGTH = 200  # the same for a diff: of a longer line only the old and the new text are in it
+_MAX_LINES = 40  # of a diff
 
 
 class Excerpt(NamedTuple):
@@ -22,7 +33,7 @@ class Excerpt(NamedTuple):
 
 
 class Base(NamedTuple):
-    """The location of a submission in a repository: the folder of its paths, with a slash at its end, or the archive that contains them.
+    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
 
     With `is_outside` it is in no repository.
     """
@@ -35,7 +46,8 @@ class Base(NamedTuple):
 class RepositoryLocation(NamedTuple):
     """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
 
-    Without a line it is the whole file. `text` is the source line, `meant` the part of it that is meant, empty if it is too long.
+    Without a line it is the whole file. `text` is the source line, `meant` the part of it that is meant, empty if it is
+    too long.
     """
 
     path: str
@@ -71,6 +83,43 @@ def calls_text(where: Location) -> str:
     return "".join(f", {call}" for call in reversed(calls[-_MAX_CALLS:]))
 
 
+def location_text(where: Location) -> str:
+    """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
+    return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
+
+
+def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
+    """Yield the source line of a location, and a line that underlines the marked part; nothing without the file."""
+    source = source_of(where.path)
+    if source is not None:
+        line = excerpt(source, where, _EXCERPT_WIDTH)
+        number = str(where.line)
+        yield f"{number} | {line.text}"
+        yield f"{' ' * len(number)} | {' ' * line.start}{'-' * line.width}"
+
+
+def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
+    """Return the lines around a location, without their common indentation; none if its line is empty.
+
+    Of a very long line it is the part around the marked text.
+    """
+    source = source_of(where.path)
+    line = source.line(where.line) if source is not None else ""
+    if source is None or not line.strip():
+        return []
+    if len(line) > _MAX_WIDTH:
+        text, start, width = excerpt(source, where, _MAX_WIDTH)
+        return [(where.line, text[:start], text[start : start + width], text[start + width :])]
+    around = {number: source.line(number) for number in range(max(1, where.line - _AROUND), where.line + _AROUND + 1)}
+    last = max(number for number, text in around.items() if text.strip())
+    indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
+    lines = [(number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()]
+    start = where.column - 1
+    end = start + width_of(line, where.column)
+    marked = (where.line, line[min(indent, start) : start], line[start:end], line[end:])
+    return [marked if one[0] == where.line else one for one in lines if one[0] <= last]
+
+
 def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
     found = _ARCHIVE.match(path)
@@ -89,3 +138,40 @@ def in_repository(where: Location, source: Source | None, base: Base) -> Reposit
     start, width = where.column - 1, width_of(line, where.column)
     meant = line[start : start + width] if width <= _MAX_TEXT else ""
     return RepositoryLocation(path, where.line, where.column, where.column + width, line.strip()[:_MAX_TEXT], meant)
+
+
+def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
+    """Return the printable lines of a diff: each file, and each changed line before and after; of many the first."""
+    lines: list[str] = []
+    for path, of_file in groupby(sorted(edits), key=lambda edit: edit.path):
+        changes, source = list(of_file), source_of(path)
+        new_path = next((edit.renamed for edit in changes if edit.renamed), path)
+        lines += [f"--- {path if source is not None else '/dev/null'}", f"+++ {new_path}"]
+        for line, of_line in groupby(changes, key=lambda edit: edit.line):
+            some = [edit for edit in of_line if edit.old or edit.new]
+            if some:
+                lines += [f"@@ line {line} @@", *_diff(*_texts(some, source))]
+    return [printable(line) for line in first_lines(lines, _MAX_LINES)]
+
+
+def _texts(edits: list[Edit], source: Source | None) -> tuple[str, str]:
+    """Return the whole lines of edits that begin in one line, before and after; of long lines only what changes."""
+    height = 1 + max(edit.old.count("\n") for edit in edits)
+    start = edits[0].line
+    before = "\n".join(source.line(start + number) for number in range(height)) if source is not None else ""
+    after = before
+    for edit in reversed(edits):
+        column, old = edit.column - 1, edit.old.replace("\r\n", "\n")
+        is_there = after.startswith(old, column) and len(after) <= _MAX_LENGTH * height
+        if not is_there:
+            return "\n".join(edit.old for edit in edits), "\n".join(edit.new for edit in edits)
+        after = after[:column] + edit.new + after[column + len(old) :]
+    return before, after
+
+
+def _diff(before: str, after: str) -> Iterator[str]:
+    old, new = ([line.removesuffix("\r") for line in text.split("\n")] for text in (before, after))
+    for kind, old_start, old_end, new_start, new_end in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
+        if kind != "equal":
+            yield from (f"-{line}" for line in old[old_start:old_end])
+            yield from (f"+{line}" for line in new[new_start:new_end])

@@ -1,36 +1,48 @@
-"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and pages of an LMS.
+"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and LMS pages.
 
-Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
+Text of a submission is escape: it never becomes markup, HTML, a link or a mention.
 """
 
+import html
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, Details, diff_lines, location_text, result_details, status_of
-from grader.report.markdown_text import code, escaped, fenced, folded
-from grader.report.order import Group, alike, groups, has_passed, in_order
-from grader.report.plain_text import evidence, excerpt_lines, problem_line, provenance
+from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.locations import diff_lines, excerpt_lines, location_text
+from grader.report.order import CriteriaGroup, alike, earned_text, groups, has_passed, in_order, status_of
 from grader.text import enumerated, printable
 
+_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
+_ACTIVE = re.compile(
+    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
+    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",  # GitHub makes links of bare addresses
+    re.IGNORECASE,
+)
+_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
+# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
+_MENTION = re.compile(r"@|#(?=\d)")
+_FENCE = re.compile(r"`{3,}")
+_MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
 def render_markdown(report: Report, picture: str = "") -> str:
     """Return the report. `picture` is the relative address of the robot's drawing, which is shown."""
-    return _joined(_blocks(report, _picture(report, picture), answers=True))
+    return _join(_blocks(report, _picture(report, picture), answers=True))
 
 
 def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there, so the
-    text names the files of `pictures`.
+    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there,
+    so the text names the files of `pictures`.
     """
     names = enumerated([code(printable(name)) for name in pictures])
     named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""
-    text = _joined(_blocks(report, named, answers=False))
+    text = _join(_blocks(report, named, answers=False))
     if len(text.encode()) <= most:
         return text
     kept: list[str] = []
@@ -53,7 +65,7 @@ def criterion_markdown(result: Result, report: Report) -> str:
     return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
 
 
-def _joined(blocks: Iterable[str]) -> str:
+def _join(blocks: Iterable[str]) -> str:
     return "\n".join(f"{block}\n" for block in blocks)
 
 
@@ -61,10 +73,10 @@ def _picture(report: Report, address: str) -> str:
     """Return the image of the robot's drawing with a description; empty without a robot."""
     if not address:
         return ""
-    from grader.report.drawing_key import drawn  # late: few reports show a picture
+    from grader.report.drawing_key import alt_text  # late: few reports show a picture
 
-    shown = drawn(report)
-    return f"![{escaped(shown)}]({address})" if shown else ""
+    words = alt_text(report)
+    return f"![{escape(words)}]({address})" if words else ""
 
 
 def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
@@ -77,88 +89,118 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
         yield "## Failed"
     for result, skipped, *_ in order.failures:
         item = _item(result, report, shown, answers=answers)
-        text = escaped(content.skipped_text(result.criterion.id, skipped)) if skipped else ""
+        text = escape(skipped_text(result.criterion.id, skipped)) if skipped else ""
         yield f"{item}\n\n{indent(text, '  ')}" if text else item
     for cause, some in alike(order.skipped, lambda result: result.because or ""):
-        yield escaped(content.skipped_text(cause, some))
-    for title, results in (("Needs manual grading", order.pending), *order.remarks):
-        if results:
-            yield f"## {title}"
-            yield from (_item(result, report, shown, answers=answers) for result in results)
+        yield escape(skipped_text(cause, some))
+    for title, results in order.sections:
+        yield f"## {title}"
+        yield from (_item(result, report, shown, answers=answers) for result in results)
     if order.passed:
         yield "## Passed"
-    yield from filter(None, map(_passed, groups(report)))
+    yield from filter(None, map(_fold_passed, groups(report)))
     yield from _evidence(report)
     yield from _problems(report)
     command = content.next_command(report)
     yield f"Next: {code(command)}" if command else content.what_is_left(report)
 
 
-def _passed(group: Group) -> str:
+def _fold_passed(group: CriteriaGroup) -> str:
     """Return the criteria of a group that passed, folded below its points; empty if none did."""
     lines = [
-        f"- {_start(result)} {escaped(printable(result.criterion.title))}"
+        f"- {_start(result)} {escape(printable(result.criterion.title))}"
         for result in group.results
         if has_passed(result)
     ]
-    return folded(f"{printable(group.title)} {content.earned_text(group.results)}", lines) if lines else ""
+    return fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield f"# {escaped(content.score_text(report))}: {escaped(printable(report.rubric.title))}"
-    yield from map(escaped, content.summaries(report))
+    yield f"# {escape(content.score_text(report))}: {escape(printable(report.rubric.title))}"
+    yield from map(escape, content.summaries(report))
     if report.open_points:
-        yield f"**{escaped(content.pending_line(report))}**"
-    yield escaped(provenance(report))
-    yield from map(escaped, (*content.notes(report), *content.ignored_lines(report)))
+        yield f"**{escape(content.pending_line(report))}**"
+    yield escape(content.provenance(report))
+    yield from map(escape, (*content.notes(report), *content.ignored_lines(report)))
 
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion = result.criterion
     details = result_details(result, report)
     is_bare = bool(details.expected) or result.is_adjusted
-    name = code(criterion.id) if is_bare else f"{escaped(printable(criterion.title))} ({code(criterion.id)})"
+    name = code(criterion.id) if is_bare else f"{escape(printable(criterion.title))} ({code(criterion.id)})"
     blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
     return "\n\n".join((f"- {_start(result)} {name}", *blocks))
 
 
 def _start(result: Result) -> str:
-    return f"{SYMBOLS[status_of(result)]} {content.earned_text((result,))}"
+    return f"{SYMBOLS[status_of(result)]} {earned_text(result)}"
 
 
 def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """Yield the text about a criterion, block by block, without feedback that is shown already."""
-    yield from map(escaped, details.words)
+    yield from map(escape, details.words)
     if details.expected:
-        yield escaped(details.expected)
+        yield escape(details.expected)
     if details.location is not None:
         yield code(location_text(details.location))
-        lines = list(excerpt_lines(details.location, report))
+        lines = list(excerpt_lines(details.location, report.submission.source))
         if lines:
-            yield fenced(lines)
+            yield fence(lines)
     for title, lines in (("Found", list(details.answer)), ("Model answer", list(details.model_answer) * answers)):
         if lines:
             yield f"{title}:"
-            yield fenced(lines)
+            yield fence(lines)
     for hint in details.hints:
-        yield f"**{escaped(hint.message)}**"
+        yield f"**{escape(hint.message)}**"
         if hint.edits:
-            yield fenced(diff_lines(hint.edits, report.submission.source), "diff")
+            yield fence(diff_lines(hint.edits, report.submission.source), "diff")
     if details.feedback and not details.hints and details.feedback not in shown:
         shown.add(details.feedback)
-        yield f"*{escaped(details.feedback)}*"
+        yield f"*{escape(details.feedback)}*"
 
 
 def _evidence(report: Report) -> Iterator[str]:
-    for number, (part, lines) in enumerate(evidence(report)):
+    for number, (part, lines) in enumerate(content.evidence(report)):
         if number == 0:
             yield "## Evidence"
-        yield f"{escaped(part)}:"
-        yield "\n".join(f"- {escaped(text)}" for text, _ in lines)
+        yield f"{escape(part)}:"
+        yield "\n".join(f"- {escape(text)}" for text, _ in lines)
 
 
 def _problems(report: Report) -> Iterator[str]:
-    problems = list(content.other_problems(report))
-    if problems:
+    if problems := content.other_problems(report):
         yield f"## {content.other_problems_title(report)}"
-        yield from (f"- {escaped(problem_line(problem))}" for problem in problems)
+        yield from (f"- {escape(content.problem_line(problem))}" for problem in problems)
+
+
+def escape(text: str) -> str:
+    """Return one line of printable text that Markdown shows as it is."""
+    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
+    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    return _MENTION.sub("\\g<0>\u2060", plain)
+
+
+def code(text: str) -> str:
+    """Return printable text as inline code; as plain text if it has too many backticks."""
+    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    if longest >= _MAX_FENCE:
+        return escape(text)
+    fence = "`" * (longest + 1)
+    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
+    return f"{fence}{space}{text}{space}{fence}"
+
+
+def fence(lines: list[str], language: str = "text") -> str:
+    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
+    fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
+    if len(fence) > _MAX_FENCE:
+        return "\n".join(f"    {line}" for line in lines)
+    return "\n".join((f"{fence}{language}", *lines, fence))
+
+
+def fold(summary: str, lines: list[str]) -> str:
+    """Return Markdown below a line of printable text that unfolds it."""
+    shown = _MENTION.sub("\\g<0>\u2060", html.escape(summary))
+    # CommonMark reads Markdown in HTML only after an empty line.
+    return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))

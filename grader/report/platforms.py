@@ -1,13 +1,14 @@
-"""A report as the result file of a platform: Gradescope's results.json with a test for each criterion, or Classroom 50's result.json.
+"""A report as the result file of a platform: Gradescope's results.json or Classroom 50's result.json.
 
-In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give them in Gradescope. Extra
-credit has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the assignment; the score,
-which is given as a whole, may exceed them.
+In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give them in Gradescope.
+Extra credit has points, but no maximum (`max_score` is optional). The maxima add up to the autograder points of the
+assignment; the score, which is given as a whole, may exceed them.
 https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 
-The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10, 100 and so on, so that none is
-rounded. Classroom 50 refuses scores above their maximum (schemas/result-v1.schema.json, validate_result of its runner.py). So the
-score is at most the maximum, even with extra credit. The test of a bonus shows its points, and is not part of the maximum.
+The scores of Classroom 50's are whole numbers: if points are fractions, all are multiplied by 10, 100 and so on, so
+that none is rounded. Classroom 50 refuses scores above their maximum (schemas/result-v1.schema.json, validate_result of
+its runner.py). So the score is at most the maximum, even with extra credit. The test of a bonus shows its points, and
+is not part of the maximum.
 https://github.com/foundation50/classroom50
 """
 
@@ -16,13 +17,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from grader.errors import InputError
+from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
-from grader.report.as_json import additions
-from grader.report.content import earned_text
+from grader.report.as_json import ADDITIONS
+from grader.report.details import criterion_lines
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
-from grader.report.order import is_failure
-from grader.report.plain_text import criterion_lines
+from grader.report.order import earned_text, is_failure, status_of
 from grader.text import counted_points, printable
 
 
@@ -50,34 +51,38 @@ def render_gradescope(report: Report) -> str:
 
 
 def _gradescope_test(result: Result, report: Report) -> dict[str, Any]:
-    criterion = result.criterion
-    parts = [part.id for part in report.rubric.parts]
-    of_part = [other.id for other in report.rubric.criteria if other.part == criterion.part]
-    number = f"{parts.index(criterion.part) + 1}.{of_part.index(criterion.id) + 1}"
-    is_lost = is_failure(result) or (result.outcome.status == "skipped" and not result.is_adjusted)
-    decided = {
-        "score": exact(result.points),
-        **({} if criterion.bonus else {"max_score": exact(criterion.points)}),
-        "status": "failed" if is_lost else "passed",
-    }
-    kinds = [*(["extra credit"] if criterion.bonus else []), *(["manual grading"] if result.is_open else [])]
+    criterion, status = result.criterion, result.outcome.status
+    kinds = [word for word, is_one in (("extra credit", criterion.bonus), ("manual grading", result.is_open)) if is_one]
     most = f" ({', '.join((f'up to {counted_points(criterion.points)}', *kinds))})" if kinds else ""
     return {
-        **({} if result.is_open else decided),
+        **({} if result.is_open else _gradescope_points(result)),
         "name": printable(criterion.title) + most,
-        "number": number,
+        "number": _number(criterion, report),
         "output": criterion_markdown(result, report),
         "output_format": "md",
-        "tags": [criterion.id, criterion.part, "adjusted" if result.is_adjusted else result.outcome.status],
+        "tags": [criterion.id, criterion.part, "adjusted" if result.is_adjusted else status],
         "visibility": "visible",
         "extra_data": {
             "id": criterion.id,
-            "status": result.outcome.status,
+            "status": status,
             "because": result.because,
             "carried": result.carried or None,
-            **additions(result),
+            **ADDITIONS.data(result),
         },
     }
+
+
+def _gradescope_points(result: Result) -> dict[str, Any]:
+    is_lost = is_failure(result) or (result.outcome.status == "skipped" and not result.is_adjusted)
+    most = {} if result.criterion.bonus else {"max_score": exact(result.criterion.points)}
+    return {"score": exact(result.points), **most, "status": "failed" if is_lost else "passed"}
+
+
+def _number(criterion: Criterion, report: Report) -> str:
+    """Return the number of the part, and of the criterion in it: 2.5."""
+    parts = [part.id for part in report.rubric.parts]
+    of_part = [other.id for other in report.rubric.criteria if other.part == criterion.part]
+    return f"{parts.index(criterion.part) + 1}.{of_part.index(criterion.id) + 1}"
 
 
 _REQUIRED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
@@ -136,13 +141,10 @@ def _scale(report: Report) -> int:
 
 
 def _classroom50_test(result: Result, report: Report, scale: int) -> dict[str, Any]:
-    is_decided = result.manual_mark is not None or result.is_adjusted
-    bonus = (
-        [f"Extra credit: {earned_text((result,))}. It is not part of the maximum."] if result.criterion.bonus else []
-    )
+    bonus = [f"Extra credit: {earned_text(result)}. It is not part of the maximum."] if result.criterion.bonus else []
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_failure(result) and (is_decided or result.outcome.status == "passed"),
+        "passed": status_of(result) in ("passed", "adjusted"),
         "score": int(min(result.points, result.criterion.points) * scale),
         "max-score": int(result.criterion.points * scale),
         "message": "\n".join((*bonus, *criterion_lines(result, report))),

@@ -10,7 +10,7 @@ from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
 from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
-from grader.report.details import status_of
+from grader.report.order import status_of
 from grader.text import counted, counted_points, printable
 
 _INDENT = 2

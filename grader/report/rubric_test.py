@@ -3,12 +3,31 @@
 import textwrap
 from collections.abc import Iterator, Sequence
 from os.path import commonprefix
-from typing import Any
 
 from grader import __version__
 from grader.grading.worth import worth
 from grader.mutation.result import Loss, Margin, MutantResults, RubricTest, Survivor
-from grader.report.json_data import exact, rounded, to_json
+from grader.report.as_json import SCORE
+from grader.report.json_data import (
+    COUNT,
+    FLAG,
+    GRADER,
+    POINTS,
+    RUBRIC,
+    TEXT,
+    TOTAL,
+    Many,
+    Maybe,
+    Record,
+    array,
+    each,
+    inner,
+    mapping,
+    nullable,
+    rounded,
+    schema_key,
+    to_json,
+)
 from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
 
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
@@ -25,11 +44,11 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
     lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_near(test.mutants.margins)]
     lines += ["", f"Mutation score: {_percent(test.mutants)} %"]
-    text = "\n".join(folded for line in lines for folded in _folded(printable(line), width))
+    text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
 
 
-def _folded(line: str, width: int) -> list[str]:
+def _fold(line: str, width: int) -> list[str]:
     """Return a line that fits: a sentence is wrapped, a line of a diff or table is cut."""
     if len(line) <= width:
         return [line]
@@ -145,74 +164,50 @@ def _length(value: float, margin: Margin) -> str:
     return f"{value:.3g} {margin.unit}".rstrip()
 
 
+_LOSSES = Many(Record({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
+_SURVIVOR = Record(
+    {
+        **inner("mutant", {**each(TEXT, "id family path"), "line": COUNT}),
+        **each(TEXT, "diff suggestion"),
+        "reason": (nullable(TEXT), lambda survivor: survivor.reason or None),
+    }
+)
+_MARGIN = Record(
+    {
+        "criterion": TEXT,
+        "unit": (nullable(TEXT), lambda margin: margin.unit or None),
+        **each(POINTS, "tolerance reference"),
+        "is_near": FLAG,
+    }
+)
+_MUTANTS = Record(
+    {
+        **each(TOTAL, "total tried caught"),
+        "same_robot": (TOTAL, "same"),
+        "ignored": (TOTAL, lambda found: len(found.ignored)),
+        "survived": (TOTAL, lambda found: len(found.survivors)),
+    }
+)
+_EQUIVALENTS = Record({"tried": mapping(TOTAL), "unused": mapping(TEXT), "lost": (_LOSSES, "losses")})
+RUBRIC_TEST = Record(
+    {
+        **schema_key("grader/rubric-test/v1"),
+        "grader": (GRADER, lambda _: {"version": __version__}),
+        "rubric": (RUBRIC, "reference.rubric"),
+        "seed": {"type": "integer"},
+        "score": ({"type": "number", "minimum": 0, "maximum": 100}, lambda test: rounded(float(test.mutants.score))),
+        "reference": (Record({**inner("reference", SCORE), "lost": array(TEXT)}), lambda test: test),
+        "equivalents": _EQUIVALENTS,
+        "samples": Maybe(Record({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
+        "mutants": _MUTANTS,
+        **inner("mutants", each(Many(_SURVIVOR), "survivors ignored")),
+        "faults": (_LOSSES, "mutants.faults"),
+        "unused_patterns": (array(TEXT), "mutants.unused"),
+        **inner("mutants", {"idle": array(TEXT), "margins": Many(_MARGIN)}),
+    }
+)
+
+
 def render_rubric_test_json(test: RubricTest) -> str:
     """Return the result of testing a rubric."""
-    report, rubric, samples = test.reference, test.reference.rubric, test.samples
-    return to_json(
-        {
-            "schema": "grader/rubric-test/v1",
-            "grader": {"version": __version__},
-            "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
-            "seed": test.seed,
-            "score": rounded(float(test.mutants.score)),
-            "reference": {
-                "score": exact(report.score),
-                "max_score": exact(report.max_score),
-                "pending": exact(report.pending),
-                "lost": list(test.lost),
-            },
-            "equivalents": {
-                "tried": dict(test.equivalents.tried),
-                "unused": dict(test.equivalents.unused),
-                "lost": list(map(_loss, test.equivalents.losses)),
-            },
-            "samples": {
-                "tried": samples.tried,
-                "skipped": samples.skipped,
-                "different": list(map(_loss, samples.different)),
-            }
-            if samples is not None
-            else None,
-            "mutants": {
-                "total": test.mutants.total,
-                "tried": test.mutants.tried,
-                "caught": test.mutants.caught,
-                "same_robot": test.mutants.same,
-                "ignored": len(test.mutants.ignored),
-                "survived": len(test.mutants.survivors),
-            },
-            "survivors": list(map(_survivor, test.mutants.survivors)),
-            "ignored": list(map(_survivor, test.mutants.ignored)),
-            "faults": list(map(_loss, test.mutants.faults)),
-            "unused_patterns": list(test.mutants.unused),
-            "idle": list(test.mutants.idle),
-            "margins": list(map(_margin, test.mutants.margins)),
-        }
-    )
-
-
-def _survivor(survivor: Survivor) -> dict[str, Any]:
-    mutant = survivor.mutant
-    return {
-        "id": mutant.id,
-        "family": mutant.family,
-        "path": mutant.path,
-        "line": mutant.line,
-        "diff": survivor.diff,
-        "suggestion": survivor.suggestion,
-        "reason": survivor.reason or None,
-    }
-
-
-def _loss(loss: Loss) -> dict[str, Any]:
-    return {"name": loss.name, "criteria": dict(loss.criteria), "diff": loss.diff}
-
-
-def _margin(margin: Margin) -> dict[str, Any]:
-    return {
-        "criterion": margin.criterion,
-        "unit": margin.unit or None,
-        "tolerance": rounded(margin.tolerance),
-        "reference": rounded(margin.reference),
-        "is_near": margin.is_near,
-    }
+    return to_json(RUBRIC_TEST.data(test))

@@ -1,7 +1,7 @@
 """Rubrics, checks and problem codes in plain text, and a rubric as Markdown for the lab's handout."""
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from grader.checks.check import Check
 from grader.checks.manual import MANUAL_CHECKS
@@ -12,8 +12,9 @@ from grader.grading.rubric import Part, Rubric
 from grader.grading.worth import worth
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
+from grader.problems import Kind
 from grader.report.details import sentence
-from grader.report.markdown_text import code, escaped
+from grader.report.markdown import code, escape
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
@@ -41,9 +42,9 @@ def rubric_text(rubric: Rubric) -> str:
             bonus = " (bonus)" if criterion.bonus else ""
             lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}{bonus}")
             if criterion.adjustment is not None:
-                lines.append(textwrap.indent(_filled(sentence(criterion.adjustment.message)), "    "))
+                lines.append(textwrap.indent(_fill(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
-                lines.append(textwrap.indent(_filled(f"Model answer: {printable(criterion.answer)}"), "    "))
+                lines.append(textwrap.indent(_fill(f"Model answer: {printable(criterion.answer)}"), "    "))
     return "\n".join(lines) + "\n"
 
 
@@ -57,71 +58,73 @@ def checks_text() -> str:
             listed.append(f"{name}\n  {error}\n")
             continue
         if check is not None:
-            fact = textwrap.indent(_filled(check.documentation.fact), "  ")
+            fact = textwrap.indent(_fill(check.documentation.fact), "  ")
             listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
     for name, package in unused_checks():
         listed.append(f"{name} ({package})\n  Not used: the grader has a check of this name.\n")
     return "\n".join(listed)
 
 
+def kind_of(code: str) -> Kind | None:
+    """Return the kind of problem with a code; None if there is none."""
+    return next((kind for kind in EVERY_KIND if kind.code == code), None)
+
+
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
-    for kind in EVERY_KIND:
-        if kind.code == name.upper():
-            effect = f"\n{EFFECTS[kind.effect]}\n" if EFFECTS[kind.effect] else ""
-            return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n{effect}"
+    kind = kind_of(name.upper())
+    if kind is not None:
+        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(kind.explanation), EFFECTS[kind.effect]]
+        return _paragraphs(texts)
     for criterion in rubric.criteria:
         if criterion.id == name:
-            return _criterion_text(criterion, rubric)
+            return _paragraphs(_criterion_texts(criterion, rubric))
     check = find_check(name)
     if check is not None:
-        text = "\n\n".join(map(_filled, check.documentation.paragraphs))
         source = f", from the package {check.distribution}" if check.distribution else ""
-        return f"{check.name}: a check for rubrics{source}\n\n{text}\n\n{_arguments(check)}".rstrip("\n") + "\n"
+        texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
+        return _paragraphs([*texts, _arguments(check).rstrip("\n")])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
-        f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
+        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
     )
-    guess = did_you_mean(name, known) or lists
-    raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
+    raise InputError(
+        f"there is no problem code, criterion or check {name!r}{did_you_mean(name, known) or f'; {lists}'}"
+    )
 
 
-def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
-    lines = [
-        f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})",
-        "",
-        _filled(f"Passes when: {criterion.title}."),
-    ]
+def _paragraphs(texts: Iterable[str]) -> str:
+    return "\n\n".join(filter(None, texts)) + "\n"
+
+
+def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
+    yield f"{criterion.id} ({worth((criterion,)).text}, part {criterion.part} of {rubric.id})"
+    yield _fill(f"Passes when: {criterion.title}.")
     if criterion.adjustment is not None:
-        lines += ["", _filled(sentence(criterion.adjustment.message))]
-    if criterion.feedback:
-        lines += ["", _filled(criterion.feedback)]
+        yield _fill(sentence(criterion.adjustment.message))
+    yield _fill(criterion.feedback)
     if criterion.requires:
-        lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
-    lines += ["", *_check_lines("Check", criterion.check, criterion.arguments)]
-    if criterion.at:
-        positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
-        lines.append(_filled(f"The robot is posed: {positions} (degrees or metres); its other joints are at 0."))
+        yield _fill(f"Skipped unless these passed: {', '.join(criterion.requires)}.")
+    positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
+    pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
+    yield _check_text("Check", criterion.check, criterion.arguments, pose)
     if criterion.carried is not None:
         causes, check, arguments = criterion.carried
-        title = f"If it fails and {enumerated(causes, word='or')} failed before it, the points are given if this check passes"
-        lines += ["", *_check_lines(title, check, arguments)]
-    return "\n".join(lines) + "\n"
+        failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
+        yield _check_text(f"{failures}, the points are given if this check passes", check, arguments)
 
 
-def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
+def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
     given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
-    return [
-        _filled(f"{title}: {check.name}. {check.documentation.fact}"),
-        *([_filled(f"With {given}.")] if given else []),
-    ]
+    texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
+    return "\n".join(map(_fill, filter(None, texts)))
 
 
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
         default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
-        meaning = _filled(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
+        meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
 
@@ -139,13 +142,10 @@ def toml_text(value: object) -> str:
             return f"[{', '.join(map(toml_text, value))}]"
         case dict():
             return "{ " + ", ".join(f"{key} = {toml_text(item)}" for key, item in value.items()) + " }"
-        case None:
-            return "not checked"
-        case _:
-            return str(value)
+    return "not checked" if value is None else str(value)
 
 
-def _filled(text: str, width: int = _WIDTH) -> str:
+def _fill(text: str, width: int = _WIDTH) -> str:
     return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
 
 
@@ -185,4 +185,4 @@ def _row(criterion: Criterion, before: Criterion | None) -> list[str]:
 
 
 def _text(text: str) -> str:
-    return escaped(printable(" ".join(text.split())))
+    return escape(printable(" ".join(text.split())))

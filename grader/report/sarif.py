@@ -1,4 +1,4 @@
-"""A report as SARIF 2.1.0, the subset that GitHub's code scanning reads: a result for each finding, a rule for each criterion or code.
+"""A report as SARIF 2.1.0, as GitHub reads it: a result for each finding, a rule for each criterion or code.
 
 https://docs.github.com/code-security/reference/code-scanning/sarif-files/sarif-support
 """
@@ -7,14 +7,14 @@ from typing import Any
 from urllib.parse import quote
 
 from grader.grading.report import Hint, Report
-from grader.report.as_json import grade_data
-from grader.report.content import explain_command
+from grader.report.as_json import GRADE
+from grader.report.content import explain_command, submission_lines
+from grader.report.details import criterion_lines
 from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
 from grader.report.locations import Base, RepositoryLocation, archive_around
 from grader.report.order import alike
-from grader.report.plain_text import criterion_lines, submission_lines
-from grader.report.rubrics import EVERY_KIND
+from grader.report.rubrics import kind_of
 from grader.source import Edit
 from grader.text import printable
 
@@ -48,15 +48,15 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
         if criterion.id == name:
             title, command = printable(criterion.title), explain_command(name, report)
             fact = printable(f"Passes when: {criterion.title}. {criterion.check.documentation.fact}")
-            return _described(name, title, fact, printable(criterion.feedback) or fact, "error", command)
-    for kind in EVERY_KIND:
-        if kind.code == name:
-            explanation = " ".join(kind.explanation.split())
-            return _described(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
-    return _described(name, name, name, name, "warning", f"grader explain {name}")
+            return _describe(name, title, fact, printable(criterion.feedback) or fact, "error", command)
+    kind = kind_of(name)
+    if kind is not None:
+        explanation = " ".join(kind.explanation.split())
+        return _describe(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
+    return _describe(name, name, name, name, "warning", f"grader explain {name}")
 
 
-def _described(name: str, title: str, text: str, advice: str, level: str, command: str) -> dict[str, Any]:
+def _describe(name: str, title: str, text: str, advice: str, level: str, command: str) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {"text": title},
@@ -139,7 +139,7 @@ def _properties(report: Report, count: int) -> dict[str, Any]:
         "score": exact(report.score),
         "maxScore": exact(report.max_score),
         "pending": exact(report.pending),
-        **grade_data(report),
+        **GRADE.data(report),
         "rubric": {"id": printable(report.rubric.id), "sha256": report.rubric.sha256},
         "submission": {"id": printable(report.submission.id), "sha256": report.submission.sha256},
         "said": submission_lines(report),

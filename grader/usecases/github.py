@@ -42,11 +42,11 @@ def publish_report(
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.annotations import command
-    from grader.report.markdown_text import escaped
+    from grader.report.markdown import escape
 
     lines = [printable(line) for line in reason.splitlines()]
     annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
-    text = "\n\n".join(("# Nothing was graded", *map(escaped, lines))) + "\n"
+    text = "\n\n".join(("# Nothing was graded", *map(escape, lines))) + "\n"
     _add_to_summary(lambda room: text if len(text.encode()) <= room else "", warn)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
 from grader.grading.levels import Level
-from grader.report.formats import Format, needed, render
+from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
 from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
@@ -71,9 +71,9 @@ class GradeResult(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.content import undecided
+        from grader.report.order import undecided_results
 
-        names = ", ".join(result.criterion.id for result in undecided(self.report))
+        names = ", ".join(result.criterion.id for result in undecided_results(self.report))
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
@@ -107,7 +107,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
-        needed(kind)  # as well
+        inputs_of(kind)  # as well
     from grader.grading.grade import grade
     from grader.submission.opening import open_submission
 

@@ -10,7 +10,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.report.class_schemas import CLASS_SCHEMA
+from grader.report.formats import json_schema
 from tests.classroom.gradebooks import grader, lab_text, refusal, urdf
 
 LATE = "percent_per_day = 10\n"
@@ -42,7 +42,7 @@ def graded(top: Path, *more: object) -> dict[str, Any]:
     done = batch(top, "--format", "json", *more)
     assert done.returncode == 0, done.stderr
     data = json.loads(done.stdout)
-    jsonschema.validate(data, CLASS_SCHEMA)
+    jsonschema.validate(data, json_schema("class"))
     return dict(data)
 
 

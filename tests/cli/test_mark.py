@@ -13,8 +13,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.report.formats import Format, OutputFormat
-from grader.report.schemas import REPORT_SCHEMA
+from grader.report.formats import Format, OutputFormat, json_schema
 from grader.usecases.class_summary import SummaryRequest, class_summary
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
@@ -222,7 +221,7 @@ def test_a_comment_is_data(top: Path) -> None:
     assert r"Marked by [red]\x1b[31mme: [bold]x[/bold] \x1b]0;gone\x07\x1b[2J\u202eabc" in " ".join(text.split())
     assert not set(text) & set("\x1b\x07\r\u202e")
     report = json.loads((top / "reports" / "anna.json").read_text())
-    jsonschema.validate(report, REPORT_SCHEMA)
+    jsonschema.validate(report, json_schema("report"))
     (essay,) = [result for result in report["results"] if result["id"] == "essay"]
     assert essay["mark"] == {"points": 1, "by": "[red]\x1b[31mme", "comment": HARMFUL}
 

@@ -17,8 +17,7 @@ from lxml import etree, html
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from grader.report.formats import Format
-from grader.report.schemas import REPORT_SCHEMA
+from grader.report.formats import Format, json_schema
 from tests.report.workflow_commands import Command, commands
 
 FOLDER = Path(__file__).parent
@@ -63,7 +62,7 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def read_report(text: str) -> Any:
     """Return a report as JSON, valid under the schema that `grader schema report` prints."""
     data = read_json(text)
-    jsonschema.Draft202012Validator(REPORT_SCHEMA).validate(data)
+    jsonschema.Draft202012Validator(json_schema("report")).validate(data)
     return data
 
 

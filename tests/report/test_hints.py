@@ -5,10 +5,9 @@ from dataclasses import replace
 import pytest
 
 from grader.grading.report import Hint, ManualMark
-from grader.report.details import diff_lines
 from grader.report.findings import findings
 from grader.report.formats import Format, render
-from grader.report.locations import Base
+from grader.report.locations import Base, diff_lines
 from grader.source import Edit, Location, Source
 from tests.report.readers import READERS, read_as_github, read_markdown, read_sarif
 from tests.report.reports import AXLE, hinted

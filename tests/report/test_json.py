@@ -13,9 +13,9 @@ from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.grading.schema import rubric_schema
 from grader.report.as_json import render_json
+from grader.report.formats import json_schema
 from grader.report.inspection import Inspection, inspection_json, main_root
 from grader.report.json_data import exact, rounded, to_json
-from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.opening import read_submission
@@ -40,7 +40,7 @@ def inspected(data: bytes) -> str:
 
 
 @pytest.mark.parametrize(
-    "schema", [REPORT_SCHEMA, INSPECT_SCHEMA, rubric_schema()], ids=["report", "inspect", "rubric"]
+    "schema", [json_schema("report"), json_schema("inspect"), rubric_schema()], ids=["report", "inspect", "rubric"]
 )
 def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
     """Every printed schema is a JSON Schema."""
@@ -51,7 +51,7 @@ def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
 def test_reports_are_valid(name: str) -> None:
     """The report of every sample is valid, and its points add up."""
     report = SAMPLES[name].grade()
-    data = valid(render_json(report), REPORT_SCHEMA)
+    data = valid(render_json(report), json_schema("report"))
     single, whole = {"lab6": (70, 100), "arm": (100, 100), "sensors": (56, 70)}[report.rubric.id]
     assert data["max_score"] == (single if report.submission.is_single else whole)
     assert data["score"] == sum(result["points"] for result in data["results"])
@@ -65,7 +65,7 @@ def test_reports_are_valid(name: str) -> None:
 def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (
-        jsonschema.Draft202012Validator(schema) for schema in (REPORT_SCHEMA, INSPECT_SCHEMA)
+        jsonschema.Draft202012Validator(schema) for schema in (json_schema("report"), json_schema("inspect"))
     )
     for case in EDGE_CASES:
         if len(case.text) > 20_000:
@@ -106,5 +106,5 @@ def test_a_students_text_is_data(name: str) -> None:
     escaped = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     data = f'<robot name="{escaped}"><link name="{escaped}"/><link name="b"/></robot>'.encode("utf-8", "surrogatepass")
     report = grade(RUBRIC, read_submission(data, identity="a", path="a.urdf"))
-    valid(render_json(report).encode().decode(), REPORT_SCHEMA)
-    valid(inspected(data).encode().decode(), INSPECT_SCHEMA)
+    valid(render_json(report).encode().decode(), json_schema("report"))
+    valid(inspected(data).encode().decode(), json_schema("inspect"))

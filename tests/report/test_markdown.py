@@ -10,10 +10,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
-from grader.report.content import earned_text
-from grader.report.markdown import cut_markdown, render_markdown
-from grader.report.markdown_text import code, escaped, fenced
-from grader.report.order import groups, in_order
+from grader.report.markdown import code, cut_markdown, escape, fence, render_markdown
+from grader.report.order import earned_text, groups, in_order
 from grader.text import printable
 from tests.report.hostile import TEXT
 from tests.report.readers import read_as_github, read_markdown
@@ -70,7 +68,7 @@ def test_what_passed_is_folded_by_group(name: str) -> None:
     report = report_of(name)
     folds = read_as_github(render_markdown(report)).findall("details")
     expected = {
-        f"{group.title} {earned_text(group.results)}": [
+        f"{group.title} {earned_text(*group.results)}": [
             result.criterion.title for result in group.results if result.outcome.status == "passed"
         ]
         for group in groups(report)
@@ -131,7 +129,7 @@ def test_escaped_text_is_shown_unchanged(layout: str, text: str) -> None:
     """In a paragraph, an item or a heading: nothing in it is markup, a link or HTML, and no character is lost."""
     if not text.strip():
         return
-    written = layout.format(escaped(text))
+    written = layout.format(escape(text))
     root = read_as_github(written)
     assert _plain(root.text_content()).strip().removeprefix(LAYOUTS[layout]).strip() == text.strip()
     own = read_as_github(layout.format("plain"))
@@ -158,7 +156,7 @@ def test_inline_code_is_shown_unchanged(text: str) -> None:
 @example(["   " + "`" * 90, "~" * 300, "<b>"])
 def test_a_code_block_ends_at_its_fence(lines: list[str]) -> None:
     """Whatever its content, at any length: GitHub counts at most 255 backticks of a fence."""
-    root = read_as_github(f"- x\n\n{indent(fenced(lines), '  ')}\n\ny\n")
+    root = read_as_github(f"- x\n\n{indent(fence(lines), '  ')}\n\ny\n")
     assert [element.tag for element in root.iter()] == ["div", "ul", "li", "p", "pre", "code", "p"]
     assert root.find(".//code").text_content() == "".join(f"{line}\n" for line in lines)
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from lxml import html
 
 from grader.report.formats import Format, render
-from grader.report.pages.shell import render_page
+from grader.report.pages.shell import Assets, render_page
 from grader.text import without_commands
 from tests.command_line import ROOT
 from tests.samples import SAMPLES
@@ -23,7 +23,7 @@ VALUES = {"version": "1", "title": "A page"}
 
 
 def page(data: dict[str, object] | None = None, **values: str) -> str:
-    return render_page("base.html", VALUES | values, data or {}, "", "")
+    return render_page("base.html", VALUES | values, data or {}, Assets())
 
 
 def test_policy_allows_what_the_page_has_and_nothing_else() -> None:
@@ -52,9 +52,9 @@ def test_text_stays_text(text: str) -> None:
 def test_unknown_values_are_an_error() -> None:
     """A template that names a value it does not get fails; NaN is no JSON."""
     with pytest.raises(Exception, match="title"):
-        render_page("base.html", {"version": "1"}, {}, "", "")
+        render_page("base.html", {"version": "1"}, {}, Assets())
     with pytest.raises(ValueError, match="JSON"):
-        render_page("base.html", VALUES, {"x": float("nan")}, "", "")
+        render_page("base.html", VALUES, {"x": float("nan")}, Assets())
 
 
 def test_grade_without_html_imports_nothing_of_it() -> None:

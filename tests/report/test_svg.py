@@ -10,7 +10,7 @@ import pytest
 
 from grader.drawing.curves import SIDE
 from grader.drawing.picture import picture_of
-from grader.drawing.sheet import single_cell
+from grader.drawing.sheet import single_panel
 from grader.report.drawing import drawing_element, inspection_svg, thumbnail_element
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
@@ -306,5 +306,5 @@ def test_thumbnail_is_small() -> None:
     assert all(len(found) == 1 for found in bodies(root).values())
     assert paths(root, "reference")
     assert not paths(root, "badge")
-    cell = single_cell(picture, SIDE, 100.0, 50.0, 5.0)
+    cell = single_panel(picture, SIDE, 100.0, 50.0, 5.0)
     assert cell.width == 100.0

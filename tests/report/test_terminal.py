@@ -13,9 +13,8 @@ from grader.grading.grade import grade
 from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
 from grader.report.console import excerpt_block, put
-from grader.report.content import earned_text
 from grader.report.inspection import Inspection, inspection_terminal, main_root
-from grader.report.order import Failure, groups, in_order
+from grader.report.order import FailedCriterion, earned_text, groups, in_order
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source
@@ -101,7 +100,7 @@ def report_of(name: str) -> Report:
     return grade(RUBRIC, opened(URDF)) if name == "urdf" else SAMPLES[name].grade()
 
 
-def costs(report: Report) -> list[Failure]:
+def costs(report: Report) -> list[FailedCriterion]:
     """Return the failures that cost points."""
     return [failure for failure in in_order(report).failures if not failure.result.why_given]
 
@@ -178,7 +177,7 @@ def test_groups_with_lost_points_are_listed(name: str) -> None:
     for group in groups(report):
         is_open = all(result.is_open for result in group.results)
         is_full = all(result.points == result.criterion.points for result in group.results)
-        assert is_full or is_open or f"{group.title} {earned_text(group.results)}" in words
+        assert is_full or is_open or f"{group.title} {earned_text(*group.results)}" in words
     assert "The left wheel 14/14" in " ".join(shown(report_of("lidar-offset-in-visual")).split())
 
 

@@ -1,7 +1,7 @@
 """Grade the submission in the current folder, as Gradescope lays it out, and write results/results.json.
 
-There is always a results.json: run_autograder writes one that says that nothing was graded, and this script replaces it if the
-grader wrote a report. It needs only the standard library.
+There is always a results.json: run_autograder writes one that says that nothing was graded, and this script replaces it
+if the grader wrote a report. It needs only the standard library.
 """
 
 import json
@@ -19,6 +19,9 @@ ENVIRONMENT = {"PATH": os.defpath, "LC_ALL": "C.UTF-8"}
 GRADED, NOT_GRADED = (0, 1, 3), 2  # the grader's exit codes
 MAX_BYTES = 32 * 1024 * 1024
 MAX_CHARACTERS = 2000
+ADVICE = (
+    "Nothing was graded. Check your submission and submit again. If you cannot find the fault, ask your instructor."
+)
 
 
 class Completed(NamedTuple):
@@ -81,7 +84,7 @@ def nothing_graded(why: str) -> dict[str, Any]:
     """Return results without points that give the reason."""
     return {
         "score": 0,
-        "output": f"{why}\n\nNothing was graded. Check your submission and submit again. If you cannot find the fault, ask your instructor.",
+        "output": f"{why}\n\n{ADVICE}",
         "output_format": "text",
         "visibility": "visible",
         "stdout_visibility": "hidden",

@@ -38,7 +38,7 @@ from grader.report.class_words import (
 from grader.report.drawing import thumbnail_element
 from grader.report.pages.class_rows import Group, StudentRow, groups, student_rows
 from grader.report.pages.robot import RULES
-from grader.report.pages.shell import render_page
+from grader.report.pages.shell import Assets, render_page
 from grader.robot.transforms import Vector, dot
 from grader.text import counted, format_points, printable
 
@@ -145,7 +145,7 @@ def render_class_page(
         "columns": _columns(rows),
         "groups": found,
     }
-    return render_page("class.html", values, _data(rows, found), "class.css", "class.js", rules=RULES)
+    return render_page("class.html", values, _data(rows, found), Assets("class.css", "class.js", RULES))
 
 
 def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:

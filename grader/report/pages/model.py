@@ -1,6 +1,6 @@
-"""The data of a robot for the script of a page: links, joints, shapes and wheels, from which the script computes all poses."""
+"""The data of a robot for the script of a page: links, joints, shapes and wheels. The script computes all poses."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -32,7 +32,7 @@ def picture_data(picture: Picture) -> dict[str, Any]:
                 "number": callout.number,
                 "link": links.get(callout.link, -1),
                 "other": others.get(callout.link, -1),
-                "point": _numbers(callout.point) if callout.point is not None else None,
+                "point": _numbers(callout.point),
             }
             for callout in picture.callouts
         ],
@@ -96,18 +96,14 @@ def _joint(joint: Joint, robot: Configuration, links: Mapping[str, int], named: 
     if "mimic" in joint.unresolved:
         found["mimic"] = None
     elif joint.mimic is not None:
-        factors = (joint.mimic.multiplier, joint.mimic.offset)
-        known = all(map(isfinite, factors))
-        found["mimic"] = [named.get(joint.mimic.joint, -1), *_numbers(factors)] if known else None
-    return found | {"origin": _pose(origin) if origin is not None else None}
+        factors = _numbers((joint.mimic.multiplier, joint.mimic.offset))
+        found["mimic"] = [named.get(joint.mimic.joint, -1), *factors] if factors else None
+    return found | {"origin": _pose(origin)}
 
 
 def _axis(joint: Joint) -> list[float] | bool | None:
     """Return the unit axis; None if it cannot be read, and False if it has no direction."""
-    if joint.axis is None:
-        return None
-    direction = unit(joint.axis)
-    return _numbers(direction) if direction is not None else False
+    return _numbers(unit(joint.axis)) or False if joint.axis is not None else None
 
 
 def _shape(body: Body, links: Mapping[str, int], *, is_wheel: bool) -> list[Any]:
@@ -128,30 +124,30 @@ def _wheel(
 ) -> Data:
     """Return a wheel; `right` is whether its direction failed no criterion and is that of the reference's wheel."""
     joint = scene.robot.joint(wheel.joint)
-    pairs = [other for other in expected.wheels if other.link == wheel.link] if expected is not None else []
-    wanted = pairs[0].travel if pairs else None
+    others = expected.wheels if expected is not None else ()
+    wanted = next((other.travel for other in others if other.link == wheel.link), None)
+    is_right = wheel.travel is not None and (wanted is None or dot(wheel.travel, wanted) > 0.7)
     shape = main_visual(scene.robot, wheel.link).geometry
     reach = max(shape.size) / 2 if isinstance(shape, Box) else getattr(shape, "radius", 0.1)
     return {
         "joint": wheel.joint,
         "parent": links[joint.parent],
         "centre": _numbers(wheel.centre),
-        "travel": _numbers(wheel.travel) if wheel.travel is not None else None,
-        "right": wheel.link not in failed
-        and wheel.travel is not None
-        and (wanted is None or dot(wheel.travel, wanted) > 0.7),
+        "travel": _numbers(wheel.travel),
+        "right": is_right and wheel.link not in failed,
         "free": wheel.is_free,
         "reach": abs(reach),
     }
 
 
-def _pose(pose: Transform) -> list[float] | None:
-    """Return x, y, z, roll, pitch, yaw; None for numbers that are too large."""
-    values = (*pose.translation, *pose.rpy)
-    return _numbers(values) if all(map(isfinite, values)) else None
+def _pose(pose: Transform | None) -> list[float] | None:
+    """Return x, y, z, roll, pitch, yaw."""
+    return _numbers((*pose.translation, *pose.rpy)) if pose is not None else None
 
 
-def _numbers(values: Any) -> list[float]:
-    """Return numbers rounded to 1e-9, which is enough for a picture, so that JSON is short."""
+def _numbers(values: Sequence[float] | None) -> list[float] | None:
+    """Return numbers rounded to 1e-9, which is enough for a picture, so that JSON is short; None if one is infinite."""
+    if values is None or not all(map(isfinite, values)):
+        return None
     rounded = (round(value, _DIGITS) + 0.0 for value in values)
     return [int(value) if value == int(value) else value for value in rounded]

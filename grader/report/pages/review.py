@@ -10,7 +10,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
-from grader.report.pages.shell import render_page
+from grader.report.pages.shell import Assets, render_page
 from grader.report.review import files_text, marked_text, message_text, place_text, who
 from grader.text import counted, counted_points, format_points, shell_quoted
 
@@ -99,7 +99,7 @@ def error_page(message: str, following: str) -> str:
 
 def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
     shared = {"version": __version__, **values}
-    return render_page(template, shared, data, "review.css", "review.js", _SOURCES)
+    return render_page(template, shared, data, Assets("review.css", "review.js", sources=_SOURCES))
 
 
 def _pictures(found: Sequence[EmbeddedPicture | NotShown], number: int) -> Iterator[tuple[str, str, int, int]]:

@@ -1,34 +1,44 @@
-"""The robot on a page: three views, the 3-D model with the sliders of its joints, and a description."""
+"""Pages about a robot: three views, the 3-D model with the sliders of its joints, and a description."""
 
 from collections.abc import Iterator, Mapping
+from itertools import islice
 from math import degrees, pi
 from typing import Any, NamedTuple
 
 from lxml import etree
 from markupsafe import Markup
 
-from grader.drawing.picture import Callout, Picture
+from grader import __version__
+from grader.drawing.picture import Picture, plain_picture
 from grader.drawing.scene import Scene
 from grader.errors import MissingElement, NotDecided
+from grader.report.content import problem_line
 from grader.report.drawing import drawing_element
+from grader.report.inspection import Inspection, effect, tree
+from grader.report.locations import source_lines
+from grader.report.order import alike
 from grader.report.pages.model import picture_data
+from grader.report.pages.shell import Assets, render_page
 from grader.report.svg_elements import DARK_RULES
-from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform
-from grader.text import counted, quoted
+from grader.text import counted, first_lines, printable, quoted
 
 _HALF_TURN = 180.0
+_MAX_LISTED = 500  # links of the tree, and problems
+_CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 _MAX_SLIDE = 1.0  # metres, of a joint without limits
 _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 
 
 class Slider(NamedTuple):
-    """The control of a joint: its number in the file, its range and position in degrees or mm; `scale` makes them radians or metres.
+    """The control of a joint: its number in the file, its range and position in degrees or mm.
 
-    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a continuous joint
-    `wraps` after a full turn.
+    `scale` makes them radians or metres.
+
+    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a
+    continuous joint `wraps` after a full turn.
     """
 
     joint: int
@@ -43,9 +53,9 @@ class Slider(NamedTuple):
     wraps: bool = False
 
 
-def sliders_of(scene: Scene) -> Iterator[Slider]:
+def _sliders(scene: Scene) -> Iterator[Slider]:
     """Yield a slider for each joint that turns or slides, and whose child link has a pose in the picture."""
-    for number, joint in _moved(scene):
+    for number, joint in _joints_of(scene):
         if joint.type not in ("revolute", "continuous", "prismatic"):
             continue
         slides = joint.type == "prismatic"
@@ -70,7 +80,7 @@ def _note(joint: Joint, value: float, follows: bool) -> str:
 
 
 def _range(joint: Joint) -> tuple[float, float]:
-    """Return the range of a joint in radians or metres; without usable limits, half a turn or a metre in both directions."""
+    """Return the range of a joint in radians or metres; without usable limits, half a turn or a metre each way."""
     limit = joint.limit
     most = _MAX_SLIDE if joint.type == "prismatic" else pi
     if joint.type == "continuous" or limit is None or not 0.0 < limit.upper - limit.lower < _MAX_RANGE:
@@ -78,14 +88,14 @@ def _range(joint: Joint) -> tuple[float, float]:
     return limit.lower, limit.upper
 
 
-def unmoved(scene: Scene) -> Iterator[str]:
+def _unmoved_joints(scene: Scene) -> Iterator[str]:
     """Yield a sentence for each joint that moves in the robot, but not on the page."""
-    for _, joint in _moved(scene):
+    for _, joint in _joints_of(scene):
         if joint.type in ("planar", "floating") and joint.name not in scene.robot.positions:
             yield f"{quoted(joint.name)} is {joint.type}: it stays at 0 here."
 
 
-def _moved(scene: Scene) -> Iterator[tuple[int, Joint]]:
+def _joints_of(scene: Scene) -> Iterator[tuple[int, Joint]]:
     """Yield the joints whose child link has a pose in the picture; of joints with the same name, the first."""
     names: set[str] = set()
     for number, joint in enumerate(scene.robot.robot.joints):
@@ -98,75 +108,43 @@ def _moved(scene: Scene) -> Iterator[tuple[int, Joint]]:
             yield number, joint
 
 
-STYLE = "robot.css"
-SCRIPTS = "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js"
+_SCRIPTS = "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js"
 RULES = f"@media screen and (prefers-color-scheme: dark) {{{DARK_RULES}}}"  # of the views
 
 
-class LinkRow(NamedTuple):
-    """A link in words: its shapes, the pose of its frame, and its parent joint."""
-
-    name: str
-    shows: str
-    place: str
-    joint: str
-
-
-class RobotView(NamedTuple):
-    """The content of a page about a robot. `words` is the description for screen readers."""
-
-    data: Mapping[str, Any]
-    sliders: tuple[Slider, ...]
-    still: tuple[str, ...]
-    links: tuple[LinkRow, ...]
-    frame: str
-    words: str
-    missing: tuple[str, ...]
-    has_reference: bool
-    has_wheels: bool
-    can_drive: bool
-    callouts: tuple[Callout, ...]
-
-
-def views(picture: Picture) -> Markup:
-    """Return the three views as an element of a page."""
+def render_robot_page(
+    template: str, values: Mapping[str, object], picture: Picture | None, data: Mapping[str, Any], *scripts: str
+) -> str:
+    """Return a page about the robot of a picture, if there is one. The last of the scripts does not need the robot."""
+    if picture is None:
+        assets = Assets("robot.css student.css", " ".join(scripts[-1:]))
+        return render_page(template, {**values, "robot": None, "views": ""}, {}, assets)
+    scene, sliders = picture.scene, [*_sliders(picture.scene)]
     element = drawing_element(picture, legend=False)
-    return Markup(etree.tostring(element, encoding="unicode"))  # noqa: S704  an element tree, whose text is escaped
-
-
-def robot_view(picture: Picture) -> RobotView:
-    """Return the content of a page about the robot of a picture."""
-    scene = picture.scene
-    sliders = tuple(sliders_of(scene))
+    view = {
+        "picture": picture,
+        "sliders": sliders,
+        "still": tuple(_unmoved_joints(scene)),
+        "links": [*_links(scene)],
+        "words": _words(picture, len(sliders)),
+        "can_drive": any(wheel.is_free for wheel in scene.wheels),
+    }
+    views = Markup(etree.tostring(element, encoding="unicode"))  # noqa: S704  an element tree, whose text is escaped
     starts = [{"joint": one.name, "value": one.value * one.scale} for one in sliders if not one.follows]
     mode = "both" if picture.outlines or picture.frames else "submission"
-    return RobotView(
-        {**picture_data(picture), "sliders": starts, "mode": mode},
-        sliders,
-        tuple(unmoved(scene)),
-        tuple(_rows(scene)),
-        scene.frame,
-        _words(picture),
-        scene.missing,
-        picture.reference is not None,
-        bool(scene.wheels),
-        any(wheel.is_free for wheel in scene.wheels),
-        picture.callouts,
-    )
+    robot = {**picture_data(picture), "sliders": starts, "mode": mode}
+    assets = Assets("robot.css student.css", " ".join((_SCRIPTS, *scripts)), RULES)
+    return render_page(template, {**values, "robot": view, "views": views}, {**robot, **data}, assets)
 
 
-def _rows(scene: Scene) -> Iterator[LinkRow]:
-    shown: dict[str, list[str]] = {}
-    for body in scene.bodies:
-        shown.setdefault(body.link, []).append(_shape_words(body.shape))
+def _links(scene: Scene) -> Iterator[tuple[str, str, str, str]]:
+    """Yield each link in words: its name, its shapes, the pose of its frame, and its parent joint."""
+    bodies = dict(alike(scene.bodies, lambda body: body.link))
     for name in dict.fromkeys(link.name for link in scene.robot.robot.links):
+        shapes = ", ".join(_shape_words(body.shape) for body in bodies.get(name, ()))
         pose, joint = scene.poses.get(name), scene.robot.parent_joints.get(name)
-        yield LinkRow(
-            name,
-            ", ".join(shown.get(name, [])),
-            _pose_words(pose) if pose is not None else _why_none(scene, name),
-            f"{joint.name} ({joint.type}) from {joint.parent}" if joint is not None else "",
-        )
+        place = _pose_words(pose) if pose is not None else _why_none(scene, name)
+        yield name, shapes, place, f"{joint.name} ({joint.type}) from {joint.parent}" if joint is not None else ""
 
 
 def _why_none(scene: Scene, link: str) -> str:
@@ -195,12 +173,31 @@ def _pose_words(pose: Transform) -> str:
     return f"{place}{'; turned by ' + ' '.join(f'{value:g}' for value in angles) + ' degrees' if any(angles) else ''}"
 
 
-def _words(picture: Picture) -> str:
+def _words(picture: Picture, moving: int) -> str:
     """Return the description for screen readers: the parts of the robot, and the failed criteria of each link."""
-    robot: Configuration = picture.scene.robot
-    moving = sum(1 for _ in sliders_of(picture.scene))
-    words = f"{counted(len(robot.robot.links), 'link')}, {counted(moving, 'joint')} that can be moved."
+    links = counted(len(picture.scene.robot.robot.links), "link")
+    words = f"{links}, {counted(moving, 'joint')} that can be moved."
     for callout in picture.callouts:
         names = ", ".join(result.criterion.id for result in callout.results)
         words += f" {callout.number}: {names} failed{f' at {callout.link}' if callout.link else ''}."
     return words
+
+
+def inspection_html(inspection: Inspection) -> str:
+    """Return the inspection as an HTML page, with the joints at the given positions."""
+    reading, robot = inspection.reading, inspection.robot
+    sources = {reading.source.path: reading.source}
+    lines = (f"{indent}{link}  {joint}" for indent, link, joint in (tree(robot) if robot is not None else ()))
+    values = {
+        "version": __version__,
+        "title": printable(robot.robot.name if robot is not None else inspection.path),
+        "path": inspection.path,
+        "effect": effect(reading),
+        "verdict": _CLASSES.get(reading.verdict if reading.is_decided else "", "failed"),
+        "problems": [
+            (problem.severity, problem_line(problem), source_lines(problem.location, sources.get))
+            for problem in reading.problems[:_MAX_LISTED]
+        ],
+        "tree": first_lines([*islice(lines, _MAX_LISTED + 1)], _MAX_LISTED),
+    }
+    return render_robot_page("inspection.html", values, plain_picture(robot, inspection.relative_to), {})

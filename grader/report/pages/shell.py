@@ -1,4 +1,4 @@
-"""The common parts of all pages: templates that escape all text, one file without requests, a content security policy."""
+"""The common parts of all pages: templates that escape all text, one file without requests, a policy."""
 
 import hashlib
 import json
@@ -6,7 +6,7 @@ from base64 import b64encode
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -18,42 +18,42 @@ _NOTHING = "'none'"
 _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"})
 
 
-def render_page(
-    template: str,
-    values: Mapping[str, object],
-    data: Mapping[str, Any],
-    style: str,
-    script: str,
-    sources: str = "",
-    rules: str = "",
-) -> str:
+class Assets(NamedTuple):
+    """The styles besides base.css and the scripts of a page, names between spaces.
+
+    `rules` are more CSS rules, from the grader only. `sources` are directives for the policy of a page that is served:
+    "img-src 'self'".
+    """
+
+    styles: str = ""
+    scripts: str = ""
+    rules: str = ""
+    sources: str = ""
+
+
+def render_page(template: str, values: Mapping[str, object], data: Mapping[str, Any], assets: Assets) -> str:
     """Return a page as one HTML file.
 
     Args:
-        template: The name of the template. It extends base.html and gets the `values`. Text is escaped, and made printable.
+        template: The name of the template. It extends base.html and gets the `values`. Text is escaped and printable.
         values: The values of the template; markup only as `Markup`.
         data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
-        style: The names of the styles besides base.css, separated by spaces.
-        script: The names of the scripts, separated by spaces.
-        sources: Directives for the policy of a page that is served: "img-src 'self'".
-        rules: More CSS rules, from the grader only.
+        assets: The styles and scripts.
     """
-    styles, scripts = (
-        [_file(name) for name in ("base.css", *style.split())] + [rules] * bool(rules),
-        [_file(name) for name in script.split()],
-    )
+    styles = [*map(_file, ("base.css", *assets.styles.split())), *filter(None, [assets.rules])]
+    scripts = [*map(_file, assets.scripts.split())]
     policy = [
         f"default-src {_NOTHING}",
         f"style-src {' '.join(map(_hash, styles))}",
         f"script-src {' '.join(map(_hash, scripts)) or _NOTHING}",
         f"base-uri {_NOTHING}",
         f"form-action {_NOTHING}",
-        *filter(None, [sources]),
+        *filter(None, [assets.sources]),
     ]
     shell = {
         "policy": "; ".join(policy),
-        "styles": [Markup(text) for text in styles],  # noqa: S704  our own files
-        "scripts": [Markup(text) for text in scripts],  # noqa: S704
+        "styles": [*map(Markup, styles)],  # our own files
+        "scripts": [*map(Markup, scripts)],
         "data": _json(data),
     }
     return _environment().get_template(template).render(**values, **shell)

@@ -1,6 +1,5 @@
 """A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
 
-from collections.abc import Collection, Iterator
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
@@ -8,55 +7,46 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, group_status, status_of
-from grader.report.order import alike, failures, groups, in_order
-from grader.report.pages.criteria import card_of, failure_card
-from grader.report.pages.robot import RULES, SCRIPTS, STYLE, robot_view, views
-from grader.report.pages.shell import render_page
-from grader.report.plain_text import evidence, problem_line, provenance
+from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.drawing_key import why_no_picture
+from grader.report.locations import SourceLine, diff_lines, location_text, source_lines
+from grader.report.order import (
+    CriteriaGroup,
+    FailedCriterion,
+    alike,
+    earned_text,
+    failures,
+    groups,
+    in_order,
+    status_of,
+)
+from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
 
 
-class Row(NamedTuple):
-    """A criterion in the list of all criteria. `title` is empty unless it passed.
+class Card(NamedTuple):
+    """The content of a criterion: `points` or what it costs, and `hints` with the lines of their diffs.
 
-    `card` is the criterion with the card for it: itself, or the one that it is skipped because of; empty if neither has one.
+    `feedback` is the rubric's advice, and `skipped` what is skipped because of it.
     """
 
-    id: str
-    title: str
-    status: str
+    result: Result
     points: str
-    because: str
-    card: str
-
-
-class Rows(NamedTuple):
-    """A group of criteria, with the sum of their points."""
-
-    title: str
-    points: str
-    rows: tuple[Row, ...]
-    status: str
+    details: Details
+    source: list[SourceLine]
+    hints: tuple[tuple[str, list[str]], ...]
+    skipped: str = ""
+    feedback: str = ""
 
 
 def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
     picture = picture_of(report)
-    callouts = picture.callouts if picture is not None else ()
-    placed = [callout for callout in callouts if callout.point is not None]
-    called = {result.criterion.id: callout.number for callout in placed for result in callout.results}
+    callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
+    called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
+    costly = [called[failure.id] for failure in failures(report) if failure.id in called]
     values = {**_summary(report), **_criteria(report), **_others(report), "called": called}
-    if picture is None:
-        values |= {"robot": None, "views": "", "no_picture": content.why_no_picture(report)}
-        return render_page("student.html", values, {}, f"{STYLE} student.css", "student.js")
-    robot = robot_view(picture)
-    values |= {"robot": robot, "views": views(picture)}
-    costly = [called[one.result.criterion.id] for one in failures(report) if one.result.criterion.id in called]
-    data = {**robot.data, "costly": costly}
-    return render_page(
-        "student.html", values, data, f"{STYLE} student.css", f"{SCRIPTS} failures.js student.js", rules=RULES
-    )
+    return render_robot_page("student.html", values, picture, {"costly": costly}, "failures.js", "student.js")
 
 
 def _summary(report: Report) -> dict[str, object]:
@@ -73,64 +63,62 @@ def _summary(report: Report) -> dict[str, object]:
         "notes": content.notes(report),
         "next": command,
         "left": "" if command else content.what_is_left(report),
-        "provenance": provenance(report),
-    }
-
-
-def _criteria(report: Report) -> dict[str, object]:
-    order, shown = in_order(report), set[str]()
-    skipped = alike(order.skipped, lambda result: result.because or "")
-    cards = {result.criterion.id for result in (*(one.result for one in order.failures), *order.pending, *order.marked)}
-    return {
-        "symbols": SYMBOLS,
-        "failures": [failure_card(failure, report, shown) for failure in order.failures],
-        "skipped": [content.skipped_text(cause, some) for cause, some in skipped],
-        "sections": [
-            (title, [card_of(result, report) for result in results])
-            for title, results in (("Needs manual grading", order.pending), *order.remarks)
-            if results
-        ],
-        "parts": [*_parts(report, cards)],
-    }
-
-
-def _others(report: Report) -> dict[str, object]:
-    return {
-        "evidence": [*evidence(report)],
-        "problems_title": content.other_problems_title(report),
-        "problems": [(problem.severity, problem_line(problem)) for problem in content.other_problems(report)],
-        "ignored": content.ignored_lines(report),
+        "provenance": content.provenance(report),
     }
 
 
 def _shares(report: Report) -> tuple[float, float]:
     """Return the percentages of the maximum that are earned, and that are earned or need manual grading."""
-    whole = report.max_score or Decimal(1)
-    counting = report.counting or Decimal(0)
+    whole, counting = report.max_score or Decimal(1), report.counting or Decimal(0)
     earned, possible = (float(100 * points / whole) for points in (counting, counting + report.open_points))
     return min(100, round(earned, 2)), min(100, round(possible, 2))
 
 
-def _parts(report: Report, cards: Collection[str]) -> Iterator[tuple[str, str, list[Rows]]]:
-    """Yield the title, the points and the groups of each part."""
-    titles = {part.id: part.title for part in report.rubric.parts}
-    for part, found in groupby(groups(report), key=lambda group: group.part):
-        some = [*found]
-        rows = [
-            Rows(
-                group.title,
-                content.earned_text(group.results),
-                tuple(_row(result, cards) for result in group.results),
-                group_status(group),
-            )
-            for group in some
-        ]
-        yield titles[part], content.earned_text(tuple(result for group in some for result in group.results)), rows
+def _criteria(report: Report) -> dict[str, object]:
+    order, printed = in_order(report), set[str]()
+    skipped = alike(order.skipped, lambda result: result.because or "")
+    by_part = groupby(groups(report), key=lambda group: group.part)
+    results = (*(failure.result for failure in order.failures), *order.pending, *order.marked)
+    return {
+        "symbols": SYMBOLS,
+        "status_of": status_of,
+        "earned_text": earned_text,
+        "location_text": location_text,
+        "failures": [_failure_card(failure, report, printed) for failure in order.failures],
+        "skipped": [skipped_text(cause, some) for cause, some in skipped],
+        "sections": [(title, [_card(result, report) for result in some]) for title, some in order.sections],
+        "cards": {result.criterion.id for result in results},  # that others refer to
+        "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
+    }
 
 
-def _row(result: Result, cards: Collection[str]) -> Row:
-    status = status_of(result)
-    title = result.criterion.title if status == "passed" else ""
-    because = (result.because or "") if result.manual_mark is None and not result.is_adjusted else ""
-    card = next((name for name in (result.criterion.id, because) if name in cards), "")
-    return Row(result.criterion.id, title, status, content.earned_text((result,)), because, card)
+def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
+    return title, earned_text(*(result for group in some for result in group.results)), some
+
+
+def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -> Card:
+    """Return a failed criterion, with what is skipped because of it, and feedback once, only without hints."""
+    card = _card(failure.result, report)
+    feedback = "" if card.hints or card.details.feedback in printed else card.details.feedback
+    printed.add(feedback)
+    skipped = skipped_text(failure.id, failure.skipped) if failure.skipped else ""
+    return card._replace(points=failure.cost, skipped=skipped, feedback=feedback)
+
+
+def _card(result: Result, report: Report) -> Card:
+    details, source_of = result_details(result, report), report.submission.source
+    where = details.location
+    lines = source_lines(where, source_of) if where is not None else []
+    hints = tuple((hint.message, diff_lines(hint.edits, source_of)) for hint in details.hints)
+    return Card(result, earned_text(result), details, lines, hints)
+
+
+def _others(report: Report) -> dict[str, object]:
+    problems = content.other_problems(report)
+    return {
+        "no_picture": why_no_picture(report),
+        "evidence": [*content.evidence(report)],
+        "problems_title": content.other_problems_title(report),
+        "problems": [(problem.severity, content.problem_line(problem)) for problem in problems],
+        "ignored": content.ignored_lines(report),
+    }
