@@ -83,7 +83,7 @@ def find_evidence(
     if exact:
         return FoundEvidence(describe(exact))
     others = [proof for proof in proofs if not proof.label.is_complete]
-    meant = [proof for proof in others if proof.loose.is_complete and any(matches(it, proof.loose) for it in wanted)]
+    meant = [proof for proof in others if _is_misspelt(proof, wanted)]
     perhaps = [proof for proof in others if proof not in meant and any(_may_match(it, proof) for it in wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
@@ -94,6 +94,10 @@ def find_evidence(
     return FoundEvidence(
         (), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole))
     )
+
+
+def _is_misspelt(proof: Proof, wanted: Sequence[Label]) -> bool:
+    return proof.loose.is_complete and any(matches(label, proof.loose) for label in wanted)
 
 
 def find_all_evidence(
@@ -113,15 +117,17 @@ def find_all_evidence(
         found[index] = FoundEvidence(one.files, perhaps)
     without = [index for index, one in enumerate(found) if not one.files]
     steps = [(label, index) for index in without for label in map(read_label, names[index]) if label.is_complete]
-    for proof in (proof for proof in proofs if proof.file.path not in claimed and proof.loose.is_complete):
-        near = _nearest(proof.loose, steps)
+    for proof in proofs:
+        near = _nearest(proof.loose, steps) if proof.file.path not in claimed else None
         if near is not None:
             found[near] = FoundEvidence((), (*found[near].possible, *describe([proof])))
     return found
 
 
 def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
-    """Return what belongs to the nearest step of the same task; None if there is none of it."""
+    """Return what belongs to the nearest step of the same task; None if there is none of it, or no step is wanted."""
+    if not wanted.is_complete:
+        return None
     distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
     return min(distances)[1] if distances else None
 

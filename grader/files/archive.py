@@ -8,7 +8,7 @@ import io
 import tempfile
 import weakref
 from bisect import bisect_left
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
 from functools import partial
 from typing import IO
@@ -74,15 +74,20 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
     folders = {path for path, member in found.items() if member.kind == "folder"} | folders_above(found, name)
     links = _Links(found, folders, name)
-    for path, member in found.items():
-        if member.reason:
-            ignored.append(IgnoredFile(path, member.reason))
-        elif member.kind == "link" and not links.add(path):
-            ignored.append(IgnoredFile(path, "is a link that leads nowhere in the archive, and was not followed"))
+    ignored += _follow(links, found)
     members_at = {path: found[real] for path, real in links.files.items()}
     members_at |= {path: member for path, member in found.items() if member.kind == "file"}
     files = [File(path, member.size, partial(_read, member, path)) for path, member in members_at.items()]
     return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
+
+
+def _follow(links: "_Links", found: Mapping[str, ArchiveMember]) -> Iterator[IgnoredFile]:
+    """Follow the links of an archive; yield the members that cannot be read, and the links that lead nowhere."""
+    for path, member in found.items():
+        if member.reason:
+            yield IgnoredFile(path, member.reason)
+        elif member.kind == "link" and not links.add(path):
+            yield IgnoredFile(path, "is a link that leads nowhere in the archive, and was not followed")
 
 
 def _path(member: ArchiveMember) -> str | IgnoredFile:

@@ -190,9 +190,8 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
     name = new.name or old.name
     final = tuple(_final_mark(old, new))
     if not (old.verdict and new.verdict):
-        moves = ((new.verdict, "first submission"), (old.verdict, "no longer there"))
-        why = (*(reason for holds, reason in moves if holds), *final)
-        return Change(*whole, (), why, name) if why else None
+        moved = ("first submission",) if new.verdict else ("no longer there",) if old.verdict else ()
+        return Change(*whole, (), (*moved, *final), name) if moved or final else None
     steps = tuple(_steps(old, new))
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
     late = (f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}",) if old.late != new.late else ()

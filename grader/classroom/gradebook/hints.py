@@ -1,8 +1,8 @@
 """The proven hints in a gradebook: which submissions need them, which of these have the same, and which are stored."""
 
 import json
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -58,31 +58,34 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
             continue
         submission = submission_of(book.record(row["result"]))
         is_package_wrong = not submission.is_single and not failed.isdisjoint(of_package)
-        if failed.isdisjoint(of_robot) and not is_package_wrong:
-            continue
-        urdf, robot, digest = row["urdf"], row["robot"], row["digest"]
-        files = ("file", urdf) if submission.is_single and urdf else ("digest", digest)
-        content = (*files, row["parts"], str(statuses))
-        same_robot = ("robot", robot, str({position: statuses.get(position) for position in of_robot}))
-        paths, names, *_ = json.loads(row["files"])
-        found.append(
-            Mistaken(
-                student=row["student"],
-                key=row["key"],
-                result=row["result"],
-                digest=digest,
-                parts=tuple(row["parts"].split()),
-                root=row["source"],
-                paths=tuple(paths),
-                names=tuple(names),
-                is_gone=bool(row["is_gone"]),
-                hints=row["hints"],
-                submission=submission,
-                content=content,
-                robot=content if is_package_wrong or not robot else same_robot,
-            )
-        )
+        if is_package_wrong or not failed.isdisjoint(of_robot):
+            files = ("file", row["urdf"]) if submission.is_single and row["urdf"] else ("digest", row["digest"])
+            content = (*files, row["parts"], str(statuses))
+            of_robots = {position: statuses.get(position) for position in of_robot}
+            robot = content if is_package_wrong or not row["robot"] else ("robot", row["robot"], str(of_robots))
+            found.append(_mistaken(row, submission, content, robot))
     return found
+
+
+def _mistaken(
+    row: Mapping[str, Any], submission: GradedSubmission, content: tuple[str, ...], robot: tuple[str, ...]
+) -> Mistaken:
+    paths, names, *_ = json.loads(row["files"])
+    return Mistaken(
+        student=row["student"],
+        key=row["key"],
+        result=row["result"],
+        digest=row["digest"],
+        parts=tuple(row["parts"].split()),
+        root=row["source"],
+        paths=tuple(paths),
+        names=tuple(names),
+        is_gone=bool(row["is_gone"]),
+        hints=row["hints"],
+        submission=submission,
+        content=content,
+        robot=robot,
+    )
 
 
 def rubrics_of(book: Gradebook) -> Iterator[Rubric]:

@@ -112,8 +112,8 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
     students = list(graded_students(book, rubric))
     most = max((student.out_of for student in students), default=units_of(rubric.points))
-    scores = Counter(student.grade(most) for student in students if student.counts)
-    values, decided = sorted(scores.items()), scores.total()
+    values = sorted(Counter(student.grade(most) for student in students if student.counts).items())
+    decided = sum(count for _, count in values)
     mean, deviation = _moments(values)
     # Most students have the same results as others: the figures of criteria add up these few rows.
     worth = [row.position for row in rubric.criteria if row.points]

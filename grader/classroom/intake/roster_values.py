@@ -90,7 +90,7 @@ class RowReader:
         moodle = _moodle(of_moodle, complain)
         sis = row["sis"] or ("" if own_id == canvas else own_id)
         login = row["login"] or row["github"]
-        name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
+        name = row["name"] or f"{row['first']} {row['last']}".strip()
         email = _email(row["email"], complain)
         key = own_id or row["sis"] or login or email or name or canvas or moodle
         if not key:

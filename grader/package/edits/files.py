@@ -23,15 +23,18 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
     for path, like in wanted.items():
         folder, name = posixpath.split(path)
-        if any(posixpath.basename(it) == name or (kind == "launch" and is_launch_named(it, name)) for it in task.files):
+        if any(_is_named(it, name, kind) for it in task.files):
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _renamed(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
         if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
-            edits = task.created(path, like)
-            needs = [inner for inner, of in wanted.items() if path == SETUP != inner]
-            edits += [edit for inner in needs for edit in task.created(inner, wanted[inner])]
+            needed = wanted if path == SETUP else {path: like}
+            edits = [edit for new in {path: like} | needed for edit in task.created(new, wanted[new])]
             yield change(edits, "create", WHAT.get(kind, kind if path == kind else "a file of the resource index"))
+
+
+def _is_named(path: str, name: str, kind: str) -> bool:
+    return posixpath.basename(path) == name or (kind == "launch" and is_launch_named(path, name))
 
 
 def _renamed(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:

@@ -1,9 +1,9 @@
 """The table of students on the class's page, and the groups of students that it can show."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from grader.classroom.gradebook.statistics import Member
+from grader.classroom.gradebook.statistics import ClassStatistics, Member
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.grading.criterion import Criterion
@@ -69,6 +69,15 @@ def _costliest(summary: ClassSummary, member: Member | None) -> list[Criterion]:
     return sorted((row for row in lost if not row.bonus), key=lambda criterion: -criterion.points)
 
 
+# Groups of students by a state of their grade: the id, the words, whether a student is in it.
+_STATES: tuple[tuple[str, str, Callable[[StudentGrade], bool]], ...] = (
+    ("attention", "need attention", lambda one: bool(one.why_attention)),
+    ("late", "late", lambda one: bool(one.late.days)),
+    ("final", "a final mark", lambda one: one.final is not None),
+    ("excused", "excused", lambda one: one.is_excused),
+)
+
+
 def groups(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member]
 ) -> Iterator[tuple[str, Group]]:
@@ -77,12 +86,19 @@ def groups(
     for verdict, words in VERDICTS.items():
         keys = [one.student.key for one in grades if one.verdict == verdict and not one.is_excused]
         yield f"status-{verdict}", Group(words, keys)
-    yield "attention", Group("need attention", [one.student.key for one in grades if one.why_attention])
+    for name, words, is_in in _STATES:
+        yield name, Group(words, [one.student.key for one in grades if is_in(one)])
     pending = {one.student.key for one in grades if one.pending}
     yield "pending", Group("need manual grading", [key for key in members if key in pending])
-    yield "late", Group("late", [one.student.key for one in grades if one.late.days])
-    yield "final", Group("a final mark", [one.student.key for one in grades if one.final is not None])
-    yield "excused", Group("excused", [one.student.key for one in grades if one.is_excused])
+    yield from _by_figure(statistics, members)
+    for number, fix in enumerate(summary.fixes):
+        yield f"edit-{number}", Group(f"need the edit: {fix.action}", fix.students)
+    for number, work in enumerate(summary.identical):
+        yield f"same-{number}", Group("identical work", work.students)
+
+
+def _by_figure(statistics: ClassStatistics, members: Mapping[str, Member]) -> Iterator[tuple[str, Group]]:
+    """Yield the students behind the figures: each tenth of the grades, each criterion, each common mistake."""
     for tenth in range(len(statistics.bins)):
         keys = [key for key, member in members.items() if member.tenth == tenth]
         yield f"grade-{tenth}", Group(f"a grade of {span(statistics, tenth)}", keys)
@@ -93,7 +109,3 @@ def groups(
     for number, failure in enumerate(statistics.failures):
         keys = [key for key, member in members.items() if number in member.mistakes]
         yield f"mistake-{number}", Group(f"{failure.criterion.id}: {failure.message}", keys)
-    for number, fix in enumerate(summary.fixes):
-        yield f"edit-{number}", Group(f"need the edit: {fix.action}", fix.students)
-    for number, work in enumerate(summary.identical):
-        yield f"same-{number}", Group("identical work", work.students)

@@ -31,6 +31,9 @@ class Piece(NamedTuple):
     is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
 
 
+Numbers = tuple[list[str], Values, Values]  # what changes, the old numbers, the new ones
+
+
 class _Words(NamedTuple):
     """The words of a change. `is_mistake`: it undoes a known one; `is_turned`: it sets several angles, undoing none."""
 
@@ -51,10 +54,14 @@ def _words(sets: Sequence[Set], tag: str) -> _Words:
     changes = [change for one in sets for change in [_change(one, tag, is_one=len(sets) == 1)] if change]
     if len(changes) < len(sets):
         return _Words(what, f"set {what} to {' and '.join(one.value for one in sets)}")
+    return _words_of_numbers(changes, TAGS[tag].attributes[sets[-1].attribute].unit)
+
+
+def _words_of_numbers(changes: Sequence[Numbers], unit: str) -> _Words:
+    """Return what is wrong with numbers that all change, by the mistakes that people make."""
     parts = [part for change in changes for part in change[0]]
     old = tuple(value for change in changes for value in change[1])
     new = tuple(value for change in changes for value in change[2])
-    unit = TAGS[tag].attributes[sets[-1].attribute].unit
     cause, action, is_mistake = named("{} of [place]", parts, unit, old, new)
     is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
     cause, action = (text.replace("[place]", "{}") for text in (cause, action))
@@ -157,7 +164,7 @@ def _value(element: Element | None, tag: str, attribute: str) -> str:
     return normal(tag, attribute, element.get(attribute) if element is not None else None)
 
 
-def _change(one: Set, tag: str, *, is_one: bool) -> tuple[list[str], Values, Values] | None:
+def _change(one: Set, tag: str, *, is_one: bool) -> Numbers | None:
     """Return the parts of the numbers that are set, the old and the new ones; None for a text."""
     known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
     if known is None or not known.parts:
