@@ -42,7 +42,7 @@ class Mistaken(NamedTuple):
 
 
 def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
-    """Return the newest submissions that this grader graded with a rubric, and that lost points in the URDF or the package.
+    """Return the newest submissions graded with a rubric by this grader that lost points in the URDF or the package.
 
     Those that are no longer in the class come last; otherwise they are in the order of the keys.
     """

@@ -1,4 +1,4 @@
-"""Statistics of a class: the distribution of scores, each criterion's difficulty and discrimination, the most common failures."""
+"""Statistics of a class: distribution of scores, difficulty and discrimination of criteria, most common failures."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -200,7 +200,7 @@ def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
 
 
 def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
-    """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
+    """Return the statistics from sums over its points x and the other criteria's points r: integers, so exact."""
     found: Counter[str] = Counter()
     position = criterion.position
     count = x = r = xx = rr = xr = 0

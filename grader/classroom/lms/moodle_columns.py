@@ -79,7 +79,8 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     identifier = next((index for index in first if _all(rows, index, _IDENTIFIER)), None)
     if identifier is None:
         raise InputError(
-            f"{shown} is not a grading worksheet of Moodle: its first column does not have 'Participant 123' in every row; {_list(titles)}"
+            f"{shown} is not a grading worksheet of Moodle: "
+            f"its first column does not have 'Participant 123' in every row; {_list(titles)}"
         )
     grade = _named(titles, column, shown) if column else _grade(kinds, rows, identifier)
     if grade is None:
@@ -87,7 +88,8 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     maximum = grade + 1
     if not rows or any((read_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)):
         raise InputError(
-            f"{shown} has no number as the maximum grade after {titles[grade]!r}: an assignment that is graded by a scale takes no points"
+            f"{shown} has no number as the maximum grade after {titles[grade]!r}: "
+            "an assignment that is graded by a scale takes no points"
         )
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)
