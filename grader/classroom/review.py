@@ -41,7 +41,7 @@ class _Given(NamedTuple):
 
 
 class ReviewSession:
-    """The queue of a review and the place in it. Items that it marked stay; those that others mark meanwhile are skipped.
+    """The queue of a review and the place in it. Items that it marked stay; what others mark meanwhile is skipped.
 
     `item` is the current item, None at the end of the queue.
     """
