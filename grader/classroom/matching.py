@@ -15,6 +15,7 @@ from typing import NamedTuple
 from grader.classroom.students import Student
 from grader.text import printable_path
 
+# canvas-lms, app/models/user.rb, SUFFIXES: the sortable name of John Doe Jr. is Doe, John, Jr.
 _SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
 _IGNORED_CHARACTERS = str.maketrans("", "", "&<>\"`|':\\/")
 _ASCII_OTHERS = re.compile(r"[^0-9A-Za-z_]+")
@@ -137,7 +138,7 @@ def _composed(word: str) -> str:
 
 
 def _contradict(left: Clues, right: Clues, *, by_name: bool) -> bool:
-    """Return whether two are different people: an LMS knows them by different ids, or, with the same name, two LMS do."""
+    """Return whether two are different people: ids of an LMS differ or, for the same name, are of different LMS."""
     shared = [set(left[clue]).intersection(right[clue]) for clue in NUMBERS if clue in left and clue in right]
     has_ids = all(any(clue in one for clue in NUMBERS) for one in (left, right))
     return not all(shared) or (by_name and has_ids and not shared)
@@ -169,7 +170,7 @@ def plain_group(name: str) -> str:
 
 
 def word_characters(text: str) -> str:
-    """Return the characters that are part of a word in Ruby, in which Canvas is written: letters, marks, digits, connectors."""
+    """Return the word characters of Ruby, in which Canvas is written: letters, marks, digits and connectors."""
     if text.isascii():
         return _ASCII_OTHERS.sub("", text)
     return "".join(letter for letter in text if unicodedata.category(letter) in _WORD_CATEGORIES)
@@ -183,7 +184,7 @@ def canvas_name(sortable: str) -> str:
 
 
 def canvas_names(name: str) -> Iterator[str]:
-    """Yield what Canvas may call a student in a file name: it sorts by the last word of a name, or as the user has set."""
+    """Yield what Canvas may call a student in file names: sorted by the last word of the name, or as the user set."""
     if "," in name:
         yield canvas_name(name)
         return

@@ -41,7 +41,7 @@ class _Given(NamedTuple):
 
 
 class ReviewSession:
-    """The queue of a review, and the place in it. Items that this review has marked stay in it; items that others mark meanwhile are skipped.
+    """The queue of a review and the place in it. Items that it marked stay; what others mark meanwhile is skipped.
 
     `item` is the current item, None at the end of the queue.
     """
@@ -146,7 +146,7 @@ class ReviewSession:
         self._own[self.position] = added.id
 
     def undo(self) -> Mark | None:
-        """Undo the newest mark of the current item, or else of this review, and go to its item; return the mark that counts now.
+        """Undo the newest mark of the current item, else of the review; go to its item, return the mark that counts.
 
         Adds an entry that restores the mark before it, or withdraws the mark. Raises NewerMarkError if there is a newer
         mark, InputError, also if the item is no longer graded, and IndexError if there is nothing to undo.

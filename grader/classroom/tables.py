@@ -1,4 +1,4 @@
-"""CSV files: one cell can be changed while every other byte stays, and what a spreadsheet opens contains nothing that it would run as a formula.
+"""CSV files: a cell can change while every other byte stays, and a spreadsheet finds nothing to run as a formula.
 
 An LMS compares the file with what it exported, so nothing else may change. Python's csv module gives values, but not
 how they were written (which cells were quoted, the line ends, blank lines): so rows are split here, into the same
@@ -49,7 +49,7 @@ class TableRow:
     end: str
 
     def value(self, column: int | None) -> str:
-        """Return the value in a column without surrounding spaces; empty if the row is shorter or the column is None."""
+        """Return the stripped value in a column; empty if the row is shorter or the column is None."""
         return self.cells[column].value.strip() if column is not None and column < len(self.cells) else ""
 
 
@@ -143,6 +143,7 @@ _AT_START = re.compile(rf"\s*[{_TRIGGERS}]|[\t\r\n]")
 FORMULA_BEHIND_SEMICOLON = re.compile(rf"(?<=;)\s*+[{_TRIGGERS}\s]*+")
 _INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
 
+# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates.
 _ESCAPED = re.compile("[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff]")
 
 CellValue = str | int | Decimal | None

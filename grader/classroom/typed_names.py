@@ -70,7 +70,7 @@ def _has_all(words: set[str], wanted: Iterable[set[str]]) -> bool:
 
 
 def _without_accents(word: str) -> tuple[str, ...]:
-    """Return a normalised word without accents, and with the two letters that stand for an umlaut: muller and mueller."""
+    """Return a normalised word without accents, and with an umlaut as two letters: muller and mueller."""
     composed = unicodedata.normalize("NFC", word)
     written_out = (composed.translate(_LETTERS), composed.translate(_UMLAUTS).translate(_LETTERS))
     return tuple(

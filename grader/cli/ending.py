@@ -1,4 +1,4 @@
-"""What ends a command early: Ctrl-C, without messages of the interpreter, and the outer limits of processor time and memory.
+"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
 
 Everything that reads a student's files counts its own work. The outer limits are for work that is not counted.
 """

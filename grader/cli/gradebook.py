@@ -1,4 +1,4 @@
-"""grader stats, grader diff and grader gradebook: what a gradebook holds, whose grade changed between two runs, and the marks of two."""
+"""grader stats, diff and gradebook: what a gradebook holds, whose grade changed between runs, the marks of two."""
 
 import io
 import sys

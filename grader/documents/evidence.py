@@ -1,7 +1,7 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -79,21 +79,26 @@ def find_evidence(
     picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
-    exact = [proof for proof in proofs if any(matches(label, proof.label) for label in wanted)]
+    exact = [proof for proof in proofs if _is_labelled(proof, wanted)]
     if exact:
         return FoundEvidence(describe(exact))
     others = [proof for proof in proofs if not proof.label.is_complete]
     meant = [proof for proof in others if _is_misspelt(proof, wanted)]
-    perhaps = [proof for proof in others if proof not in meant and any(_may_match(it, proof) for it in wanted)]
+    perhaps = [proof for proof in others if proof not in meant and _may_be_meant(proof, wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
     if meant or certain:
         return FoundEvidence((*describe(meant), *certain))
-    listed = {proof.file.path for proof in perhaps}
-    whole = (file for file in _whole_documents(documents) if file.path not in listed)
-    return FoundEvidence(
-        (), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole))
-    )
+    whole = _described(_whole_documents(documents), {proof.file.path for proof in perhaps})
+    return FoundEvidence((), (*describe(perhaps), *(it for it, _ in inside), *whole))
+
+
+def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[Exhibit]:
+    return (Exhibit(file.path, file.size) for file in files if file.path not in listed)
+
+
+def _is_labelled(proof: Proof, wanted: Sequence[Label]) -> bool:
+    return any(matches(label, proof.label) for label in wanted)
 
 
 def _is_misspelt(proof: Proof, wanted: Sequence[Label]) -> bool:
@@ -141,6 +146,10 @@ def _proof(file: File) -> Proof:
     name = _COPY.sub("", stem(file.path))
     label = read_label(name)
     return Proof(file, label, label if label.is_complete else read_label(name, loosely=True))
+
+
+def _may_be_meant(proof: Proof, wanted: Sequence[Label]) -> bool:
+    return any(_may_match(label, proof) for label in wanted)
 
 
 def _may_match(wanted: Label, proof: Proof) -> bool:

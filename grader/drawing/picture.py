@@ -42,8 +42,9 @@ class Callout(NamedTuple):
 class Picture:
     """What a picture of a graded robot shows.
 
-    `reference` is the reference solution in the same frame; None if there is none, or if the hint level does not show it.
-    `outlines` and `frames` are what differs in the reference, for links that lost points: bodies, and links with another frame.
+    `reference` is the reference solution in the same frame; None if there is none, or the hint level does not show it.
+    `outlines` and `frames` are what differs in the reference, for links that lost points: bodies, and links with
+    another frame.
     """
 
     scene: Scene
@@ -90,7 +91,7 @@ def _reference(rubric: Rubric) -> Configuration | None:
 
 
 def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
-    """Return the links in whose frames both robots are drawn: the one that the rubric uses most as a frame, else the roots.
+    """Return the links in whose frames both robots are drawn: the rubric's most frequent frame, else the roots.
 
     Links in a larger tree of the student's robot come first, because more links have a pose there.
     """
@@ -133,7 +134,7 @@ def _is_marked(result: Result) -> bool:
 
 
 def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configuration | None) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the order of the rubric; by "" for several links, or none."""
+    """Return the criteria by the link that they are about, in the rubric's order; by "" for several links, or none."""
     found: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
@@ -192,7 +193,7 @@ def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
 
 
 def _point(scene: Scene | None, link: str) -> Vector | None:
-    """Return the centre of the link's main visual if it can be drawn, else the origin of its frame; None if it has no pose."""
+    """Return the centre of the link's main visual if it can be drawn, else the frame's origin; None without a pose."""
     if scene is None or link not in scene.poses:
         return None
     pose = scene.poses[link]

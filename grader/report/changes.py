@@ -48,7 +48,7 @@ def _reason(change: Change) -> tuple[str, ...]:
 
 
 def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple[K, list[Change]]]:
-    """Return the changes grouped by key, the largest group first; groups of one size are in the order of their first students."""
+    """Return the changes grouped by key, the largest group first; groups of one size by their first students."""
     found: dict[K, list[Change]] = {}
     for change in changes:
         found.setdefault(key(change), []).append(change)
@@ -142,7 +142,7 @@ def _total(change: Change) -> str:
 
 
 def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
-    """Yield a line for each criterion, or one for all with the same change if they are many, and how many more there are."""
+    """Yield a line for each criterion, or one for many with the same change, and how many more there are."""
     alike: dict[tuple[Decimal | None, Decimal | None], list[str]] = {}
     for step in steps:
         alike.setdefault((step.before, step.after), []).append(step.criterion)

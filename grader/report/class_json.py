@@ -17,7 +17,7 @@ from grader.report.json_data import EDIT, exact, fields, rounded, to_json
 def render_class_json(
     summary: ClassSummary, grades: Grades, run: dict[str, int] | None, comparison: Comparison | None = None
 ) -> str:
-    """Return the statistics and all current grades; `run` counts what a batch has just done, `comparison` is of sections."""
+    """Return the statistics and all current grades; `run` counts what a batch has done, `comparison` is of sections."""
     rubric, late = summary.rubric, summary.late
     return to_json(
         {

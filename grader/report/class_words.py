@@ -25,8 +25,8 @@ CRITERIA_NOTE = (
 )
 FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 IDENTICAL_NOTE = (
-    "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students who"
-    " follow the handout and make the same mistake have the same robot."
+    "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students"
+    " who follow the handout and make the same mistake have the same robot."
 )
 ATTENTION_NOTE = "--verbose lists all students."
 MAX_DETAILS = 5  # students with details who need attention for one reason
@@ -149,11 +149,11 @@ def identical_line(work: IdenticalWork) -> str:
 
 
 def evidence_lines(summary: ClassSummary) -> list[str]:
-    """Return how many submissions have evidence, but no URDF or no package, unless the rubric says what to do with them."""
+    """Return how many submissions have evidence, but no URDF or package, unless the rubric says what to do then."""
     keys = {"URDF": summary.rubric.without_urdf, "package": summary.rubric.without_package}
     return [
-        f"{counted(count, 'submission')} {'has' if count == 1 else 'have'} pictures or documents, but no {kind} of this lab: the "
-        f"criteria of the {kind} are failed. "
+        f"{counted(count, 'submission')} {'has' if count == 1 else 'have'} pictures or documents, "
+        f"but no {kind} of this lab: the criteria of the {kind} are failed. "
         f'Set `without_{kind.lower()} = "manual"` in the rubric to grade them manually, or "failed" to keep this'
         for kind, key in keys.items()
         if (count := summary.evidence_only[kind]) and not key

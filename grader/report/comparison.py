@@ -37,7 +37,7 @@ def hinted_texts(report: Report) -> dict[str, str]:
 
 
 def applied_hints(before: Report, texts: Mapping[str, str], after: Report) -> list[str]:
-    """Return the hints of the report before that were applied: all their edits are in the files, and what they gain passes now.
+    """Return the earlier hints that were applied: all their edits are in the files, and what they gain passes now.
 
     `texts` are those of the files before.
     """
@@ -52,7 +52,7 @@ def applied_hints(before: Report, texts: Mapping[str, str], after: Report) -> li
 
 
 def _is_applied(edits: Sequence[Edit], texts: Mapping[str, str], after: Report) -> bool:
-    """Return whether edits are in the files, which other changes may have moved: every word that they add and remove is."""
+    """Return whether edits are in the files, perhaps elsewhere: every word that they add and remove is."""
     for path in {edit.path for edit in edits}:
         some, old = [edit for edit in edits if edit.path == path], texts.get(path, "")
         new = edited(old, path, [edit for edit in some if not edit.renamed])

@@ -92,7 +92,7 @@ def files_text(item: QueuedResult) -> list[str]:
 
 
 def place_text(item: QueuedResult) -> str:
-    """Return where the answer is, printable: the file, and the line where editors count lines. Empty if there is none."""
+    """Return where the answer is, printable: the file, and the line if editors count lines. Empty if there is none."""
     location = item.result.outcome.location
     if location is None or item.number is not None:
         return ""

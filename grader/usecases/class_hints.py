@@ -26,7 +26,7 @@ class HintOptions(NamedTuple):
 def search_class_hints(
     book: Gradebook, options: HintOptions, terminal: Terminal, *, reports: bool, statistics: bool
 ) -> None:
-    """Search the hints that the reports of students show, and those that the statistics of the class count, and store them.
+    """Search and store the hints that students' reports show, and those that the statistics of the class count.
 
     Reports quote the text of the student, so that each content is searched; statistics show one of those with the same
     robot.

@@ -1,4 +1,4 @@
-"""The rubric, the roster and the handed-out robots of a class: those of the command, else of the last run into the gradebook."""
+"""The rubric, roster and handed-out robots of a class: from the command, else from the last run into the gradebook."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -30,7 +30,7 @@ def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
 
 
 def rubric_of(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
-    """Return the rubric with its answers, so that `review` has them on any machine; without a name that of the last run.
+    """Return the rubric with answers, so that `review` has them on any machine; without a name that of the last run.
 
     If the file of the last run no longer exists, its text in the gradebook counts.
     """
@@ -52,7 +52,8 @@ def warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn
     if last and set(last) < {criterion.part for criterion in rubric.criteria}:
         options = " ".join(f"--part {shell_quoted(part)}" for part in last)
         warn(
-            f"the last run graded {', '.join(last)} only, and this one grades all parts: pass {options} to grade the same"
+            f"the last run graded {', '.join(last)} only, and this one grades all parts: "
+            f"pass {options} to grade the same"
         )
 
 
@@ -73,7 +74,8 @@ def roster_of(file: Path | None, gradebook: Path, warn: Warn) -> Roster | None:
         )
         if missing and roster is not None and earlier is not None and len(roster.entries) < len(earlier.entries):
             warn(
-                f"the roster has {counted(len(roster.entries), 'student')}, but the gradebook's roster has {len(earlier.entries)}."
+                f"the roster has {counted(len(roster.entries), 'student')}, "
+                f"but the gradebook's roster has {len(earlier.entries)}."
                 f" Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
             )
         roster = roster or earlier

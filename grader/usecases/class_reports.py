@@ -92,7 +92,7 @@ _Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
-    """Raise InputError if reports or pictures cannot be written to a folder, or the next run would read it as a submission."""
+    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
@@ -109,7 +109,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
 
 
 def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable[[Progress], None]) -> None:
-    """Write a report for every student in `report_names`; with the format HTML, also the class's page. Raises InputError."""
+    """Write a report for each student in `report_names`; in HTML also the class's page. Raises InputError."""
     make_folder(run.folder)
     with Gradebook(run.book) as opened:
         names = report_names(opened)
@@ -146,7 +146,7 @@ def render_reports(
 
 
 def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students without one, and why. If they fail or crash together, each is retried alone.
+    """Wait for reports; return the students without one, and why. If they fail together, each is retried alone.
 
     Raises InputError and RubricError, which concern all reports.
     """
@@ -185,7 +185,8 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
     report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
     note = grade.late.reason
     if grade.late.points:
-        note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
+        penalty = format_points(-grade.late.points)
+        note += f": the late penalty is {penalty} points, the total is {format_points(grade.total)}"
     remarks = remarks_of(grades, grade)
     graded = remarks.graded if feedback or remarks.graders.is_manual else []
     is_changed = grade.is_decided or grade.late.points or any(result.manual_mark for result in report.results)

@@ -25,7 +25,7 @@ class ExitCode(IntEnum):
 
 
 def read_threshold(text: str) -> tuple[Decimal, bool]:
-    """Return the score that `--fail-under` gives, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
+    """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
     if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
         raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
     return Decimal(text.removesuffix("%")), text.endswith("%")

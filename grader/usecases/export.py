@@ -83,7 +83,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 
 
 def _data(request: ExportRequest, grades: Grades, warn: Warn) -> bytes | None:
-    """Return the exported file, empty if only feedback is asked for; None if it must not be written because of --strict."""
+    """Return the exported file, empty if only feedback is asked for; None if --strict forbids writing it."""
     if request.target == "csv":
         return (_BOM if request.excel else b"") + grades_csv(grades).encode()
     if request.target == "json":
@@ -128,9 +128,8 @@ def _refuse_options(request: ExportRequest) -> None:
     }
     for option, targets in _TARGETS.items():
         if given[option] and request.target not in targets:
-            raise GraderError(
-                f"export {request.target} does not take {option}; {enumerated(targets)} {'do' if len(targets) > 1 else 'does'}"
-            )
+            verb = "do" if len(targets) > 1 else "does"
+            raise GraderError(f"export {request.target} does not take {option}; {enumerated(targets)} {verb}")
     if request.target in FILLERS and request.into is None and request.feedback is None:
         raise GraderError(f"export {request.target} fills in a file that the LMS exported: give it with --into")
     if request.into is None and request.output is not None and request.feedback is not None:
@@ -143,7 +142,8 @@ def _refuse_files(request: ExportRequest) -> None:
         refuse_gradebook(path, request.gradebook)
     if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
         raise GraderError(
-            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; choose another file"
+            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; "
+            "choose another file"
         )
     if feedback is not None and (feedback.is_symlink() or feedback.is_dir()):
         raise InputError(

@@ -68,7 +68,7 @@ def feedback_zip(grades: Grades, request: FeedbackRequest, terminal: Terminal) -
 
 
 def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> Feedback:
-    """Return the reports of the students in `report_names`. They come from other processes, which a submission may crash."""
+    """Return the reports of the students in `report_names`, from other processes: a submission may crash them."""
     names, kind = report_names(grades.book), request.kind
     with (
         tempfile.TemporaryDirectory() as folder,
@@ -85,7 +85,7 @@ def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> F
 
 
 def _for_moodle(feedback: Feedback, worksheet: tuple[bytes, FillOptions] | None) -> dict[str, bytes]:
-    """Return the files by their paths: a folder for each participant, whose number is in the gradebook or in the worksheet."""
+    """Return the files by their paths: a folder for each participant, numbered as in the gradebook or worksheet."""
     numbers = {grade.student.key: grade.student.moodle for grade, _ in feedback.reports}
     why = "the gradebook has no participant number: pass the grading worksheet with --into"
     if worksheet is not None:
@@ -113,7 +113,7 @@ def _participants(found: Sequence[StudentGrade], data: bytes, options: FillOptio
 
 
 def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
-    """Return the files by their names; the students of a group's submission have one, because Canvas gives it to each of them."""
+    """Return the files by name; the students of a group's submission share one, which Canvas gives to each of them."""
     submissions: dict[tuple[str, ...], list[tuple[StudentGrade, bytes]]] = defaultdict(list)
     for grade, report in feedback.reports:
         files = tuple(PurePosixPath(path).name for path in grade.files.paths)

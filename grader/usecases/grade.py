@@ -60,7 +60,7 @@ class GradeRequest:
 
 
 class GradeResult(NamedTuple):
-    """A report, where its submission is in a repository, the exit code, and the files that were read besides a single one."""
+    """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
 
     report: "Report"
     base: "Base"
@@ -157,7 +157,8 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
         return {}
     refusals: list[InputError] = []
     modes: dict[Path, int | None] = {}
-    inputs = [*files_of(rubric), *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112  false for a name that is too long
+    # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python 3.14.
+    inputs = [*files_of(rubric), *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
     for _, file in saves:
         try:
             refuse_symlinks(file, paths)
@@ -206,7 +207,7 @@ def _folder_of(path: str, inside: str | None) -> Path:
 
 
 def _base_of(path: str, single: Path | None) -> "Base":
-    """Return where a submission is in its repository; `single` is the folder that the paths of a single URDF start in."""
+    """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
     from grader.report.locations import Base
 
     if path == "-":
@@ -228,7 +229,7 @@ def _base_of(path: str, single: Path | None) -> "Base":
 
 
 def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI system's checkout, else the folder with .git, else the current folder."""
+    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the current folder."""
     around = [place, *place.parents]
     for name in CHECKOUTS:
         checkout = Path(os.environ.get(name) or os.sep).resolve()

@@ -174,7 +174,7 @@ def _warn_lines(lines: Sequence[str], warn: Warn) -> None:
 
 
 def _refuse_targets(request: ClassRequest) -> None:
-    """Raise InputError for files that could not be written in the end, or that the next run would take for submissions."""
+    """Raise InputError for files that cannot be written in the end, or would be submissions in the next run."""
     reports, csv, root = request.reports, request.csv, request.root
     for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
@@ -193,5 +193,6 @@ def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_file])
     if request.root in (csv.resolve(), *csv.resolve().parents):
         raise InputError(
-            f"cannot write {printable_path(csv)}: the next run would take it for a submission; choose a file outside of the class"
+            f"cannot write {printable_path(csv)}: the next run would take it for a submission; "
+            "choose a file outside of the class"
         )

@@ -1,4 +1,4 @@
-"""Write the current grades as CSV, a row for each student, or into a file that an LMS exported, and say what importing it changes."""
+"""Write the current grades as CSV, or into a file that an LMS exported, and say what importing it changes."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -27,7 +27,7 @@ _MORE_COLUMNS = ("carried", "section", "marker", "submitted", "final_mark", "exc
 
 
 def grades_csv(grades: Grades) -> str:
-    """Return a row for each student: the grade, the late penalty, the points of each decided criterion, and who graded."""
+    """Return a row for each student: grade, late penalty, points of each decided criterion, and who graded."""
     criteria = grades.criteria
     header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in criteria)]
     return write_table([*header, *_MORE_COLUMNS], (_row(grades, grade, criteria) for grade in grades.all()))

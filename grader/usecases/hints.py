@@ -86,5 +86,6 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapp
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
     gone += [f"; {INCOMPLETE}"] * (INCOMPLETE in report.notes)
     names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
-    score = f"{format_points(report.score)} -> {format_points(fix.report.score)} of {format_points(report.max_score)} points"
+    before, after = format_points(report.score), format_points(fix.report.score)
+    score = f"{before} -> {after} of {format_points(report.max_score)} points"
     return f"--fix: wrote {names} to {printable_path(target)}: {score}{''.join(gone)}"

@@ -1,4 +1,4 @@
-"""The files of the reports of a class: a file name for each student that is safe on every system, and the index of names and students."""
+"""The files of a class's reports: a file name for each student that is safe on every system, and their index."""
 
 import hashlib
 import re

@@ -18,7 +18,10 @@ from grader.usecases import Terminal
 from grader.usecases.review_pictures import PictureFolder, write_all_pictures
 
 NOTHING = "nothing needs manual grading\n"
-_HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+_HELP = (
+    "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, "
+    "q to stop (all marks are kept), ? for this help"
+)
 _END = "end of the queue: u to undo, b to go back, Enter to end: "
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
@@ -51,7 +54,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
 
 
 def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
-    """Ask what to do at the end of the queue, if a mark of this review can be undone; return whether there is an item again."""
+    """Ask what to do at the end of the queue, if a mark can be undone; return whether there is an item again."""
     while session.item is None and session.can_undo and (line := terminal.ask(_END)) is not None:
         match line.strip().lower():
             case "" | "q" | "quit":
@@ -158,7 +161,7 @@ def undo(session: ReviewSession) -> str:
 
 
 def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Terminal) -> bool:
-    """Add a mark, unless the person keeps a newer mark of another grader, and go to the next item; return False to stop."""
+    """Add a mark, unless the person keeps another grader's newer one; go to the next item; return False to stop."""
     shown = None
     while True:
         try:

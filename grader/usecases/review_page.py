@@ -1,4 +1,4 @@
-"""Grade what needs manual grading on a page in the browser, one item at a time, which a server on this machine serves."""
+"""Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves."""
 
 import json
 from collections import OrderedDict
@@ -31,7 +31,7 @@ _HTML, _JSON = "text/html; charset=utf-8", "application/json"
 
 
 class ReviewPage:
-    """The application of the server: shows items of a session by number, and executes the actions that the page sends."""
+    """The application of the server: shows items of a session by number, and executes actions from the page."""
 
     def __init__(self, session: ReviewSession, gradebook: str, reader: ThreadPoolExecutor) -> None:
         self.session, self._gradebook, self._reader = session, gradebook, reader

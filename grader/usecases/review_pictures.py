@@ -23,7 +23,7 @@ _HIDDEN = "not shown here: the review without --anonymous says why"
 
 
 def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture | NotShown, ...]:
-    """Return the pictures of an item, and files that are not shown. The submission is opened again and must be unchanged."""
+    """Return an item's pictures, and files that are not shown; the submission is reopened and must be unchanged."""
     if not may_have_pictures(item.result):
         return ()
     submission = SubmissionSources(item.grade.files, rubric).submission

@@ -38,7 +38,7 @@ _MAX_NAMED = 4
 
 
 def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
-    """Write a rubric of the facts of a reference and return what it contains, omits, and what to do next. Raises GraderError."""
+    """Write a rubric of a reference's facts; return what it contains, omits, and the next step. Raises GraderError."""
     _check_target(file, force=force)
     solution = _solution(reference, warn)
     made = draft(solution, _head(file, reference, solution.submission), file)
@@ -146,7 +146,7 @@ class TestRequest(NamedTuple):
 
 
 def test(request: TestRequest, screen: Screen, warn: Warn, show_progress: ShowProgress) -> tuple[str, ExitCode]:
-    """Return the result as text, and the exit code. Raises GraderError for a broken rubric or one without a reference."""
+    """Return the result as text and the exit code; raises GraderError for a broken rubric or without a reference."""
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
     samples = read_samples(request.folder) if request.folder is not None else None

@@ -75,7 +75,7 @@ def files_of(name: str) -> list[Path]:
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
-    """Check a rubric and return a summary, and the exit code: 1 if criteria cannot be decided on its reference solution.
+    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the reference solution.
 
     Raises RubricError if the reference loses points.
     """
@@ -92,12 +92,13 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
         raise RubricError(tuple(map(printable, lines + unresolved)))
     if not lines:
         return f"{found}; its reference gets full marks\n", ExitCode.PASSED
-    found += f"; its reference does not get full marks: {counted(len(lines), 'criterion', 'criteria')} cannot be decided on it"
+    criteria = counted(len(lines), "criterion", "criteria")
+    found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
     return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
 
 
 def _unresolved(rubric: "Rubric") -> Iterator[str]:
-    """Yield a line for each criterion that names a link by its place in the tree, which is none, or several, in the reference."""
+    """Yield a line for each criterion that names a link by its place, where the reference has none or several."""
     from grader.grading.subjects import check_selectors
 
     assert rubric.solution is not None
@@ -106,4 +107,6 @@ def _unresolved(rubric: "Rubric") -> Iterator[str]:
             try:
                 check_selectors(rubric.solution.robot, criterion)
             except (MissingElement, NotDecided) as error:
-                yield f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"
+                yield (
+                    f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"
+                )

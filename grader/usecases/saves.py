@@ -1,4 +1,4 @@
-"""The values of two options: the files of --save, with the pictures among them that other reports link to, and the arguments of xacro of --arg."""
+"""The values of --save, files with the pictures among them that other reports link to, and of --arg, for xacro."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,8 @@ def _read_save(text: str) -> tuple[Format, Path]:
     kind, equals, file = text.partition("=")
     if kind not in list(Format) or not equals or file in ("", "-"):
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
-    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111  the shell expands no ~ after =; this never raises
+    # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
+    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
 
 
 def picture_beside(file: Path, saves: Saves) -> str:
@@ -37,7 +38,8 @@ def picture_beside(file: Path, saves: Saves) -> str:
     """
     for kind, picture in saves:
         if kind is Format.SVG and _is_regular(picture) and _is_regular(file):
-            paths = [os.path.abspath(path.parent) for path in (file, picture)]  # noqa: PTH100  symlinks as they are named
+            # Symlinks as they are named: Path.resolve would follow them.
+            paths = [os.path.abspath(path.parent) for path in (file, picture)]  # noqa: PTH100
             try:
                 is_near = os.path.commonpath(paths) != os.path.abspath(os.sep)  # noqa: PTH100
             except ValueError:  # on different drives

@@ -1,4 +1,4 @@
-"""The refusal to grade several students as one, a class or a repository of a team, with the command for each and for all."""
+"""The refusal to grade several students as one, a class or a team's repository, with the command for each and all."""
 
 import os
 from pathlib import Path
@@ -28,11 +28,12 @@ def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
 
 
 def _may_be_class(path: str) -> bool:
-    """Return whether a path is a zip, or a folder with names as an LMS gives them. Reads only names, so that it is fast."""
+    """Return whether a path is a zip, or a folder with names of an LMS. Reads only names, so that it is fast."""
     try:
         names = os.listdir(path) if os.path.isdir(path) else []  # noqa: PTH112, PTH208
         for _ in range(MAX_WRAPPERS):
-            inner = [name for name in names if os.path.isdir(f"{path}/{name}")] if len(names) < _MAX_LISTED else []  # noqa: PTH112
+            few = names if len(names) < _MAX_LISTED else []
+            inner = [name for name in few if os.path.isdir(f"{path}/{name}")]  # noqa: PTH112
             if len(inner) != 1 or "submitted" in names:
                 break
             path = f"{path}/{inner[0]}"

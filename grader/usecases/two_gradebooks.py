@@ -1,4 +1,4 @@
-"""Compare two runs of a gradebook, or two gradebooks; merge the marks of two, and ask which of two different marks counts."""
+"""Compare two runs of a gradebook, or two gradebooks; merge the marks of two, and ask which of two marks counts."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -87,11 +87,13 @@ def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Termina
 def _lines(merged: Merged, names: tuple[str, str]) -> Iterator[str]:
     """Yield what was merged, and what was not."""
     if merged.entries:
-        yield f"{counted(merged.entries, 'entry', 'entries')} of {counted(merged.students, 'student')} merged into {names[0]}"
+        entries = counted(merged.entries, "entry", "entries")
+        yield f"{entries} of {counted(merged.students, 'student')} merged into {names[0]}"
     elif not merged.conflicts and not merged.unmatched:
         yield f"nothing to merge: {names[0]} has all marks of {names[1]}"
     if merged.conflicts:
-        yield f"not merged, because both gradebooks have new marks (--keep first or --keep second decides): {len(merged.conflicts)}"
+        reason = "both gradebooks have new marks (--keep first or --keep second decides)"
+        yield f"not merged, because {reason}: {len(merged.conflicts)}"
     for item in merged.conflicts:
         yield from (f"  {line}" for line in _conflict_lines(item, names))
     if merged.unmatched:

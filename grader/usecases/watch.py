@@ -127,7 +127,7 @@ def _print_lines(lines: list[str], console: Console) -> None:
 
 
 class Watched(NamedTuple):
-    """A submission, its rubric if that is a file, the real paths of the reports that are written, and files read besides."""
+    """A submission, its rubric if that is a file, the real paths of the reports written, and files read besides."""
 
     path: Path
     rubric: Path | None = None
@@ -152,7 +152,7 @@ def changes(watched: Watched) -> Iterator[bool]:
 
 
 def _stamps(watched: Watched) -> dict[str, _Stamp]:
-    """Return what identifies each folder, and what changes whenever a file is written; nothing of files that do not exist."""
+    """Return the stamps of folders and files that exist: a folder's identifies it, a file's changes when written."""
     root = Path(os.path.realpath(watched.path))
     files: Iterable[Path] = _files(root) if root.is_dir() else (watched.path, *watched.besides)
     rubric = () if watched.rubric is None else (watched.rubric,)

@@ -123,7 +123,8 @@ def refuse_symlinks(path: Path, submissions: Sequence[Path | str] = ()) -> None:
         if not folders.isdisjoint(symlink.parents):
             shown = printable(str(symlink))
             raise InputError(
-                f"cannot write {printable(str(path))}: {shown} is a symlink in the submission; choose a file outside of it"
+                f"cannot write {printable(str(path))}: {shown} is a symlink in the submission; "
+                "choose a file outside of it"
             )
 
 

@@ -190,19 +190,32 @@ def _change(key: str, old: _StudentState, new: _StudentState, comparison: _Compa
     name = new.name or old.name
     final = tuple(_final_mark(old, new))
     if not (old.verdict and new.verdict):
-        moved = ("first submission",) if new.verdict else ("no longer there",) if old.verdict else ()
-        return Change(*whole, (), (*moved, *final), name) if moved or final else None
+        why = (*_moved(old, new), *final)
+        return Change(*whole, (), why, name) if why else None
     steps = tuple(_steps(old, new))
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
-    late = (f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}",) if old.late != new.late else ()
-    if not (steps or final or removed or late) and old.verdict == new.verdict:
+    late = tuple(_late_penalty(old, new))
+    is_other = bool(final or removed) or old.verdict != new.verdict
+    if not (steps or late or is_other):
         return None
     why = (*_reasons(old, new), *late, *final)
     why += tuple(f"the manual mark of {name} no longer counts: the rubric no longer has it" for name in removed)
     names = (*(step.criterion for step in steps), *removed) or ("",) * bool(late)
-    is_regraded = old.total != new.total or bool(final or removed) or old.verdict != new.verdict
     found = comparison(old.sha256, new.sha256, names) if old.sha256 != new.sha256 else ()
-    return Change(*whole, steps, why, name, found, is_regraded)
+    return Change(*whole, steps, why, name, found, is_other or old.total != new.total)
+
+
+def _moved(old: _StudentState, new: _StudentState) -> Iterator[str]:
+    """Yield that a student has a submission in one of two runs only."""
+    if new.verdict:
+        yield "first submission"
+    elif old.verdict:
+        yield "no longer there"
+
+
+def _late_penalty(old: _StudentState, new: _StudentState) -> Iterator[str]:
+    if old.late != new.late:
+        yield f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}"
 
 
 def _steps(old: _StudentState, new: _StudentState) -> Iterator[PointsChange]:

@@ -1,4 +1,4 @@
-"""The proven edits that would gain points in a class, grouped: how many students need the same change, with an example."""
+"""The proven edits that would gain points in a class, each with the number of students who need it and an example."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -70,7 +70,7 @@ def _with_hints(book: Gradebook, rubric: Rubric) -> Iterator[tuple[Mistaken, Mis
 
 
 def _nameless(edit: Edit, example: Mistaken, rubric: Rubric) -> Edit:
-    """Return an edit with the path that the rubric gives the URDF, or a path in the package: folders may have students' names."""
+    """Return an edit with the rubric's path of the URDF, or one in the package: folders may have students' names."""
     if not edit.path:
         return edit._replace(path=rubric.urdf)
     package = example.submission.package

@@ -28,7 +28,7 @@ _BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transact
 
 
 class Run(NamedTuple):
-    """One run of `grader batch`. `finished` is empty if it was interrupted, `last_mark` the newest mark when it began."""
+    """A run of `grader batch`. `finished` is empty if interrupted, `last_mark` the newest mark when it began."""
 
     id: int
     started: str
@@ -56,7 +56,8 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         if not path.parent.exists():
             folder = printable_path(path.parent)
             raise InputError(
-                f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with `mkdir -p {shell_quoted(folder)}`)"
+                f"cannot create the gradebook {self.shown}: there is no folder {folder} "
+                f"(create it with `mkdir -p {shell_quoted(folder)}`)"
             )
         with self.input_errors():
             self.connection = self._connect(create)
@@ -201,7 +202,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
 
 
 def _prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
-    """Configure a connection and create the tables of a new file; raises InputError for a file of another kind or version."""
+    """Configure a connection and create the tables of a new file; raises InputError for another kind or version."""
     connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
     queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
     kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)

@@ -101,7 +101,7 @@ class Grades:
         return self._select(f"WHERE {condition} ORDER BY key", *values)
 
     def find(self, name: str) -> StudentGrade:
-        """Return the grade of the student with this key, else of the only one whom a typed name may mean; raises InputError."""
+        """Return the grade of the student with this key, else of the only match of a typed name; raises InputError."""
         name = storable(name)
         for grade in list(self._select("WHERE key = ?", name)):
             return grade
@@ -109,7 +109,7 @@ class Grades:
         return self.find(find_typed(list(self.book.students()), name, advice).key)
 
     def report(self, grade: StudentGrade) -> Report:
-        """Return the report on a student's newest submission with the manual marks; raises InputError without a submission."""
+        """Return the report on the newest submission with the manual marks; raises InputError if there is none."""
         if grade.result is None:
             raise InputError(f"{grade.student.key} has submitted nothing")
         rubric = self.rubric(grade.rubric)

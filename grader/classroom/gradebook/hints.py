@@ -42,14 +42,11 @@ class Mistaken(NamedTuple):
 
 
 def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
-    """Return the newest submissions that this grader graded with a rubric, and that lost points in the URDF or the package.
+    """Return the newest submissions graded with a rubric by this grader that lost points in the URDF or the package.
 
     Those that are no longer in the class come last; otherwise they are in the order of the keys.
     """
-    from_files = {part.id for part in rubric.parts if part.needs == "files"}
-    criteria = [criterion for criterion in rubric.criteria if criterion.part not in from_files]
-    of_robot = [row.position for row in criteria if row.check.subject in _ROBOT]
-    of_package = [row.position for row in criteria if row.check.subject not in _ROBOT]
+    of_robot, of_package = _positions(rubric)
     found = []
     for row in list(book.records(_QUERY, rubric.sha256, __version__)):
         statuses = {position: outcome.status for position, outcome in book.outcomes(row["result"]).items()}
@@ -65,6 +62,14 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
             robot = content if is_package_wrong or not row["robot"] else ("robot", row["robot"], str(of_robots))
             found.append(_mistaken(row, submission, content, robot))
     return found
+
+
+def _positions(rubric: Rubric) -> tuple[list[int], list[int]]:
+    """Return the criteria of the robot and those of the package, without those of other files."""
+    from_files = {part.id for part in rubric.parts if part.needs == "files"}
+    criteria = [criterion for criterion in rubric.criteria if criterion.part not in from_files]
+    of_robot = [row.position for row in criteria if row.check.subject in _ROBOT]
+    return of_robot, [row.position for row in criteria if row.position not in of_robot]
 
 
 def _mistaken(

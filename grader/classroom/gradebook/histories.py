@@ -65,7 +65,7 @@ class MergeItem:
 
     @property
     def counts(self) -> StoredMark | None:
-        """The mark that must count after a merge without conflict: that of the gradebook that knows all entries of the other."""
+        """The mark that must count after a merge without conflict: of the gradebook with all entries of the other."""
         first, second = self.newest
         return second if _newest(self.new) and not self.has_same_mark else first
 
@@ -78,7 +78,7 @@ class UnmatchedStudent(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """The items that have entries in the second gradebook that the first one lacks, and the students who are not matched."""
+    """The items of which the first gradebook lacks entries of the second, and the students who are not matched."""
 
     items: tuple[MergeItem, ...]
     unmatched: tuple[UnmatchedStudent, ...]

@@ -9,7 +9,7 @@ _SUBMISSIONS = "SELECT key, urdf, robot, source, files FROM grade WHERE urdf <> 
 
 
 class IdenticalWork(NamedTuple):
-    """Students whose robots are the same; `same_file` are those among them, group by group, whose URDFs are the same bytes."""
+    """Students whose robots are the same; `same_file` groups those among them whose URDFs are the same bytes."""
 
     students: tuple[str, ...]
     same_file: tuple[tuple[str, ...], ...]

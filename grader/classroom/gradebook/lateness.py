@@ -26,7 +26,7 @@ class Lateness:
 
 @dataclass(frozen=True, slots=True)
 class SubmissionTimes:
-    """When something was submitted and when it was due: ISO 8601, empty or None where unknown. `extension` is in days."""
+    """When something was submitted and was due: ISO 8601, empty or None where unknown. `extension` is in days."""
 
     is_late: bool = False
     submitted: str = ""

@@ -143,7 +143,7 @@ def _blind(result: Result, own: Mark | None) -> Result:
 
 
 def reusable_comments(book: Gradebook, criterion: str, most: int, *, second: bool = False) -> list[str]:
-    """Return the comments of a criterion's marks, or of its second opinions, without duplicates, the most frequent first."""
+    """Return the different comments of a criterion's marks, or of its second opinions, the most frequent first."""
     table = "second_mark" if second else "current_mark"
     query = f"SELECT comment FROM {table} WHERE criterion = ? AND comment <> '' GROUP BY comment"
     rows = book.rows(f"{query} ORDER BY count(*) DESC, min(id) LIMIT ?", criterion, most)

@@ -159,7 +159,7 @@ def _writing(book: Gradebook) -> Iterator[None]:
 def _seen(
     book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, shown: int | None
 ) -> Mark | None:
-    """Return the newest mark, or the newest second opinion of this grader for one; raises NewerMarkError if it was not shown."""
+    """Return the newest mark, or for a second opinion this grader's newest; raises NewerMarkError if not shown."""
     before = (
         newest_second(book, grade, criterion, by) if entry.kind == "second" else newest_mark(book, grade.id, criterion)
     )
@@ -186,7 +186,7 @@ def insert_mark(book: Gradebook, student: int, criterion: str, mark: Mark, autho
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
-    """Return the newest mark of a student's criterion, also one that withdraws an earlier one. Second opinions are not marks."""
+    """Return the newest mark of a student's criterion, even one that withdraws another, but no second opinion."""
     return next(iter(marks_of(book, student, criterion, 1)), None)
 
 

@@ -59,7 +59,7 @@ def conflict_of(item: MergeItem) -> Conflict:
 
 
 def merge(first: Gradebook, second: Gradebook, choices: Mapping[Conflict, Choice]) -> Merged:
-    """Append the entries that the first gradebook lacks, in one transaction; a conflict without a choice stays as it is.
+    """Append the entries that the first gradebook lacks, in one transaction; a conflict without a choice stays.
 
     If another mark than the chosen one would count after that, the chosen one is repeated as a new entry.
     """
@@ -78,7 +78,7 @@ def merge(first: Gradebook, second: Gradebook, choices: Mapping[Conflict, Choice
 
 
 def _append(book: Gradebook, item: MergeItem, choice: Choice | None, results: "_Results") -> int:
-    """Write the new entries of an item, and the mark that counts if that is not the last one; return the number of entries."""
+    """Write the new entries of an item, and the mark that counts if it is not the last; return how many."""
     own, theirs = item.newest
     counts = {"first": own, "second": theirs, None: item.counts}[choice]
     for entry in item.new:
@@ -111,7 +111,8 @@ class _Results:
 
     def _find_or_copy(self, student: int, result: int) -> int:
         row = next(self._second.records("SELECT * FROM result WHERE id = ?", result))
-        same = "student = ? AND rubric = ? AND digest = ? AND (digest <> '' OR record = ?)"  # without files it has no digest
+        # A result without files has no digest: its record has to be the same.
+        same = "student = ? AND rubric = ? AND digest = ? AND (digest <> '' OR record = ?)"
         key = student, row["rubric"], row["digest"], row["record"]
         found = self._first.first(f"SELECT max(id) FROM result WHERE {same}", *key)
         if found is not None and found[0] is not None:

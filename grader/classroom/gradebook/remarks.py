@@ -10,7 +10,7 @@ from grader.text import by_name, counted_points, enumerated
 
 
 class Graders(NamedTuple):
-    """Who graded: `is_automatic` if a check decided points, `is_manual` if a person did; `names` are those given with `--by`."""
+    """Who graded: `is_automatic` if a check decided points, `is_manual` if a person did; `names` are from `--by`."""
 
     is_automatic: bool
     is_manual: bool
@@ -41,7 +41,8 @@ class Remarks(NamedTuple):
         words = " ".join(mark.comment.split())
         by, comment = by_name(mark.by), f" {words}" if words else ""
         if mark.points is not None:
-            head = f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria."
+            giver = by or " manually"
+            head = f"Final mark: {counted_points(mark.points)}, given{giver} instead of the sum of the criteria."
             return [head + comment]
         return [f"Excused{by}.{comment}" if mark.entry.kind == "excused" else f"Comment{by}:{comment}"]
 

@@ -124,7 +124,8 @@ CREATE TABLE mark (
     id INTEGER PRIMARY KEY,
     student INTEGER NOT NULL REFERENCES student,
     criterion TEXT NOT NULL,       -- `total` for the whole submission: a final mark, an excuse, a comment
-    points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),  -- NULL: second opinion withdrawn
+    -- A second opinion without points is withdrawn.
+    points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),
     comment TEXT NOT NULL,
     author TEXT NOT NULL,          -- for the audit: the name from --by, else the user account
     at TEXT NOT NULL,
@@ -154,14 +155,16 @@ BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
 CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
 BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
 
--- The entries that count: the newest of each student and criterion, unless it withdraws a mark. A second opinion never counts.
+-- The entries that count: the newest of each student and criterion, unless it withdraws a mark.
+-- A second opinion never counts.
 CREATE VIEW current_mark AS
 SELECT * FROM mark WHERE kind IN ('points', 'comment', 'excused') AND id = (
     SELECT max(id) FROM mark AS newer
     WHERE newer.student = mark.student AND newer.criterion = mark.criterion AND newer.kind <> 'second'
 );
 
--- The newest second opinion of each grader on a student's criterion, also one that withdraws it. A merge appends older ones.
+-- The newest second opinion of each grader on a student's criterion, also one that withdraws it.
+-- By time, not by id: a merge appends older ones.
 CREATE VIEW second_mark AS
 SELECT mark.*, result.digest FROM mark JOIN result ON result.id = mark.result WHERE kind = 'second' AND mark.id = (
     SELECT id FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion
@@ -175,9 +178,9 @@ CREATE VIEW newest_submission AS
 SELECT * FROM submission
 WHERE run = (SELECT max(run) FROM submission AS newer WHERE newer.student = submission.student);
 
--- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. `older` names
--- the criteria whose mark was given for another submission, `revalued` those that had another maximum then, and `over` those
--- whose mark exceeds the maximum.
+-- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks.
+-- `older` names the criteria whose mark was given for another submission, `revalued` those that had another maximum
+-- then, and `over` those whose mark exceeds the maximum.
 CREATE VIEW override AS
 SELECT student,
     count(*) AS marks,
@@ -204,7 +207,8 @@ FROM (
 )
 GROUP BY student;
 
--- The current grade of every student: the automatic points with the manual marks. A final mark (`final`) replaces the total.
+-- The current grade of every student: the automatic points with the manual marks.
+-- A final mark (`final`) replaces the total.
 CREATE VIEW grade AS
 SELECT student.*, newest.run, newest.result, coalesce(result.rubric, '') AS rubric, result.version,
     coalesce(result.digest, '') AS digest,
@@ -217,8 +221,9 @@ SELECT student.*, newest.run, newest.result, coalesce(result.rubric, '') AS rubr
         - coalesce(override.faults, 0) AS faults,
     coalesce(override.marks, 0) AS marks, coalesce(override.older, '') AS older_marks,
     coalesce(override.revalued, '') AS revalued_marks, coalesce(override.over, '') AS over_marks,
-    coalesce((SELECT group_concat(criterion, ' ') FROM manual_mark AS mark WHERE mark.student = student.id AND NOT EXISTS
-        (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '') AS removed_marks,
+    coalesce((SELECT group_concat(criterion, ' ') FROM manual_mark AS mark WHERE mark.student = student.id
+        AND NOT EXISTS (SELECT 1 FROM criterion WHERE rubric = result.rubric AND id = mark.criterion)), '')
+        AS removed_marks,
     whole.points AS final, coalesce(whole.kind = 'excused', 0) AS is_excused,
     coalesce(whole.kind IN ('points', 'excused') AND whole.result IS NOT newest.result
         AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest, 0)

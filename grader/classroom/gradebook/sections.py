@@ -1,4 +1,4 @@
-"""Compare the sections of a class, or the students of each marker: grades, lateness, and the criteria that differ most."""
+"""Compare the sections of a class, or each marker's students: grades, lateness, the criteria that differ most."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ class Comparison(NamedTuple):
 
 
 def compare(grades: Grades, by: Grouping) -> Comparison:
-    """Return the sections of a class, or the students of each marker, side by side. Raises InputError if nothing was graded."""
+    """Return the sections, or each marker's students, side by side; raises InputError if nothing was graded."""
     rubric, book = grades.newest_rubric(), grades.book
     students = {student.id: student for student in graded_students(book, rubric)}
     groups: dict[str, list[StudentGrade]] = defaultdict(list)

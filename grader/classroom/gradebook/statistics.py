@@ -1,11 +1,11 @@
-"""Statistics of a class: the distribution of scores, each criterion's difficulty and discrimination, the most common failures."""
+"""Statistics of a class: distribution of scores, difficulty and discrimination of criteria, most common failures."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -114,12 +114,6 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     most = max((student.out_of for student in students), default=units_of(rubric.points))
     values = sorted(Counter(student.grade(most) for student in students if student.counts).items())
     decided = sum(count for _, count in values)
-    mean, deviation = _moments(values)
-    # Most students have the same results as others: the figures of criteria add up these few rows.
-    worth = [row.position for row in rubric.criteria if row.points]
-    patterns = Counter(_pattern(student, worth) for student in students)
-    graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
-    criteria = [row for row in rubric.criteria if row.position in graded]
     causes = grouped(Counter(failure for student in students for failure in student.failures))
     verdicts = list(book.rows(_VERDICTS))
     return ClassStatistics(
@@ -133,13 +127,9 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         undecided=len(students) - decided,
         points=_totals(students),
         reasons=_reasons(students),
-        mean=mean,
-        deviation=deviation,
-        lowest=_ranked_score(values, 0),
-        median=(_ranked_score(values, (decided - 1) // 2) + _ranked_score(values, decided // 2)) / 2,
-        highest=_ranked_score(values, decided - 1),
+        **_figures(values, decided),
         bins=_bins(values, most),
-        criteria=tuple(_criterion(criterion, patterns) for criterion in criteria or rubric.criteria),
+        criteria=tuple(_criteria(rubric, students)),
         failures=tuple(
             CommonFailure(rubric.criteria[cause.position], cause.mistake, count)
             for cause, count in causes[:_MAX_FAILURES]
@@ -147,13 +137,27 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     )
 
 
-def _moments(values: Sequence[tuple[int, int]]) -> tuple[float, float]:
-    """Return the mean and the standard deviation in points, of scores in units with their counts."""
-    total = sum(count for _, count in values)
-    if not total:
-        return 0.0, 0.0
-    mean = sum(score * count for score, count in values) / total / UNITS_PER_POINT
-    return mean, sqrt(sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values) / total)
+def _criteria(rubric: Rubric, students: Sequence[GradedStudent]) -> Iterator[CriterionStatistics]:
+    """Yield the figures of the criteria that were graded; of all, if none was."""
+    # Most students have the same results as others: the figures of criteria add up these few rows.
+    worth = [row.position for row in rubric.criteria if row.points]
+    patterns = Counter(_pattern(student, worth) for student in students)
+    graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
+    criteria = [row for row in rubric.criteria if row.position in graded]
+    yield from (_criterion(criterion, patterns) for criterion in criteria or rubric.criteria)
+
+
+def _figures(values: list[tuple[int, int]], total: int) -> dict[str, Any]:
+    """Return the figures in points of scores in units, in order with their counts, which are `total` altogether."""
+    mean = sum(score * count for score, count in values) / max(total, 1) / UNITS_PER_POINT
+    squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
+    return {
+        "mean": mean,
+        "deviation": sqrt(squares / max(total, 1)),
+        "lowest": _ranked_score(values, 0),
+        "median": (_ranked_score(values, (total - 1) // 2) + _ranked_score(values, total // 2)) / 2,
+        "highest": _ranked_score(values, total - 1),
+    }
 
 
 class Member(NamedTuple):
@@ -208,7 +212,7 @@ def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
 
 
 def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
-    """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
+    """Return the statistics from sums over its points x and the other criteria's points r: integers, so exact."""
     found: Counter[str] = Counter()
     position = criterion.position
     count = x = r = xx = rr = xr = 0

@@ -84,7 +84,7 @@ class StoredSubmission(NamedTuple):
         return list(json.loads(self.files)[0])
 
     def is_same(self, submission: ClassSubmission, enrolment: Enrolment | None) -> bool:
-        """Return whether a submission has the same files, times, student and enrolment; the contents are not compared."""
+        """Return whether a submission has the same files, times, student and enrolment, without reading contents."""
         return (
             not self.is_gone
             and self.files == files_json(submission)
@@ -100,7 +100,7 @@ def files_json(submission: ClassSubmission) -> str:
 
 
 def profile_of(student: Student, enrolment: Enrolment | None, before: Sequence[Any] = ()) -> tuple[Any, ...]:
-    """Return a row of PROFILE_COLUMNS: empty fields of the student, and an enrolment of None, are as they were `before`."""
+    """Return a row of PROFILE_COLUMNS: empty fields of the student, and no enrolment, stay as they were `before`."""
     values: tuple[str, ...] = _VALUES(student)
     if not "".join(values).isascii():
         values = tuple(map(storable, values))

@@ -39,7 +39,7 @@ class Reason(StrEnum):
 
 
 class SubmissionFiles(NamedTuple):
-    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint and digest of the files.
+    """Where a submission was when graded: paths below the class `root`, and the fingerprint and digest of the files.
 
     The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The
     digest is of the contents.

@@ -1,4 +1,4 @@
-"""The summary of a class, for the terminal, the JSON and the class's page: who needs attention, how many are late or have only evidence, how two graders agree."""
+"""The summary of a class: who needs attention, how many are late or have only evidence, how two graders agree."""
 
 import json
 from collections import Counter
@@ -44,7 +44,7 @@ class MarkedTwice(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """How many items were marked twice, how many of them with the same points, and the mean difference in percent of the maximum.
+    """How many items were marked twice, how many of them equally, and the mean difference in percent of the maximum.
 
     `largest` are the largest differences.
     """
@@ -102,7 +102,7 @@ class Attention(NamedTuple):
 
 
 def attention(grades: Grades) -> Attention:
-    """Return who needs attention: no readable submission, an error of the grader, a grade or mark that may be outdated."""
+    """Return who needs attention: no readable submission, a fault of the grader, a possibly outdated grade or mark."""
     newest = grades.newest_rubric().sha256
     found: dict[Reason, list[AttentionItem]] = {reason: [] for reason in Reason}
     total = 0
@@ -151,7 +151,7 @@ _TIMES = "SELECT is_late OR submitted <> '' OR days_late IS NOT NULL, roster_ent
 
 
 class LateTotals(NamedTuple):
-    """How many submissions are late, the points that they lose in total, and the least and the most that one of them loses.
+    """How many submissions are late, the points that they lose in total, and the least and the most that one loses.
 
     `unknown` counts the submissions if a deadline has no effect, because nothing says of any of them when it was
     submitted.

@@ -49,7 +49,7 @@ def _fingerprint(root: str, paths: tuple[str, ...], settled: int) -> str:
 
 
 def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
-    """Yield every file and folder at and below a path, sorted, symlinks unfollowed; raises OSError if there are too many."""
+    """Yield each file and folder at and below a path, sorted, no symlinks followed; raises OSError for too many."""
     status = os.lstat(top)
     yield "", status
     folders = [top] if stat.S_ISDIR(status.st_mode) else []

@@ -1,4 +1,4 @@
-"""The submissions of a class, each assigned to a student on the roster: which are unmatched, and who has submitted nothing."""
+"""The submissions of a class, each assigned to a student on the roster: which are unmatched, who submitted nothing."""
 
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -18,13 +18,13 @@ _MAX_NAMED = 10
 # canvas-lms, app/models/abstract_assignment.rb, anonymize_students: names come back when all grades are posted or
 # published.
 _ANONYMOUS = (
-    "this is an anonymous download: its submissions (anon_...) match no student. Canvas shows the names when the grades are"
-    " posted: download again then"
+    "this is an anonymous download: its submissions (anon_...) match no student. "
+    "Canvas shows the names when the grades are posted: download again then"
 )
 
 
 class _Placed(NamedTuple):
-    """A submission, by its number in `found`, with the key and the roster's entry of its student; a shared one counts for several."""
+    """A submission, by its number in `found`, with its student's key and roster entry; several for a shared one."""
 
     key: str
     number: int
@@ -158,5 +158,5 @@ def _course_line(folders: Iterable[str]) -> Iterator[str]:
     """Yield one line that names the course's own folders, if there are any."""
     names = [printable_path(folder) for folder in folders]
     if names:
-        one = len(names) == 1
-        yield f"{enumerated(names, _MAX_NAMED)} {'is a folder' if one else 'are folders'} of the course, not of a student"
+        are_folders = "is a folder" if len(names) == 1 else "are folders"
+        yield f"{enumerated(names, _MAX_NAMED)} {are_folders} of the course, not of a student"

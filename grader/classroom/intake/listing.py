@@ -34,13 +34,13 @@ def is_litter(name: str) -> bool:
 
 
 class FolderListing:
-    """A class folder on disk, which is the empty path. Names that are not UTF-8 keep their bytes as os.fsdecode writes them."""
+    """A class folder on disk, which is the empty path. Names that are not UTF-8 keep their bytes (os.fsdecode)."""
 
     def __init__(self, top: Path) -> None:
         self._top = os.fspath(top)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder, or the first `limit`; none if it cannot be opened, but InputError for the top."""
+        """Return the names in a folder, at most `limit`; none if it cannot be opened, but InputError for the top."""
         found = Children([], [], [])
         try:
             with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:

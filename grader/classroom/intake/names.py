@@ -92,7 +92,7 @@ def stems_of(folders: list[str], files: list[str]) -> list[str]:
 
 
 def is_course_folder(path: str) -> bool:
-    """Return whether the name of a submission says that it is the course's own: it holds no word that could be a student's."""
+    """Return whether a submission's name is that of a course folder: no word in it could be a student's."""
     name = path.rpartition("/")[2]
     words = set(_WORDS.findall(name.removesuffix(ending_of(name)).casefold()))
     return bool(words & _COURSE_WORDS) and words <= _COURSE_WORDS | _OTHER_WORDS
@@ -113,7 +113,7 @@ def without_copy(stem: str, ending: str = "") -> tuple[str, int]:
 
 
 def iso_time(text: str) -> str:
-    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone stays without one."""
+    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone gets none."""
     text = text.strip()
     if ":" in text:
         text = _OFFSET.sub("", _ZONE.sub("+00:00", text))

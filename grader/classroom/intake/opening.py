@@ -168,7 +168,7 @@ def _digest_of_file(name: str, path: Path, root: str, limit: int) -> str:
 
 
 def _digest_of_tree(name: str, tree: Tree, limit: int) -> str:
-    """Return the hash of everything that a submission is read from: its name, its files with their paths, the ignored files.
+    """Return the hash of all that a submission is read from: its name, its files with their paths, the ignored files.
 
     Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of their own.
     """

@@ -92,7 +92,7 @@ class Download(NamedTuple):
 
 
 def find_download(path: Path, rubric_id: str) -> Download | None:
-    """Return the download of a class at a path, a folder or a zip; None for anything that may be the submission of one student.
+    """Return the download of a class at a path, a folder or zip; None for what may be the submission of one student.
 
     In Canvas, the names of two students' archives or robots prove it: a student may have pictures with such names.
     """
@@ -129,7 +129,8 @@ def _notes_on_downloads(folder: ClassFolder, path: Path) -> list[str]:
         command = f"grade it with `grader batch {shell_quoted(inner)}`"
         if len(found) == len(others):
             raise InputError(
-                f"{printable_path(inner)} is {what}: {command}; if it is the submission of one student, add --layout folders"
+                f"{printable_path(inner)} is {what}: {command}; "
+                "if it is the submission of one student, add --layout folders"
             )
         notes.append(f"{printable_path(name)} is graded as the submission of one student; if it is {what}, {command}")
     return notes
@@ -169,7 +170,8 @@ def read_class(
         )
     if layout == "auto" and chosen == "folders" and "package.xml" in folder.children.files:
         raise InputError(
-            f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shell_quoted(path)}`)"
+            f"{shown} is one submission and not a class: it contains a package.xml "
+            f"(grade it with `grader grade {shell_quoted(path)}`)"
         )
     is_guess = layout == "auto" and chosen == "folders" and isinstance(listing, FolderListing)
     notes = _notes_on_downloads(folder, path) if is_guess else []
@@ -181,7 +183,7 @@ def read_class(
         raise InputError(f"there is no submission in {shown}{example}{advice}")
 
     def holds_students(path: str) -> bool:
-        """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
+        """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
         inner = listing.children(path, _MAX_NAMES)
         return roster is not None and sum(map(roster.knows, stems_of(inner.folders, inner.files))) > 1
 

@@ -146,7 +146,7 @@ class Roster:
         return RosterMatch(None)
 
     def complete(self, index: int, submission: ClassSubmission) -> ClassSubmission:
-        """Return the submission of a student with the data of the roster, and the name and ids of the LMS where it has none."""
+        """Return a student's submission with the data of the roster, and the LMS's name and ids where it has none."""
         entry = self.entries[index]
         student = _with_numbers(entry.student, submission.student)
         return replace(

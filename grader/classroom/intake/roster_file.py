@@ -16,11 +16,15 @@ from grader.text import counted, first_lines, printable_path
 
 _ALIASES = {
     "id": "id userid key",
-    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber idnummer númerodeid matriculationnumber matrikelnummer",
+    "sis": (
+        "sis sisid sisuserid studentid studentnumber studentno idnumber idnummer númerodeid"
+        " matriculationnumber matrikelnummer"
+    ),
     "login": "login loginid username user sisloginid netid account",
     "github": "github githubusername githublogin githubuser githubid githubaccount",
     "name": (
-        "name fullname student studentname sortablename vollständigername nomcomplet nombrecompleto nomecompleto volledigenaam"
+        "name fullname student studentname sortablename"
+        " vollständigername nomcomplet nombrecompleto nomecompleto volledigenaam"
     ),
     "first": "first firstname firstnames givenname givennames forename vorname nombre",
     "last": "last lastname surname familyname nachname apellidos",
@@ -122,8 +126,8 @@ def _notes(reader: RowReader, shown: str) -> Iterator[str]:
         line, status = reader.unread[0]
         count = f" ({len(reader.unread)} lines)" if len(reader.unread) > 1 else ""
         yield (
-            f"line {line} of {shown}: the status {status!r} does not say clearly how late the submission is{count}: add a column"
-            " `late` with `no` or a number of days"
+            f"line {line} of {shown}: the status {status!r} does not say clearly how late the submission is{count}: "
+            "add a column `late` with `no` or a number of days"
         )
 
 

@@ -15,7 +15,10 @@ from grader.text import printable_path
 # down. submittedlateshort in English, German, French, Spanish, Italian, Portuguese and Dutch, as their language packs
 # have it.
 _LATE = re.compile(
-    r"(?P<after>.+) (?:late|später|verspätet|después|de retraso|in ritardo|atrasado|(?:te )?laat)|en retard de (?P<before>.+)",
+    # 2 days 3 hours late
+    r"(?P<after>.+?) (?:late|später|verspätet|después|de retraso|in ritardo|atrasado|(?:te )?laat)"
+    # en retard de 2 jours 3 heures
+    r"|en retard de (?P<before>.+)",
     re.IGNORECASE,
 )
 # How the units begin in these languages, or their letter (French has s for seconds), and what one of them is in days.
@@ -126,7 +129,7 @@ class RowReader:
 
 
 def _is_of_moodle(row: dict[str, str]) -> bool:
-    """Return whether the Identifier is Moodle's, as in a worksheet; in a roster of GitHub Classroom it is the course's own id."""
+    """Return whether the Identifier is Moodle's, as in a worksheet; GitHub Classroom's is the course's own id."""
     return bool(_WORD_AND_NUMBER.fullmatch(row["identifier"])) and not row["github"]
 
 

@@ -39,9 +39,10 @@ def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, opt
     """Yield what to check about the columns: other assignments in the file."""
     others = sum(column != chosen and bool(column.title) for column in columns)
     if others and not options.only:
+        whose = "its" if others == 1 else "their"
         yield (
-            f"the file has {counted(others, 'other assignment')}: importing it resets {'its' if others == 1 else 'their'} grades to"
-            " those at the time of the export, unless you pass --only"
+            f"the file has {counted(others, 'other assignment')}: importing it resets {whose} grades to those "
+            "at the time of the export, unless you pass --only"
         )
 
 

@@ -29,7 +29,8 @@ from grader.text import format_points
 
 _IDENTITY = frozenset(
     {
-        "Student", "LastName", "FirstName", "ID", "SIS User ID", "SIS Login ID", "Section", "Integration ID", "Root Account",
+        "Student", "LastName", "FirstName", "ID", "SIS User ID", "SIS Login ID", "Section", "Integration ID",
+        "Root Account",
     }
 )  # fmt: skip
 _COMPUTED = re.compile(r"(Current|Final) (Score|Points|Grade)|Override (Score|Grade|Status)")
@@ -88,7 +89,7 @@ def fill_gradebook(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
 
 
 def _is_student(row: TableRow) -> bool:
-    """Return whether a row is a student's: not blank, not points possible, not "Manual Posting" of assignments with hidden grades."""
+    """Return whether a row is a student's: not blank, no points possible, no "Manual Posting" (of hidden grades)."""
     if row.number == 1 or "Points Possible" in row.value(0):
         return False
     return not all(_NOT_A_STUDENT.fullmatch(cell.value) for cell in row.cells)
@@ -109,7 +110,8 @@ def _warnings(table: Table, columns: _Columns, options: FillOptions) -> Iterator
     if points is None:
         yield "the file has no row Points Possible: the maximum in Canvas is unknown"
     elif read_points(possible := points.value(grade.index)) != options.out_of:
-        yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, but the rubric has {format_points(options.out_of)}"
+        maximum = format_points(options.out_of)
+        yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, but the rubric has {maximum}"
     if columns.titles.count("Section") > 1 and not options.only:
         yield "the file has more than one column Section: Canvas reads the first one's place"
     yield from assignment_warnings(columns.writable, grade, options)
@@ -128,7 +130,8 @@ def _find_columns(table: Table, options: FillOptions) -> _Columns:
     if name is None or "ID" not in first or "Section" not in first:
         found = ", ".join(map(repr, titles[:10])) or "nothing"
         raise InputError(
-            f"{options.shown} is not a gradebook exported from Canvas: its first row has no Student, ID and Section, but {found}"
+            f"{options.shown} is not a gradebook exported from Canvas: "
+            f"its first row has no Student, ID and Section, but {found}"
         )
     points = next((row for row in table.rows[1:] if "Points Possible" in row.value(0)), None)
     writable = tuple(

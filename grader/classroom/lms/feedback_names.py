@@ -19,9 +19,9 @@ from pathlib import PurePosixPath
 from grader.classroom.students import Student
 
 _MAX_NAME = 60
-_PLAIN = re.compile(
-    r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL
-)  # can be read in one way
+# Can be read in one way: doejane_LATE_12345_678_robot.urdf, LATE_anon_7kQzB_678_robot.urdf, but not with a third number
+# between underscores, as in doejane_7_101_555_robot.urdf.
+_PLAIN = re.compile(r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL)
 _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _TEXT = frozenset({".txt", ".urdf", ".xacro", ".xml", ".py", ".yaml", ".yml", ".rst"})
 ARCHIVES = (".zip", ".tar.gz", ".tgz")
@@ -35,7 +35,7 @@ def moodle_folder(student: Student, participant: str) -> str:
 
 
 def canvas_target(name: str) -> tuple[str, str] | None:
-    """Return whose submission and which attachment Canvas finds by the name of an uploaded file; None if it ignores the file."""
+    """Return whose submission and which attachment Canvas finds by the name of an upload; None if it ignores it."""
     words = [word for word in name.split("_") if word != "LATE"]
     if not words or words[-1].startswith("link") or name.startswith("._") or _NOT_UTF8.search(name):
         return None
@@ -44,7 +44,7 @@ def canvas_target(name: str) -> tuple[str, str] | None:
 
 
 def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
-    """Return the name under which Canvas gives a report to the students of a submission; else an empty name and the reason.
+    """Return the name under which Canvas gives a report to a submission's students; else an empty name and the reason.
 
     `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the
     report.
@@ -62,7 +62,7 @@ def canvas_name(names: Sequence[str], members: Collection[Student], ending: str)
 
 
 def _is_certain(name: str, users: Collection[str]) -> bool:
-    """Return whether Canvas gives the file to the right student: its name has one reading, or the user is one of the students."""
+    """Return whether Canvas finds the correct student: the name has one reading, or the user is one of `users`."""
     target = canvas_target(name)
     return target is not None and (target[0] in users or (not users and _PLAIN.fullmatch(name) is not None))
 

@@ -1,4 +1,4 @@
-"""Fill an LMS file with grades: match its rows with the students, write the grades, and say what importing the file does.
+"""Fill an LMS file with grades: match its rows with the students, write the grades, and say what the import does.
 
 Only pairs that are unambiguous in both directions match. Rows of students without a grade are removed, so that nothing
 of theirs changes.
@@ -50,7 +50,7 @@ class LmsStudent:
 
 
 class RowNote(NamedTuple):
-    """A row or student without a new grade, and why. `row` counts from 1 in the LMS file; 0 for a student without a row."""
+    """A row or student without a new grade, and why. `row` counts from 1 in the LMS file; 0 if there is none."""
 
     row: int
     who: str
@@ -194,8 +194,8 @@ def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
         maximum = read_points(text)
         if maximum is not None and maximum != out_of:
             raise InputError(
-                f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: change the maximum in the"
-                " LMS and export again, or pass --any-maximum to write the points unchanged"
+                f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: "
+                "change the maximum in the LMS and export again, or pass --any-maximum to write the points unchanged"
             )
 
 

@@ -1,4 +1,4 @@
-"""A student's grade and comment for a learning management system: points in its notation, and as HTML which of them were lost and why.
+"""A student's grade and comment for an LMS: points in its notation, and as HTML which of them were lost and why.
 
 Moodle stores the HTML of an uploaded comment unchanged and includes it in the next worksheet
 (mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words: without a match, a
@@ -46,7 +46,7 @@ class LmsGrade:
 
 
 def rounded_down(points: Decimal) -> Decimal:
-    """Return points with the two decimals that Canvas and Moodle store, rounded down: 99.996 of 100 is not the maximum."""
+    """Return points with the two decimals of Canvas and Moodle, rounded down: 99.996 of 100 is not the maximum."""
     return points.quantize(Decimal("0.01"), ROUND_FLOOR)
 
 
@@ -57,7 +57,7 @@ def points_text(points: Decimal, *, comma: bool = False) -> str:
 
 
 def read_points(text: str) -> Decimal | None:
-    """Return the points in a cell, or None. The last comma or point is the decimal mark (Canvas gradebook_importer.rb)."""
+    """Return the points in a cell, or None; the last comma or point is decimal (Canvas gradebook_importer.rb)."""
     text = re.sub(r"\s", "", text)
     if not _NUMBER.fullmatch(text):
         return None
@@ -79,7 +79,7 @@ _TAG = re.compile(r"<[^>]*+>")
 
 @dataclass(frozen=True, slots=True)
 class FeedbackItem:
-    """One line of a comment: a criterion, or several that share a cause; without points, a remark on the whole submission.
+    """A line of a comment: a criterion, or several that share a cause; without points, a remark on the submission.
 
     `is_open` says that it needs manual grading.
     """
@@ -92,7 +92,7 @@ class FeedbackItem:
 
 
 def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
-    """Yield an item for each criterion below its maximum, with a person's comment, or with an error carried forward, in order.
+    """Yield an item for each criterion below its maximum, with a person's comment, or with an error carried forward.
 
     Criteria that are skipped because of the same criterion, or pending for the same reason, are one item.
     """
@@ -144,12 +144,12 @@ def _cause(result: Result) -> tuple[str, str] | None:
 
 
 def _capitalised(message: str) -> str:
-    """Return a message as in the terminal report: a first word that is not a plain word, such as an attribute, is not changed."""
+    """Return a message as in the terminal report: a first word with other characters than letters is unchanged."""
     return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
 
 
 def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem], graded: str = "automatically") -> str:
-    """Return a comment of one line and at most LIMIT characters: who graded, the exported score, then the items in order."""
+    """Return a comment in one line of at most LIMIT characters: who graded, the exported score, then the items."""
     opening = (
         f"<p>{_OPENING}{_escaped(graded)}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
     )

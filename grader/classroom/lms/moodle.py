@@ -100,8 +100,8 @@ def _warnings(
         yield 'the file has no known column "Last modified (grade)": Moodle refuses a worksheet without it'
     if preflight.conflicts:
         yield (
-            "Moodle skips a grade that was changed there after the download, and in some languages every existing grade, unless"
-            ' "Allow updating records that have been modified more recently" is ticked'
+            "Moodle skips a grade that was changed there after the download, and in some languages "
+            'every existing grade, unless "Allow updating records that have been modified more recently" is ticked'
         )
     if table.delimiter != "," or not table.encoding.startswith("utf-8"):
         name = {",": "comma", ";": "semicolon", "\t": "tab"}[table.delimiter]

@@ -1,4 +1,4 @@
-"""Fill the grade files of Blackboard Learn and Brightspace (D2L), which differ only in how they name columns and students.
+"""Fill grade files of Blackboard Learn and Brightspace (D2L), which differ only in how they name columns and students.
 
 Blackboard, "Work offline with grade data" (help.blackboard.com): the file is tab-separated in UTF-16, or
 comma-separated. `Username` identifies the student. The number after the last `|` of a header identifies the column, as
@@ -56,6 +56,7 @@ class OfflineFormat:
 BLACKBOARD = OfflineFormat(
     lms="Blackboard",
     example="Lab 6 [Total Pts: 100 Score] |123456",
+    # does not match a total, which cannot be filled: Total [Total Pts: up to 100 Score] |123457
     header=re.compile(
         r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^\]]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL
     ),
@@ -80,7 +81,7 @@ _PREVIEW_USER = re.compile(r".*_previewuser\d*")  # the instructor's own test st
 
 
 def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, form: OfflineFormat) -> Filled:
-    """Return a file of Blackboard or Brightspace with the totals in the column of an assignment, and what importing it changes.
+    """Return a file of Blackboard or Brightspace with totals in an assignment's column, and what the import changes.
 
     With `options.only` it has no other assignment. Raises InputError if the file is of another kind, or the column is
     ambiguous. Unless any maximum is allowed, its maximum must be that of the rubric.
@@ -89,9 +90,10 @@ def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, 
     titles = table.titles
     columns = [_grade_column(index, title, form) for index, title in enumerate(titles)]
     if not {form.login, form.sis} & set(titles) or not any(column.title for column in columns):
+        found = enumerated([repr(title) for title in titles[:10]]) or "nothing"
         raise InputError(
             f"{options.shown} is not a grade file of {form.lms}: its first row needs {form.login} or {form.sis},"
-            f" and a column such as {form.example!r}, but has {enumerated([repr(title) for title in titles[:10]]) or 'nothing'}"
+            f" and a column such as {form.example!r}, but has {found}"
         )
     grade = find_assignment([column for column in columns if column.title], options, form.lms, form.example)
     if not options.any_maximum:
@@ -141,5 +143,6 @@ def _warnings(
     if maximum is None:
         yield f"the file does not state the maximum of {grade.title!r} in {form.lms}"
     elif maximum != options.out_of:
-        yield f"{grade.title!r} has {grade.maximum} points in {form.lms}, but the rubric has {format_points(options.out_of)}"
+        points = format_points(options.out_of)
+        yield f"{grade.title!r} has {grade.maximum} points in {form.lms}, but the rubric has {points}"
     yield from assignment_warnings(columns, grade, options)

@@ -1,4 +1,4 @@
-"""Grade a class: submit new and changed submissions to the workers, and write each result into the gradebook at once."""
+"""Grade a class: send new and changed submissions to the workers, write each result into the gradebook at once."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -97,7 +97,7 @@ class Batch:
         return self._writer is not None
 
     def grade(self, intake: Intake) -> Progress:
-        """Grade all submissions that are new or changed. Raises InputError for a class that belongs to another gradebook."""
+        """Grade all new or changed submissions. Raises InputError for a class that belongs to another gradebook."""
         settings, book = self._settings, self._book
         identities = Identities(book, settings.root, settings.roster, intake.keys)
         if not settings.add:
@@ -151,7 +151,7 @@ class Batch:
             writer.remove_from_roster(stored.student_id)
 
     def _context(self) -> ClassContext:
-        """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
+        """Return the data of all tasks, only if there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
         rubric, settings, dictionary = self._rubric, self._settings, b""
         if rubric.solution is not None and rubric.compares_with_reference:

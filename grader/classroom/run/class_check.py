@@ -16,7 +16,7 @@ _MIN_MATCHED = 10  # one in so many submissions
 
 
 def check_same_class(book: Gradebook, intake: Intake, identities: Identities, rubric_id: str) -> None:
-    """Raise InputError, naming the content of the gradebook, if it is for another lab, another assignment or other students."""
+    """Raise InputError, naming the gradebook's content, if it is for another lab, assignment or other students."""
     for (other,) in book.rows("SELECT rubric.id FROM run JOIN rubric ON sha256 = rubric ORDER BY run.id DESC LIMIT 1"):
         if other != rubric_id:
             raise _refusal(book, f"it was graded by the rubric {other}, not {rubric_id}")

@@ -71,7 +71,7 @@ class Cluster(Executor):
         self._client.close()
 
     def _check_workers(self, address: str, root: Path) -> int:
-        """Return how many tasks the workers run at once; raises InputError if one of them could not grade this class."""
+        """Return how many tasks the workers run at once; raises InputError if one could not grade this class."""
         threads = self._client.nthreads()
         if not threads:
             raise InputError(
@@ -122,7 +122,7 @@ def _version_and_access(root: str) -> tuple[str, bool]:
 def _run_in_process(
     timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
 ) -> Any:
-    """Run a function in a process of this worker; return WorkerError, which would fill the worker's log if it were raised."""
+    """Run a function in a process of this worker; return WorkerError, which if raised would fill the worker's log."""
     with _lock:
         processes = _processes()
     try:

@@ -1,4 +1,4 @@
-"""The second pass over a class: search the proven hints of submissions that lost points, once for those that have the same."""
+"""The second pass over a class: search the proven hints of submissions that lost points, once for equal ones."""
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
@@ -50,7 +50,7 @@ def _rubric(data: bytes, path: str) -> Rubric:
 
 
 class HintSearch:
-    """The search for the hints of a class, for one rubric. `unavailable` counts submissions whose files have changed or are gone."""
+    """The search for a class's hints for one rubric. `unavailable` counts submissions with changed or missing files."""
 
     def __init__(self, book: Gradebook, rubric: Rubric, group: Group, max_size: int) -> None:
         self._book, self._rubric, self._max_size = book, rubric, max_size
@@ -87,7 +87,7 @@ class HintSearch:
             yield executor.submit(search_hints, *task), one
 
     def _save(self, submission: Mistaken, future: "Future[str | None]") -> Verdict:
-        """Store the hints of a submission; none if the search was lost, unless it may have been lost with another one's."""
+        """Store the hints of a submission; none if its search was lost, unless another one may be the cause."""
         try:
             found, verdict = future.result(), _GRADED
         except Exception as error:  # noqa: BLE001  it costs the hints of one submission, not its report

@@ -45,7 +45,7 @@ class WorkerError(GraderError):
 
 
 class Processes(Executor):
-    """Worker processes. A task that takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
+    """Worker processes. The future of a task that exceeds `timeout` seconds, or ends its worker, raises WorkerError.
 
     Another worker then replaces the one that ended. All of them end with the process that started them, however that
     ends. `memory` is the limit for each worker, in bytes.
@@ -100,7 +100,7 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: one breaks if a worker is killed while it sends, and then never completes its futures."""
+        """Replace a broken pool: if a worker is killed while it sends, the pool never completes its futures."""
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
                 if self._pending:
@@ -152,7 +152,7 @@ def processors() -> int:
 
 
 def _worker_context() -> Any:
-    """Return the multiprocessing context of workers: a fork server with the grader's modules, else spawned processes."""
+    """Return the multiprocessing context: a fork server with the grader's modules, else spawned processes."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
     # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
     os.environ["PYTHONSAFEPATH"] = "1"
@@ -177,7 +177,7 @@ def _start_server(context: Any) -> None:
 
 
 def _start_worker(memory: int) -> None:
-    """Prepare a worker process, whose memory is limited; it ignores Ctrl-C, and ends with its parent, whatever it does."""
+    """Prepare a worker process: its memory is limited, it ignores Ctrl-C, and always ends with its parent."""
     leave = os._exit
     # pebble does not notice a worker that ends with exit code 0.
     os._exit = lambda status: leave(status or _EXIT_ENDED)

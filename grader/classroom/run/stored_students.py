@@ -79,7 +79,7 @@ class Identities:
 
 
 def _clues(stored: StoredSubmission, root: str) -> Clues:
-    """Return what identifies a stored student: the roster's data, else the key and the path (a login may be a folder's name)."""
+    """Return what identifies a stored student: the roster's data, else key and path (a login may be a folder name)."""
     student, entry = stored.student, stored.enrolment.roster_entry
     if stored.enrolment.is_on_roster:
         known = entry_from_json(entry) if entry else RosterEntry(student)
@@ -119,7 +119,7 @@ class StoredStudents:
         return not (submission.is_certain or stored.source != self._root or self._is_same_path(submission, stored))
 
     def recognise(self, absent: Student) -> None:
-        """Give a student of the roster without a submission in this class the key of the roster, with earlier results and marks."""
+        """Give the results and marks of a roster's student without a submission in this class the roster's key."""
         stored = self._identities.of(ClassSubmission(absent, ())) if not self._identities.knows(absent.key) else None
         if stored is not None and stored.student_id not in self._renamed:
             self._rename(stored, absent.key)
@@ -156,7 +156,7 @@ class StoredStudents:
         return is_renamed
 
     def _gives_way(self, stored: StoredSubmission, submission: ClassSubmission) -> bool:
-        """Return whether a key was that of a folder until the roster gave it to another student, who is in the gradebook too.
+        """Return whether a folder had a key until the roster gave it to another student, who is in the gradebook too.
 
         The folder's results and marks then get the key of its path.
         """

@@ -1,4 +1,4 @@
-"""The work of a worker process: grade submissions one by one. Everything here is plain data that can be sent to any process."""
+"""The work of a worker process: grade submissions one by one. All data is plain and can be sent to any process."""
 
 import time
 from collections.abc import Sequence

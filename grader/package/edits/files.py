@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from grader.edits import Proposal
 from grader.names import closest
@@ -21,16 +21,21 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
-    for path, like in wanted.items():
+    for path in wanted:
         folder, name = posixpath.split(path)
         if any(_is_named(it, name, kind) for it in task.files):
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _renamed(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
         if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
-            needed = wanted if path == SETUP else {path: like}
-            edits = [edit for new in {path: like} | needed for edit in task.created(new, wanted[new])]
-            yield change(edits, "create", WHAT.get(kind, kind if path == kind else "a file of the resource index"))
+            what = WHAT.get(kind, kind if path == kind else "a file of the resource index")
+            yield change(_created(task, path, wanted), "create", what)
+
+
+def _created(task: PackageTask, path: str, wanted: Mapping[str, str]) -> list[Edit]:
+    """Return the edits that create a file of the reference; with setup.py the other files that it needs."""
+    needed = [path, *(other for other in wanted if path == SETUP != other)]
+    return [edit for new in needed for edit in task.created(new, wanted[new])]
 
 
 def _is_named(path: str, name: str, kind: str) -> bool:

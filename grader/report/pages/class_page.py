@@ -1,4 +1,4 @@
-"""The class's page: statistics for graders, common edits with small pictures of a robot, and a table of students with links to their pages."""
+"""The class's page: statistics, common edits with small pictures of a robot, and a table of students with links."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -160,7 +160,7 @@ def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, A
 
 
 def _columns(rows: Sequence[StudentRow]) -> list[tuple[str, str, str]]:
-    """Return the columns of the table that are not empty: the field of a row, the heading, and the class of its cells."""
+    """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
     columns = (
         ("status", "status", ""),
         ("score", "score", "number"),

@@ -69,7 +69,7 @@ def stamp_of(item: QueuedResult) -> str:
 
 
 def _grade(grade: StudentGrade) -> str:
-    """Return the points that count for a student, and what they are: a final mark, points after the late penalty, points so far."""
+    """Return the points that count for a student, and what they are: a final mark, after the penalty, or so far."""
     if grade.is_excused:
         return "excused"
     late = " after the late penalty" if grade.late.points else ""

@@ -33,6 +33,7 @@ GERMAN = "Zur Bewertung abgegeben"
         ("Consegnato per la valutazione - 2 giorni 5 ore in ritardo", 2 + 5 / 24),
         ("Enviado para avaliação - 1 dia 3 horas atrasado", 1 + 3 / 24),
         ("Ingestuurd voor beoordeling - 1 dag 2 uren laat", 1 + 2 / 24),
+        ("Ingestuurd voor beoordeling - 1 dag 2 uren te laat", 1 + 2 / 24),
         ("Przesłane do oceny - 1 dzień 2 godz. spóźnienia", None),  # a language that is not known
         (f"{SUBMITTED} - a while late", None),
         (f"{SUBMITTED} - 3 moons late", None),

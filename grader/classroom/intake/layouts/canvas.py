@@ -21,19 +21,26 @@ from grader.classroom.matching import word_characters
 from grader.classroom.students import ClassSubmission, Student
 
 _ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
+# _678_robot.urdf, else _text.html
 _REST = rf"_(?:(?P<attachment>{_ID})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))"
+# LATE_anon_7kQzB_678_robot.urdf: five letters of base 58, which has no 0, I, O and l
 _ANONYMOUS = re.compile(r"(?P<late>LATE_)?anon_(?P<user>[1-9A-HJ-NP-Za-km-z]{5})" + _REST, re.DOTALL)
+# the part after the name in doejane_LATE_12345_678_robot.urdf: a file of the student may look the same, `_readings`
 _USER = re.compile(rf"(?P<late>_LATE)?_(?P<user>{_ID})(?={_REST}\Z)", re.DOTALL)
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a name that a student
 # chose.
 _MAX_GROWTH = 1000
 _REPEATED = re.compile(
-    r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
+    # robot, or robot-2 for the third upload
+    r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?"
+    # .urdf.xacro, .7z: only the last part may begin with a digit, so lab-1.2.urdf has no number
+    r"(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)",
+    re.DOTALL,
 )
 
 
 class _CanvasFile(NamedTuple):
-    """One file of a download: whose it is, and the student's own name of it; `readings` are the names and user ids it may mean."""
+    """A file of a download: whose it is, and the student's name of it; `readings` are the names and ids it may mean."""
 
     path: str
     name: str

@@ -1,4 +1,4 @@
-"""The result of a layout: the submissions of a class, the last of each student's attempts or copies, and the ignored files."""
+"""What a layout finds: the submissions of a class, the last of a student's attempts or copies, the ignored files."""
 
 import os
 import re
@@ -81,7 +81,7 @@ def is_path_key(key: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ClassFolder:
-    """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
+    """The folder of a class's submissions: its names, and its path in the listing, `start`, empty or with a slash.
 
     `rubric_id` is the name of the lab in names of folders, `lab_folders` what its own folder is called, `assignment`
     the name in nbgrader, if the user has named it; `is_explicit` if the user has named the layout.
@@ -133,7 +133,7 @@ class Attempts(NamedTuple):
 
 
 def attempts_in(listing: ClassListing, folder: str) -> Attempts | None:
-    """Return the attempts in a folder that contains nothing else; of two with the same number a folder is the later one."""
+    """Return the attempts in a folder that contains nothing else; of two with the same number a folder is later."""
     first = listing.first(folder)
     if first is None or _number(first) is None:  # a shortcut for nearly all folders
         return None
@@ -166,7 +166,7 @@ def _number(name: str) -> int | None:
 
 
 def last_copy(names: Iterable[tuple[int, str]], folders: set[str], ignored: IgnoredFiles, start: str) -> Attempts:
-    """Return the copies with the browser's numbers as attempts; of two with one number, the better ending counts (`folders`)."""
+    """Return the copies as attempts, by the browser's numbers; of one number a folder counts, or the best ending."""
     by_number: dict[int, list[str]] = {}
     for number, name in names:
         by_number.setdefault(number, []).append(name)

@@ -16,6 +16,7 @@ from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.students import ClassSubmission, Student
 
+# Jane Doe_123_assignsubmission_file, ..._file_, ..._file_robot.urdf; Team A_assignsubmission_onlinetext
 _NAME = re.compile(
     r"(?P<name>.+?)(?:_(?P<id>[0-9]{1,20}))?_assignsubmission_(?P<plugin>[a-z]+)_?(?P<file>.*)", re.DOTALL
 )

@@ -21,7 +21,7 @@ _MAX_NAMED = 10
 
 
 def find_course(folder: ClassFolder) -> str | None:
-    """Return where the students' folders are if this is a course: below `submitted`, or here if the folder is called so."""
+    """Return where a course has the students' folders: below `submitted`, or here if that is the name; else None."""
     listing, start = folder.listing, folder.start
     if _SUBMITTED in folder.children.folders:
         below = f"{start}{_SUBMITTED}/"

@@ -1,4 +1,4 @@
-"""The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
+"""The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, with a folder for each student.
 
 A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A
 team without such a lab folder is one submission. If the layout was named, the class folder may itself be a team's
@@ -25,14 +25,16 @@ _MAX_ENTRIES = 300  # that are searched for a URDF
 _PARTS = frozenset(
     {
         "src", "urdf", "launch", "rviz", "config", "resource", "resources", "test", "tests", "build", "install", "log",
-        "logs", "docs", "doc", "images", "image", "img", "pictures", "picture", "pics", "screenshots", "screenshot", "evidence",
-        "answers", "report", "reports", "meshes", "mesh", "worlds", "world", "webots", "models", "model", "params", "maps",
-        "include", "scripts", "media", "assets", "code", "final", "old", "backup", "solution", "solutions", "package", "packages",
-        "workspace", "ros", "ros2", "homework", "videos", "video", "data",
+        "logs", "docs", "doc", "images", "image", "img", "pictures", "picture", "pics", "screenshots", "screenshot",
+        "evidence", "answers", "report", "reports", "meshes", "mesh", "worlds", "world", "webots", "models", "model",
+        "params", "maps", "include", "scripts", "media", "assets", "code", "final", "old", "backup", "solution",
+        "solutions", "package", "packages", "workspace", "ros", "ros2", "homework", "videos", "video", "data",
     }
 )  # fmt: skip
 _PART = re.compile(
+    # task_2, ex3, prelab, post-lab, v2
     r"(?:(?:task|part|step|exercise|ex|(?:pre|post)?[ _-]?lab|question|q|version|v|attempt|submission|try)[ _-]?\d*"
+    # my_robot_v2, and the endings of ROS packages and workspaces: lidar_bringup, dev_ws
     r"|my_?robot.*|.*_(?:ws|description|bringup|gazebo|interfaces|msgs|pkg|package|robot|sim|control))"
 )
 _ROBOT = re.compile(r"\.urdf$|xacro|urdf\b")  # in names of files
@@ -40,7 +42,7 @@ _PACKAGE = frozenset({"package.xml", "setup.py", "CMakeLists.txt"})
 
 
 def find_labs(folder: ClassFolder) -> dict[str, str]:
-    """Return the lab folders that hold students' folders, each with its team; empty for the repository of a single team."""
+    """Return the lab folders with students' folders, each with its team; empty for the repository of one team."""
     start, names = folder.start, LabFolders(folder.lab_folders)
     labs = dict.fromkeys(_labs_below(folder, names, start) if folder.is_explicit else (), "")
     if labs or (len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit):
@@ -52,7 +54,7 @@ def find_labs(folder: ClassFolder) -> dict[str, str]:
 
 
 def _labs_below(folder: ClassFolder, names: LabFolders, start: str) -> list[str]:
-    """Return the lab's folders of a team that hold students' folders; those of another lab if the lab's have no robot, as `grade` does."""
+    """Return a team's folders of the lab that hold students'; if none has a robot, another lab's, as `grade` does."""
     below = sorted(folder.listing.children(start.rstrip("/"), _MAX_NAMES).folders)
     own = [start + name for name in below if names.is_lab(name) and _holds_students(folder, start + name)]
     if not folder.is_explicit or any(_has_robot(folder.listing, lab) for lab in own):
@@ -157,7 +159,7 @@ def _is_part(folder: ClassFolder, name: str) -> bool:
 
 
 def _has_robot(listing: ClassListing, top: str, *, archives: bool = False) -> bool | None:
-    """Return whether there is a URDF or a package below a folder, or an archive; None if the folder is itself a package."""
+    """Return whether a URDF or package (or archive) is below a folder; None if the folder is itself a package."""
     waiting = [top]
     left = _MAX_ENTRIES
     while waiting and left > 0:
