@@ -7,7 +7,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
+    from grader.documents.evidence import EvidenceFile
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAX_LISTED = 6  # files in one message
@@ -65,22 +65,22 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     """
     from grader.documents.evidence import find_evidence
 
-    found = find_evidence(submission.proofs, names, submission.readable_documents)
+    found = find_evidence(submission.labelled_files, names, submission.readable_documents)
     if found.files:
         return _pictures("needs manual grading: ", found.files)
     labels = enumerated([repr(name) for name in names[:3]], word="or")
     if found.possible:
         start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
         return _pictures(start, found.possible)._replace(problem="perhaps")
-    paths = [proof.file.path for proof in submission.proofs]
+    paths = [labelled.file.path for labelled in submission.labelled_files]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
     return pending(message, problem="not found")
 
 
-def _pictures(start: str, exhibits: "tuple[Exhibit, ...]") -> Outcome:
-    listed = enumerated([exhibit.words for exhibit in exhibits], _MAX_LISTED)
-    return Outcome("pending", start + listed, tuple(dict.fromkeys(exhibit.path for exhibit in exhibits)))
+def _pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:
+    listed = enumerated([file.words for file in found_files], _MAX_LISTED)
+    return Outcome("pending", start + listed, tuple(dict.fromkeys(file.path for file in found_files)))
 
 
 MANUAL_CHECKS = (answered, evidence_shown)

@@ -26,7 +26,7 @@ _MAX_SHOWN = 60  # characters of a heading
 
 
 @dataclass(frozen=True, slots=True)
-class Exhibit:
+class EvidenceFile:
     """One file of evidence: its size in bytes, and width and height of a picture in pixels, if they are known.
 
     Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is known.
@@ -49,7 +49,7 @@ class Exhibit:
         return f"{self.path} ({dimensions}{size if self.size >= 1000 else f'{self.size} bytes'})"
 
 
-class Proof(NamedTuple):
+class LabelledFile(NamedTuple):
     """A picture, video or PDF, and the task and step that its path names: as it is written, and read loosely."""
 
     file: File
@@ -60,17 +60,17 @@ class Proof(NamedTuple):
 class FoundEvidence(NamedTuple):
     """The files of a piece of evidence, and those that may be meant, but are not certain."""
 
-    files: tuple[Exhibit, ...]
-    possible: tuple[Exhibit, ...] = ()
+    files: tuple[EvidenceFile, ...]
+    possible: tuple[EvidenceFile, ...] = ()
 
 
-def read_proofs(tree: Tree) -> tuple[Proof, ...]:
+def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
     """Return every picture, video and PDF of a submission, with its labels."""
-    return tuple(_proof(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
+    return tuple(_labelled(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
 def find_evidence(
-    proofs: Sequence[Proof], names: Sequence[str], documents: DocumentCollection | None = None
+    files: Sequence[LabelledFile], names: Sequence[str], documents: DocumentCollection | None = None
 ) -> FoundEvidence:
     """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
 
@@ -79,53 +79,53 @@ def find_evidence(
     picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
-    exact = [proof for proof in proofs if _is_labelled(proof, wanted)]
+    exact = [labelled for labelled in files if _is_labelled(labelled, wanted)]
     if exact:
         return FoundEvidence(describe(exact))
-    others = [proof for proof in proofs if not proof.label.is_complete]
-    meant = [proof for proof in others if _is_misspelt(proof, wanted)]
-    perhaps = [proof for proof in others if proof not in meant and _may_be_meant(proof, wanted)]
+    others = [labelled for labelled in files if not labelled.label.is_complete]
+    meant = [labelled for labelled in others if _is_misspelt(labelled, wanted)]
+    perhaps = [labelled for labelled in others if labelled not in meant and _may_be_meant(labelled, wanted)]
     inside = [*_below_headings(documents, wanted)]
-    certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
+    certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
         return FoundEvidence((*describe(meant), *certain))
-    whole = _described(_whole_documents(documents), {proof.file.path for proof in perhaps})
+    whole = _described(_whole_documents(documents), {labelled.file.path for labelled in perhaps})
     return FoundEvidence((), (*describe(perhaps), *(it for it, _ in inside), *whole))
 
 
-def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[Exhibit]:
-    return (Exhibit(file.path, file.size) for file in files if file.path not in listed)
+def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[EvidenceFile]:
+    return (EvidenceFile(file.path, file.size) for file in files if file.path not in listed)
 
 
-def _is_labelled(proof: Proof, wanted: Sequence[Label]) -> bool:
-    return any(matches(label, proof.label) for label in wanted)
+def _is_labelled(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
+    return any(matches(label, labelled.label) for label in wanted)
 
 
-def _is_misspelt(proof: Proof, wanted: Sequence[Label]) -> bool:
-    return proof.loose.is_complete and any(matches(label, proof.loose) for label in wanted)
+def _is_misspelt(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
+    return labelled.loose.is_complete and any(matches(label, labelled.loose) for label in wanted)
 
 
 def find_all_evidence(
-    proofs: Sequence[Proof], names: Sequence[Sequence[str]], documents: DocumentCollection | None
+    files: Sequence[LabelledFile], names: Sequence[Sequence[str]], documents: DocumentCollection | None
 ) -> list[FoundEvidence]:
     """Return the evidence for each of several lists of names.
 
     A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not
     be read. A file that names another step is perhaps meant for the nearest step of its task without a file.
     """
-    found = [find_evidence(proofs, one, documents) for one in names]
-    claimed = {exhibit.path for one in found for exhibit in one.files}
+    found = [find_evidence(files, one, documents) for one in names]
+    claimed = {file.path for one in found for file in one.files}
     unread = {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
     for index, one in enumerate(found):
-        perhaps = tuple(exhibit for exhibit in one.possible if exhibit.heading or exhibit.path not in claimed - unread)
-        claimed |= {exhibit.path for exhibit in perhaps}
+        perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - unread)
+        claimed |= {file.path for file in perhaps}
         found[index] = FoundEvidence(one.files, perhaps)
     without = [index for index, one in enumerate(found) if not one.files]
     steps = [(label, index) for index in without for label in map(read_label, names[index]) if label.is_complete]
-    for proof in proofs:
-        near = _nearest(proof.loose, steps) if proof.file.path not in claimed else None
+    for labelled in files:
+        near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *describe([proof])))
+            found[near] = FoundEvidence((), (*found[near].possible, *describe([labelled])))
     return found
 
 
@@ -137,27 +137,27 @@ def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
     return min(distances)[1] if distances else None
 
 
-def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
+def describe(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
-    return tuple(_exhibit(proof.file, is_opened=index < _MAX_OPENED) for index, proof in enumerate(proofs))
+    return tuple(_evidence_file(labelled.file, is_opened=index < _MAX_OPENED) for index, labelled in enumerate(files))
 
 
-def _proof(file: File) -> Proof:
+def _labelled(file: File) -> LabelledFile:
     name = _COPY.sub("", stem(file.path))
     label = read_label(name)
-    return Proof(file, label, label if label.is_complete else read_label(name, loosely=True))
+    return LabelledFile(file, label, label if label.is_complete else read_label(name, loosely=True))
 
 
-def _may_be_meant(proof: Proof, wanted: Sequence[Label]) -> bool:
-    return any(_may_match(label, proof) for label in wanted)
+def _may_be_meant(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
+    return any(_may_match(label, labelled) for label in wanted)
 
 
-def _may_match(wanted: Label, proof: Proof) -> bool:
+def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
     """Return whether a file may be meant: it names the step without a task, or a word that is misspelt."""
     if wanted.steps:
-        return proof.loose.task is None and wanted.steps <= proof.loose.steps
+        return labelled.loose.task is None and wanted.steps <= labelled.loose.steps
     is_word = wanted.task is None and len(wanted.words) == 1
-    return is_word and any(closest(word, wanted.words) for word in proof.label.words if len(word) > 3)
+    return is_word and any(closest(word, wanted.words) for word in labelled.label.words if len(word) > 3)
 
 
 def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
@@ -172,7 +172,9 @@ def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tupl
     return next(filter(None, found), [])
 
 
-def _below_headings(documents: DocumentCollection | None, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
+def _below_headings(
+    documents: DocumentCollection | None, wanted: Sequence[Label]
+) -> Iterator[tuple[EvidenceFile, bool]]:
     """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
     for document, head, label in _headed(documents, wanted) if documents is not None else ():
         yield _below(document, head), _is_certain(label, document, head)
@@ -213,16 +215,16 @@ def _is_about(wanted: Label, head: Heading) -> bool:
     return matches(wanted, head.label, head.task)
 
 
-def _below(document: Document, head: Heading) -> Exhibit:
+def _below(document: Document, head: Heading) -> EvidenceFile:
     text = " ".join(head.text.split())
     shown = text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."
     file = document.file
-    return Exhibit(file.path, file.size, heading=shown, page=document.page(head.start))
+    return EvidenceFile(file.path, file.size, heading=shown, page=document.page(head.start))
 
 
-def _exhibit(file: File, *, is_opened: bool) -> Exhibit:
+def _evidence_file(file: File, *, is_opened: bool) -> EvidenceFile:
     size = None
     if is_opened and file.suffix in _PICTURES:
         with suppress(InputError):
             size = image_size(file.read(_MAX_HEADER, first=True))
-    return Exhibit(file.path, file.size, *(size or (None, None)))
+    return EvidenceFile(file.path, file.size, *(size or (None, None)))

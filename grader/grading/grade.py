@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.grading.deciding import decide
-from grader.grading.exhibits import exhibits_of, not_searched
+from grader.grading.evidence import evidence_of, not_searched
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import missing_work, robot_of
 from grader.grading.report import Report, Result
@@ -47,7 +47,7 @@ def grade(
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
+    evidence = evidence_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
     notes += _note_on_convention(rubric, submission, results)
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):

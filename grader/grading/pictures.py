@@ -22,7 +22,9 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
     In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a
     heading all pictures. If no file is named for the evidence, all files of evidence are searched.
     """
-    paths = _files(result) or tuple(proof.file.path for proof in submission.proofs if _is_evidence(result))
+    paths = _files(result) or tuple(
+        labelled.file.path for labelled in submission.labelled_files if _is_evidence(result)
+    )
     return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
 
 

@@ -5,10 +5,10 @@ from dataclasses import asdict
 from typing import Any
 
 from grader.checks.outcome import Outcome
-from grader.documents.evidence import Exhibit
+from grader.documents.evidence import EvidenceFile
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import EvidenceResult, Report, Result
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
 from grader.source import Location
@@ -43,8 +43,8 @@ def to_record(report: Report) -> str:
             {"code": one.code, "severity": one.severity, "message": one.message, "location": one.location}
             for one in report.problems
         ],
-        "exhibits": [
-            {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.exhibits
+        "evidence": [
+            {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.evidence
         ],
         "others": report.others,
         "notes": report.notes,
@@ -64,10 +64,10 @@ def from_record(text: str, rubric: Rubric, originals: Originals | None = None) -
         tuple(_result(criteria, one) for one in data["results"]),
         tuple(_problem(one) for one in data["problems"]),
         tuple(
-            Exhibits(evidence[one["evidence"]], _exhibits(one["files"]), _exhibits(one["possible"]))
-            for one in data["exhibits"]
+            EvidenceResult(evidence[one["evidence"]], _evidence_files(one["files"]), _evidence_files(one["possible"]))
+            for one in data["evidence"]
         ),
-        _exhibits(data["others"]),
+        _evidence_files(data["others"]),
         tuple(data["notes"]),
         data["version"],
     )
@@ -106,16 +106,16 @@ def _problem(stored: dict[str, Any]) -> Problem:
     return Problem(kind, stored["message"], _location(stored["location"]))
 
 
-def _exhibits(stored: list[dict[str, Any]]) -> tuple[Exhibit, ...]:
-    return tuple(Exhibit(**one) for one in stored)
+def _evidence_files(stored: list[dict[str, Any]]) -> tuple[EvidenceFile, ...]:
+    return tuple(EvidenceFile(**one) for one in stored)
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON cannot hold as a dictionary: a location or exhibit by its fields, or a read-only mapping."""
+    """Return what JSON cannot hold as a dictionary: a location or file by its fields, or a read-only mapping."""
     if isinstance(value, Location):
         place = {"path": value.path, "line": value.line, "column": value.column}
         return place | {"calls": value.calls} if value.calls else place
-    return asdict(value) if isinstance(value, Exhibit) else dict(value)
+    return asdict(value) if isinstance(value, EvidenceFile) else dict(value)
 
 
 def _location(stored: dict[str, Any]) -> Location:

@@ -15,7 +15,7 @@ from grader.problems import Problem
 from grader.source import Edit, Location
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
+    from grader.documents.evidence import EvidenceFile
 
 _NOTHING = Decimal(0)
 
@@ -113,12 +113,12 @@ class Grade(NamedTuple):
     is_final: bool = False
 
 
-class Exhibits(NamedTuple):
+class EvidenceResult(NamedTuple):
     """A piece of evidence, the files that were found for it, and those that are perhaps meant."""
 
     evidence: Evidence
-    files: "tuple[Exhibit, ...]"
-    possible: "tuple[Exhibit, ...]" = ()
+    files: "tuple[EvidenceFile, ...]"
+    possible: "tuple[EvidenceFile, ...]" = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,8 +135,8 @@ class Report:
     parts: tuple[str, ...]
     results: tuple[Result, ...]
     problems: tuple[Problem, ...] = ()
-    exhibits: tuple[Exhibits, ...] = ()
-    others: "tuple[Exhibit, ...]" = ()
+    evidence: tuple[EvidenceResult, ...] = ()
+    others: "tuple[EvidenceFile, ...]" = ()
     notes: tuple[str, ...] = ()
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score

@@ -115,7 +115,7 @@ REPORT = Record(
         **GRADE.keys,
         "problems": Many(PROBLEM),
         "results": Many(_RESULT),
-        "evidence": (Many(_EVIDENCE), "exhibits"),
+        "evidence": (Many(_EVIDENCE), "evidence"),
         "other_pictures": (Many(_EXHIBIT), "others"),
     },
     GRADE.optional,

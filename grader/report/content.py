@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 from itertools import groupby
 
-from grader.grading.report import Exhibits, Report
+from grader.grading.report import EvidenceResult, Report
 from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report.locations import location_text
@@ -140,28 +140,28 @@ def ignored_lines(report: Report) -> list[str]:
 
 def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
     """Yield the title of each part with its pieces of evidence and whether it was found; then the other pictures."""
-    for part, exhibits in groupby(report.exhibits, key=lambda exhibits: exhibits.evidence.part):
+    for part, found_files in groupby(report.evidence, key=lambda found_files: found_files.evidence.part):
         title = printable(report.rubric.part(part).title)
-        yield title, [(_exhibits_text(found), bool(found.files)) for found in exhibits]
+        yield title, [(_evidence_text(found), bool(found.files)) for found in found_files]
     if report.others:
-        yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
+        yield "Other pictures and documents", [(printable(file.words), True) for file in report.others]
 
 
 def evidence_line(report: Report) -> str:
     """Return how many pieces of evidence were found, and which were not; empty if the lab asks for none."""
-    found = sum(bool(exhibits.files) for exhibits in report.exhibits)
-    texts = [f"Evidence: {found or 'none'} of {len(report.exhibits)} found"]
-    lacking = [exhibits for exhibits in report.exhibits if not exhibits.files]
-    texts += [_exhibits_text(exhibits) for exhibits in lacking if exhibits.possible]
-    missing = [exhibits.evidence.title for exhibits in lacking if not exhibits.possible]
-    texts += [f"missing: {enumerated(missing, _MAX_MISSING)}"] if 0 < len(missing) < len(report.exhibits) else []
-    return printable("; ".join(texts)) if report.exhibits else ""
+    found = sum(bool(found_files.files) for found_files in report.evidence)
+    texts = [f"Evidence: {found or 'none'} of {len(report.evidence)} found"]
+    lacking = [found_files for found_files in report.evidence if not found_files.files]
+    texts += [_evidence_text(found_files) for found_files in lacking if found_files.possible]
+    missing = [found_files.evidence.title for found_files in lacking if not found_files.possible]
+    texts += [f"missing: {enumerated(missing, _MAX_MISSING)}"] if 0 < len(missing) < len(report.evidence) else []
+    return printable("; ".join(texts)) if report.evidence else ""
 
 
-def _exhibits_text(found: Exhibits) -> str:
+def _evidence_text(found: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
-    files = ", ".join(exhibit.words for exhibit in found.files)
-    perhaps = enumerated([exhibit.words for exhibit in found.possible], _MAX_LISTED, "or")
+    files = ", ".join(file.words for file in found.files)
+    perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
     return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
 
 

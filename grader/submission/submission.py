@@ -20,7 +20,7 @@ from grader.text import was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
-    from grader.documents.evidence import Proof
+    from grader.documents.evidence import LabelledFile
 
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
@@ -67,16 +67,16 @@ class Submission:
         return None if self.no_documents else self.documents
 
     @cached_property
-    def proofs(self) -> tuple[Proof, ...]:
+    def labelled_files(self) -> tuple[LabelledFile, ...]:
         """The pictures, films and PDF files in it."""
-        from grader.documents.evidence import read_proofs
+        from grader.documents.evidence import read_labelled_files
 
-        return read_proofs(self.tree)
+        return read_labelled_files(self.tree)
 
     @property
     def evidence(self) -> tuple[File, ...]:
         """The files that may show the work: pictures, films, PDF and Word files."""
-        named = {proof.file.path for proof in self.proofs}
+        named = {labelled.file.path for labelled in self.labelled_files}
         return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
 
     @property

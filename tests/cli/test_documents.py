@@ -104,8 +104,8 @@ def test_a_report_names_pages_and_matches(tmp_path: Path) -> None:
         assert f"The answer on page 2 of report.pdf {how.format(1)}, needs manual grading" in text
         assert f"The answer on page 3 of report.pdf {how.format(2)}, needs manual grading" in text
     (step_8, *_) = as_json(path)["evidence"]
-    exhibit = {"path": "report.pdf", "size": len(REPORT), "width": None, "height": None}
-    assert step_8["files"] == [{**exhibit, "heading": "Task 1: Step 8", "page": 1}]
+    file = {"path": "report.pdf", "size": len(REPORT), "width": None, "height": None}
+    assert step_8["files"] == [{**file, "heading": "Task 1: Step 8", "page": 1}]
     assert step_8["possible"] == []
 
 

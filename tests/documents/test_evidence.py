@@ -16,13 +16,13 @@ Files = Mapping[str, str | bytes]
 def find(files: Files, names: list[str]) -> FoundEvidence:
     """Return the evidence with one of these names in a submission of some files."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
-    return find_evidence(submission.proofs, names, submission.readable_documents)
+    return find_evidence(submission.labelled_files, names, submission.readable_documents)
 
 
 def words(files: Files, names: list[str]) -> tuple[list[str], list[str]]:
     """Return what is found and what is perhaps meant, in words and without sizes."""
     found = find(files, names)
-    return tuple([exhibit.words.partition(" (")[0] for exhibit in exhibits] for exhibits in found)  # type: ignore[return-value]
+    return tuple([file.words.partition(" (")[0] for file in found_files] for found_files in found)  # type: ignore[return-value]
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_other_names_are_not_meant(path: str, names: list[str]) -> None:
 
 def test_the_number_of_a_copy_is_no_step() -> None:
     """A copy of a picture has the step of the original."""
-    assert [exhibit.path for exhibit in find({"Task1_Step8 (1).png": png()}, STEP_8).files] == ["Task1_Step8 (1).png"]
+    assert [file.path for file in find({"Task1_Step8 (1).png": png()}, STEP_8).files] == ["Task1_Step8 (1).png"]
 
 
 def test_a_correct_name_wins() -> None:
@@ -97,8 +97,8 @@ def test_a_heading_in_a_pdf_is_named_with_its_page() -> None:
     assert words({"report.pdf": data}, ["task 1 step 18"]) == (["Task 1: Step 18, page 2 of report.pdf"], [])
     assert words({"report.pdf": data}, WEBCAM) == (["Task 3 - Step 3, page 3 of report.pdf"], [])
     assert words({"report.pdf": data}, ["task 1 step 36"]) == ([], [])
-    (exhibit,) = find({"report.pdf": data}, STEP_8).files
-    assert (exhibit.path, exhibit.size, exhibit.heading, exhibit.page) == ("report.pdf", len(data), "Task 1: Step 8", 2)
+    (file,) = find({"report.pdf": data}, STEP_8).files
+    assert (file.path, file.size, file.heading, file.page) == ("report.pdf", len(data), "Task 1: Step 8", 2)
 
 
 def test_a_heading_in_a_word_file_is_named() -> None:
@@ -136,8 +136,8 @@ def test_documents_that_cannot_be_searched_are_perhaps_meant() -> None:
 
 def test_a_long_heading_is_cut() -> None:
     """Only the beginning of a long heading is shown."""
-    (exhibit,) = find({"a.pdf": pdf(["Task 1: Step 8 " + "x" * 500, PICTURE])}, STEP_8).files
-    assert exhibit.words == f"Task 1: Step 8 {'x' * 42}..., page 1 of a.pdf"
+    (file,) = find({"a.pdf": pdf(["Task 1: Step 8 " + "x" * 500, PICTURE])}, STEP_8).files
+    assert file.words == f"Task 1: Step 8 {'x' * 42}..., page 1 of a.pdf"
 
 
 # --- Several pieces of evidence -----------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ STEPS = [["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], WEBCAM]
 def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str], list[str]]]:
     """Return for each piece of evidence the files that are found, and those that are perhaps meant."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
-    found = find_all_evidence(submission.proofs, names, submission.readable_documents)
+    found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
     return [([it.path for it in one.files], [it.path for it in one.possible]) for one in found]
 
 

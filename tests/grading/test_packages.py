@@ -349,7 +349,7 @@ def test_problems_of_the_packages_files_are_listed(submitted: Submitted, code: s
 def test_evidence_is_shown_with_its_criterion() -> None:
     """Pictures that the lab asks for are listed with their criterion, others on their own."""
     report = graded(REFERENCE.with_files({"holiday.png": png()}))
-    found = {exhibits.evidence.id: [exhibit.path for exhibit in exhibits.files] for exhibits in report.exhibits}
+    found = {found_files.evidence.id: [file.path for file in found_files.files] for found_files in report.evidence}
     assert found == {
         "task1-step8": ["Task1_Step8.png"],
         "task1-step18": ["Task1_Step18.png"],
@@ -357,7 +357,7 @@ def test_evidence_is_shown_with_its_criterion() -> None:
         "task2-step6": ["Task2_Step6.png"],
         "task3-step3": ["Task3_Step3.png"],
     }
-    assert [exhibit.path for exhibit in report.others] == ["holiday.png"]
+    assert [file.path for file in report.others] == ["holiday.png"]
 
 
 def test_a_single_urdf_is_graded_on_its_own_part() -> None:

@@ -40,9 +40,8 @@ def recast(report: Report, words: Words) -> Report:
         results=tuple(_result(result, words, path, hints) for result in report.results),
         problems=problems,
         notes=tuple(words() for _ in report.notes),
-        exhibits=tuple(
-            exhibit._replace(files=tuple(replace(file, path=path()) for file in exhibit.files))
-            for exhibit in report.exhibits
+        evidence=tuple(
+            file._replace(files=tuple(replace(file, path=path()) for file in file.files)) for file in report.evidence
         ),
         others=tuple(replace(other, path=path()) for other in report.others),
     )

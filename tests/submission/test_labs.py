@@ -149,7 +149,7 @@ def test_another_lab_is_used_if_there_is_nothing_else() -> None:
     assert (found.path, found.package and found.package.folder) == ("Lab5/my_robot/urdf/my_robot.urdf", "Lab5/my_robot")
     assert found.notes == ("no folder of this lab was found: Lab5, the folder of another lab, was graded",)
     assert others(found) == {"Lab4/b.urdf": OTHER_LAB}
-    assert found.proofs == ()
+    assert found.labelled_files == ()
     assert "README.md" in found.tree.files
 
 
@@ -159,24 +159,24 @@ def test_a_robot_outside_of_the_folder_is_noted() -> None:
     urdf = "ws/src/my_robot/urdf/my_robot.urdf"
     assert found.path == urdf
     assert found.notes == (f"Lab6, the folder of this lab, has no URDF: {urdf}, which is outside of it, was graded",)
-    assert [proof.file.path for proof in found.proofs] == ["Lab6/step.png"]
+    assert [file.file.path for file in found.labelled_files] == ["Lab6/step.png"]
 
 
 def test_the_folder_confines_evidence_and_documents() -> None:
     """A picture or answer of another lab is none of this lab; without a folder of the lab all others are ignored."""
     files = {name: PICTURE for name in ("Lab6/a.png", "Lab7/Task1_Step8.png", "b.png", "Lab7/answers.md", "Lab6/c.md")}
     found = submission({**files, "Lab6/my_robot.urdf": ROBOT})
-    assert [proof.file.path for proof in found.proofs] == ["Lab6/a.png"]
+    assert [file.file.path for file in found.labelled_files] == ["Lab6/a.png"]
     assert [document.file.path for document in found.documents.named(["*.md"])[0]] == ["Lab6/c.md"]
     found = submission({**files, "my_robot.urdf": ROBOT}, folders=("Lab 8",))
-    assert [proof.file.path for proof in found.proofs] == ["b.png"]
+    assert [file.file.path for file in found.labelled_files] == ["b.png"]
 
 
 def test_without_lab_folders_everything_is_read() -> None:
     """As before: of a rubric without folders, and of a submission without a lab's folder."""
     files = {**package("Lab7/my_robot"), "Lab7/a.png": PICTURE, "b.png": PICTURE}
     assert submission(files, folders=()).notes == ()
-    assert len(submission(files, folders=()).proofs) == 2
+    assert len(submission(files, folders=()).labelled_files) == 2
     plain = {**package("ws/src/my_robot"), "a.png": PICTURE}
     assert submission(plain).tree.files.keys() == plain.keys()
 

@@ -5,21 +5,21 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from grader.checks.manual import evidence_shown
-from grader.grading.report import Exhibits
+from grader.grading.report import EvidenceResult
 from grader.grading.rubric import Evidence, Rubric
 from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
+    from grader.documents.evidence import EvidenceFile
 
 _MAX_PICTURES = 50
 _MAX_UNREAD = 4
 
 
-def exhibits_of(
+def evidence_of(
     rubric: Rubric, submission: Submission, chosen: Sequence[str]
-) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
+) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
     """Return the evidence that the lab asks for, and the other pictures of the submission."""
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
     if not wanted:
@@ -30,12 +30,12 @@ def exhibits_of(
     # A file that may be meant for several pieces is listed where a criterion lists it, too.
     ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
     names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
-    found = find_all_evidence(submission.proofs, names, submission.readable_documents)
+    found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
     by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=True)}
-    exhibits = tuple(Exhibits(evidence, *by_id[evidence.id]) for evidence in wanted)
-    listed = {exhibit.path for one in found for exhibit in (*one.files, *one.possible)}
-    others = [proof for proof in submission.proofs if proof.file.path not in listed]
-    return exhibits, describe(others[:_MAX_PICTURES])
+    found_files = tuple(EvidenceResult(evidence, *by_id[evidence.id]) for evidence in wanted)
+    listed = {file.path for one in found for file in (*one.files, *one.possible)}
+    others = [labelled for labelled in submission.labelled_files if labelled.file.path not in listed]
+    return found_files, describe(others[:_MAX_PICTURES])
 
 
 def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
@@ -44,9 +44,9 @@ def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
     return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))
 
 
-def not_searched(submission: Submission, exhibits: Sequence[Exhibits]) -> tuple[str, ...]:
+def not_searched(submission: Submission, found_files: Sequence[EvidenceResult]) -> tuple[str, ...]:
     """Return a note on the documents that may have evidence, but were not read."""
-    if all(found.files for found in exhibits):
+    if all(found.files for found in found_files):
         return ()
     documents = submission.readable_documents
     if documents is None:
