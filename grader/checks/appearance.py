@@ -5,7 +5,7 @@ from itertools import permutations
 from math import cos, radians
 from typing import TypeVar
 
-from grader.checks.about import MEASURES, METRES, About
+from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import (
     Outcome,
     failed,

@@ -1,13 +1,12 @@
-"""A check, as a rubric names it, and how its signature is read."""
+"""A check: what a rubric names, how its signature is read, and what it declares to hints, rubrics and pictures."""
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args, get_type_hints
 
-from grader.checks.about import About
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
@@ -16,13 +15,73 @@ if TYPE_CHECKING:
     from grader.checks.docstring import Documentation
 
 
+# The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
+EQUIVALENTS = (
+    "order of elements",
+    "fixed joints split",
+    "frames moved",
+    "full turns",
+    "axes scaled",
+    "links renamed",
+    "joints renamed",
+    "spelling of numbers",
+    "layout of the text",
+    "xacro properties",
+    "xacro macro",
+)
+BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
+
+
+def nothing(arguments: Mapping[str, Any]) -> Collection[str]:
+    """Break under no equivalent, as most checks do: they are about behaviour."""
+    del arguments
+    return ()
+
+
+def everything(arguments: Mapping[str, Any]) -> Collection[str]:
+    """Break under every equivalent: the check is about the text."""
+    del arguments
+    return EQUIVALENTS
+
+
+class Usual(NamedTuple):
+    """Arguments that a new rubric gives all criteria of a check: the project's tolerances, with their unit in words."""
+
+    arguments: Mapping[str, Any]
+    unit: str
+
+
+METRES = Usual({"tolerance": 0.002}, "metres")  # room for rounding, but not for mistakes
+DEGREES = Usual({"tolerance": 1.0}, "degrees")
+MEASURES = "grader.checks.measures"
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """What a check declares, in the table `ABOUT` of its module by the name of its function.
+
+    `looks_at`: the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result depends, where
+    hints propose edits, or the tags of a URDF (`limit`, `visual/origin`, `joint@type`): `rubric test` suggests the
+    check for a mutant there. `suggests` ("module:function") yields edits where neither the reference nor the numbers
+    that are measured lead to them. `measure` ("module:function") yields what is true of a reference, as facts for a new
+    rubric; `usual` are arguments for all of these, `unit` their unit in words. `breaks_under` are the equivalents of a
+    robot under which a criterion with such arguments may fail. `picture` is what a failure shows of the reference: the
+    outline of the link, also as a wheel that rolls, or its frame.
+    """
+
+    looks_at: tuple[str, ...] = ()
+    suggests: str = ""
+    measure: str = ""
+    usual: Usual | None = None
+    breaks_under: BreaksUnder = nothing
+    picture: Literal["", "outline", "wheel", "frame"] = ""
+
+
 # The arguments of checks that name links, or list their names.
 LINK_ARGUMENTS = ("link", "leader", "relative_to", "parent", "holds", "on", "of", "base", "links", "wheels")
 
 
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
-
-
 SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import hypot, inf
 
-from grader.checks.about import MEASURES, METRES, About
+from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals

@@ -1,6 +1,6 @@
 """Checks of the colour in which a link is shown."""
 
-from grader.checks.about import MEASURES, About, Usual
+from grader.checks.check import MEASURES, About, Usual
 from grader.checks.outcome import (
     SLACK,
     Outcome,

@@ -3,7 +3,7 @@
 from itertools import product
 from operator import itemgetter
 
-from grader.checks.about import About
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, pending, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.outcome import Outcome, judged
 from grader.checks.toml_types import Count
 from grader.robot.kinematics import Configuration

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from grader.checks.about import About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, difference, in_degrees, judged, measured, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose

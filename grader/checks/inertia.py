@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
-from grader.checks.about import MEASURES, About, Usual
+from grader.checks.check import MEASURES, About, Usual
 from grader.checks.inertia_mistakes import mistake_of, rounded
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.outcome import Outcome, failed, passed, pending
 from grader.errors import MissingElement
 from grader.names import closest

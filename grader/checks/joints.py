@@ -2,7 +2,7 @@
 
 from math import degrees, hypot, isfinite
 
-from grader.checks.about import DEGREES, MEASURES, About
+from grader.checks.check import DEGREES, MEASURES, About
 from grader.checks.comparison import EXACT, Number, check_known, compared, named, number_text, numbers_of
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.mesh_files import MeshFile, mesh_file, why_not_found
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, measured_point, passed, pending, place
 from grader.checks.toml_types import NonNegative

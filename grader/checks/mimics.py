@@ -1,6 +1,6 @@
 """The check of a joint that mimics another one."""
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.comparison import EXACT, check_known, compared, named, numbers_of
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative

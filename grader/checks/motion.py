@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import hypot
 from typing import Literal
 
-from grader.checks.about import About
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place, main_visual, visual_pose, visuals

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.outcome import Outcome, failed, judged
 from grader.errors import MissingElement, NotDecided
 from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package

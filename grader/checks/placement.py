@@ -2,7 +2,7 @@
 
 from math import acos, degrees
 
-from grader.checks.about import MEASURES, METRES, About, Usual
+from grader.checks.check import MEASURES, METRES, About, Usual
 from grader.checks.outcome import (
     SLACK,
     Outcome,

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated
 
-from grader.checks.about import About, everything
+from grader.checks.check import About, everything
 from grader.checks.outcome import Outcome, failed, passed, pending
 from grader.checks.toml_types import Constraint
 from grader.errors import MissingElement

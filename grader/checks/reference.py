@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from math import degrees
 from typing import Annotated, Any, Literal
 
-from grader.checks.about import MEASURES, About, Usual
+from grader.checks.check import MEASURES, About, Usual
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, place, point
 from grader.checks.toml_types import Constraint, NonNegative
 from grader.errors import MissingElement, NotDecided, RubricError

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from grader.checks.about import MEASURES, About
+from grader.checks.check import MEASURES, About
 from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.checks.about import About, everything
+from grader.checks.check import About, everything
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Count
 from grader.errors import InputError, MissingElement, NotDecided

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from random import Random
 from typing import NamedTuple
 
-from grader.checks.about import EQUIVALENTS
+from grader.checks.check import EQUIVALENTS
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.mutation import rewritings

@@ -4,8 +4,7 @@ import sys
 
 import pytest
 
-from grader.checks.about import About
-from grader.checks.check import describe
+from grader.checks.check import About, describe
 from grader.checks.outcome import Outcome, passed
 from grader.package.package import Package
 from tests.checks.outcomes import ask, graded, missing

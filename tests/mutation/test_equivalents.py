@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from grader.checks.about import EQUIVALENTS
+from grader.checks.check import EQUIVALENTS
 from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric

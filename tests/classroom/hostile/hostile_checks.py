@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any
 
-from grader.checks.about import About
+from grader.checks.check import About
 from grader.checks.measures.fact import Fact, Facts, Solution
 from grader.checks.outcome import Outcome, passed
 from grader.robot.kinematics import Configuration
