@@ -95,7 +95,11 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _discard_reports(words: Sequence[str]) -> None:
-    """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them."""
+    """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them.
+
+    A report that lies there already may be forged by a student, and would count as the result of this run. The
+    arguments are parsed again, because the refusal may be about one of them.
+    """
     from typer.main import get_command
 
     from grader.usecases.grade import remove_reports

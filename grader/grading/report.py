@@ -84,7 +84,7 @@ class Result(NamedTuple):
             return ""
         if self.criterion.adjustment is not None:
             return self.criterion.adjustment.message
-        return f"Points given: this fails only because of {self.carried}." if self.carried else ""
+        return f"Not deducted: caused by {self.carried}." if self.carried else ""
 
     @property
     def is_adjusted(self) -> bool:

@@ -2,7 +2,7 @@
 
 Where `expressions` returns what can be told of a Python file in part, this either returns Python's value, or says that
 Python certainly raises an error, or that the value cannot be determined statically. Nothing outside the allow-list is
-reached.
+reached. The evaluator of files (`interpreter`) knows values in part, which could not be exact: so there are two.
 """
 
 import ast

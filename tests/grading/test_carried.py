@@ -300,7 +300,7 @@ def test_every_format_says_so(kind: Format) -> None:
     done = grader("grade", SMALL_WHEELS, "--format", kind.value, COLUMNS="300")
     assert done.returncode == 1
     text = done.stdout.replace("\\", "")
-    words = "Points given: this fails only because of left-wheel-shape."
+    words = "Not deducted: caused by left-wheel-shape."
     words = "(caused by left-wheel-shape)" if kind is Format.TERMINAL else words
     assert words in text or kind is Format.JSON
     assert kind is not Format.JSON or '"carried": "left-wheel-shape"' in text

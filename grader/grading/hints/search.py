@@ -1,4 +1,10 @@
-"""Search the edits that make failed criteria pass, the costliest first, and prove them."""
+"""Search the edits that make failed criteria pass, the costliest first, and prove them.
+
+From small to large: a `Set` is a value of one element, a `Piece` what one mistake needs, with its words, and a
+`Proposal` one way to write a piece into the files, as edits of their texts. A `State` is the submission with some
+edits, a `Look` at it says what pieces would change, measured on its `Model` without any text. What `Trials` prove by
+grading again becomes a `FoundHint`, and in a report a `Hint`. `Fix` are all of them together, as files.
+"""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -92,9 +98,9 @@ class HintSearch:
             if best is None or not self._prove(state, best, name):
                 self._given_up.add((state.edits, name, is_solving))
                 continue
-            together = self.trials.applied(state, (*taken, *best.edits), current.results)
-            if together is not None and not together.lost:
-                taken, current = together.edits, together
+            after = self.trials.applied(state, (*taken, *best.edits), current.results)
+            if after is not None and not after.lost:
+                taken, current = after.edits, after
                 self.final = current._replace(edits=joined(self.trials.start.submission, state.edits, taken))
         return bool(taken)
 
