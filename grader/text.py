@@ -53,7 +53,12 @@ def shell_quoted(path: Path | str) -> str:
 
 def quoted(name: str) -> str:
     """Return a name between quotes, cut if it is very long."""
-    return repr(name) if len(name) <= _MAX_NAME else repr(name[: _MAX_NAME - 3] + "...")
+    return repr(cut(name, _MAX_NAME))
+
+
+def cut(text: str, most: int) -> str:
+    """Return a text of at most so many characters, the last three of which are points if it was longer."""
+    return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
 def enumerated(items: Collection[str], most: int | None = None, word: str = "and") -> str:

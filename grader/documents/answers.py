@@ -11,6 +11,7 @@ from grader.documents.headings import Heading, Pattern, has_words, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
 from grader.documents.questions import Answer, AnswerMatch, Ordinal, match_answer, read_ordinal
 from grader.source import Location
+from grader.text import cut
 
 _MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_QUESTION = 4000  # characters of a question
@@ -195,7 +196,7 @@ def _joined(match: AnswerMatch, passages: list[Passage]) -> Passage:
 def _shown(head: Heading) -> str:
     """Return the beginning of a heading; of a question the words before its colon."""
     text = " ".join((head.text.partition(":")[0] if head.pattern else head.text).split())
-    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
+    return cut(text, _MAX_SHOWN)
 
 
 def _where(document: Document, head: Heading, at: Location) -> str:

@@ -14,6 +14,7 @@ from grader.documents.labels import Label, matches, read_label, stem
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 from grader.names import closest
+from grader.text import cut
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 _EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
@@ -217,7 +218,7 @@ def _is_about(wanted: Label, head: Heading) -> bool:
 
 def _below(document: Document, head: Heading) -> EvidenceFile:
     text = " ".join(head.text.split())
-    shown = text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."
+    shown = cut(text, _MAX_SHOWN)
     file = document.file
     return EvidenceFile(file.path, file.size, heading=shown, page=document.page(head.start))
 

@@ -7,6 +7,7 @@ from grader.checks.toml_types import WrongValue
 from grader.grading.keys import KeyTable
 from grader.grading.toml_file import TomlPath
 from grader.names import did_you_mean
+from grader.text import cut
 
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
@@ -66,4 +67,4 @@ def shown(value: Any) -> str:
             text = repr(value)
         case _:
             text = str(value)
-    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
+    return cut(text, _MAX_SHOWN)

@@ -12,7 +12,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.report.details import sentence
 from grader.source import Edit
-from grader.text import counted, counted_points, enumerated, format_points, printable
+from grader.text import counted, counted_points, cut, enumerated, format_points, printable
 
 VERDICTS = {
     "graded": "graded",
@@ -128,7 +128,7 @@ def edit_lines(edits: Sequence[Edit]) -> Iterator[tuple[str, str]]:
         for sign, text in (("-", edit.old), ("+", edit.new)):
             lines = _lines(text)
             for line in lines[:_MAX_LINES]:
-                yield sign, line if len(line) <= _MAX_WIDTH else f"{line[: _MAX_WIDTH - 3]}..."
+                yield sign, cut(line, _MAX_WIDTH)
             if len(lines) > _MAX_LINES:
                 yield " ", f"... {len(lines) - _MAX_LINES} more lines"
     if len(edits) > _MAX_EDITS:

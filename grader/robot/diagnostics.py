@@ -12,7 +12,7 @@ from grader.robot.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
 from grader.source import LazyLocation
-from grader.text import quoted
+from grader.text import cut, quoted
 from grader.xml.parsing import Element, XmlDocument
 from grader.xml.urdf_format import TAGS
 
@@ -200,4 +200,4 @@ def first_children(element: Element) -> dict[str, Element]:
 
 def shown(text: str) -> str:
     """Return a value of the file between double quotes, cut where it is very long."""
-    return f'"{text}"' if len(text) <= 60 else f'"{text[:57]}..."'
+    return f'"{cut(text, 60)}"'

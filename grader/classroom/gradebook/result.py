@@ -12,6 +12,7 @@ from grader.checks.outcome import Outcome
 from grader.grading.record import to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
+from grader.text import cut
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
@@ -133,7 +134,7 @@ def _outcome(result: Result) -> OutcomeRow:
 
 
 def _cause(words: str) -> str:
-    return storable(words if len(words) <= _MAX_CAUSE else words[: _MAX_CAUSE - 3] + "...")
+    return storable(cut(words, _MAX_CAUSE))
 
 
 def _measured(outcome: Outcome) -> str | None:

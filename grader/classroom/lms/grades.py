@@ -16,7 +16,7 @@ from grader.classroom.students import Student
 from grader.classroom.tables import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.files.reading import sha256_of
 from grader.grading.report import Result
-from grader.text import format_points
+from grader.text import cut, format_points
 
 _NUMBER = re.compile(r"-?[0-9][0-9.,]*")
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
@@ -187,7 +187,7 @@ def _escaped(text: str) -> str:
     spreadsheet would take for a formula after the semicolon of another reference.
     """
     line = spelt_out(" ".join(text.split()))
-    short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."
+    short = cut(line, _MAX_MESSAGE)
     escaped = html.escape(short).replace("\\", "&#92;")
     return FORMULA_BEHIND_SEMICOLON.sub(
         lambda found: re.sub(r"\S", lambda character: f"&#{ord(character[0])};", found[0]), escaped

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
+from grader.text import cut
 from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import TAGS
 
@@ -88,8 +89,7 @@ def resume_after(text: str, position: int) -> int:
 
 def short(text: str) -> str:
     """Return a name for a message, cut where it is very long; bytes that are not UTF-8 are spelt out."""
-    cut = text if len(text) <= 40 else text[:37] + "..."
-    return cut.encode("utf-8", "backslashreplace").decode()
+    return cut(text, 40).encode("utf-8", "backslashreplace").decode()
 
 
 def _read_attributes(text: str, start: int, position: int, tag: str, note: Note) -> tuple[dict[str, str], int]:
