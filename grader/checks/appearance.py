@@ -1,4 +1,4 @@
-"""Checks of the appearance of a link: the shape, size and colour of its visuals."""
+"""Checks of what a link shows: shapes of a size, or nothing."""
 
 from collections.abc import Sequence
 from itertools import permutations
