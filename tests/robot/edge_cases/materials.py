@@ -40,7 +40,6 @@ CASES = (
     clean("material-in-robot-after-links", _DEFINED, robot(_shown("a", _USE) + _SET)),
     clean("material-in-robot-after-joints", _DEFINED, _two(_USE, _USE, after=_SET)),
     clean("material-in-robot-unused", _DEFINED, robot(_SET + links("a"))),
-    clean("material-in-robot-of-links-name", _DEFINED, robot(_material("a", _RED) + links("a"))),
     clean("material-in-robot-empty-name", _DEFINED, robot(_material("", _RED) + links("a"))),
     clean("material-in-place", _IN_PLACE, robot(_shown("a", _SET))),
     clean("material-in-place-then-used", _IN_PLACE, _two(_SET, _USE)),
