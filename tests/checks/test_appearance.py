@@ -4,7 +4,7 @@ from itertools import permutations, product
 from math import pi
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box, shows_cylinder, shows_nothing, shows_sphere
@@ -13,6 +13,7 @@ from grader.robot.transforms import Vector
 from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
+from tests.examples import examples
 
 SIZE = (0.6, 0.4, 0.2)
 BOX: Arguments = {"link": "base", "size": SIZE, "tolerance": 0.002}
@@ -96,7 +97,7 @@ def test_a_box_may_be_turned_by_one_degree(angle: str) -> None:
         assert message == "the box of 'base' is turned: its edges should be along the axes of 'base'"
 
 
-@settings(deadline=None, max_examples=60)
+@examples(10)
 @given(order=st.permutations((0, 1, 2)), turns=st.tuples(*[st.integers(-2, 2)] * 3))
 def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], turns: tuple[int, int, int]) -> None:
     """Whatever quarter turns a visual has, a box passes exactly if one assignment of its edges fits."""
@@ -387,7 +388,7 @@ def test_a_grey_carries_its_measurement() -> None:
     assert (outcome.measured, outcome.expected, outcome.tolerance) == ((0.8, 0.8, 0.8), 0.75, 0.01)
 
 
-@settings(deadline=None, max_examples=100)
+@examples(20)
 @given(channels=st.tuples(*[st.integers(0, 100)] * 3), level=st.integers(0, 100))
 def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], level: int) -> None:
     """For every colour in hundredths the result is that of exact arithmetic, the tolerance inclusive."""

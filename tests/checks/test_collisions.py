@@ -3,7 +3,7 @@
 from math import pi
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.collisions import collides_as, collision_matches_visual
@@ -26,6 +26,7 @@ from tests.checks.robots import (
     turned,
     visual,
 )
+from tests.examples import examples
 
 CLOSE: Arguments = {"link": "arm", "tolerance": 0.002}
 BRICK, ROD, BALL = box(0.6, 0.4, 0.2), cylinder(0.1, 0.5), sphere(0.1)
@@ -86,7 +87,7 @@ SHAPES = ((Box((0.6, 0.4, 0.2)), BRICK), (Cylinder(0.1, 0.5), ROD), (Sphere(0.1)
 SYMMETRIES = {Box: ((1.0, 0.0, 0.0), pi), Cylinder: ((0.0, 0.0, 1.0), 0.7), Sphere: ((0.6, 0.0, 0.8), 2.1)}
 
 
-@settings(max_examples=60, deadline=None)
+@examples(10)
 @given(st.sampled_from(SHAPES), _rpy)
 def test_turned_solids(shape: tuple[Shape, str], rpy: Vector) -> None:
     """However both are turned, a symmetry changes nothing, and a shift along any axis of the link counts in full."""

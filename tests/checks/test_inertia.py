@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import nan, pi
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.inertia import inertia_plausible, mass_is
@@ -26,6 +26,7 @@ from tests.checks.robots import (
     sphere,
     visual,
 )
+from tests.examples import examples
 
 TEN: Arguments = {"link": "arm", "tolerance": 10.0}
 MASS: Arguments = {"link": "arm", "mass": 0.5, "tolerance": 0.01}
@@ -112,7 +113,7 @@ def test_plates_and_rods_are_possible(inertia: Sequence[float]) -> None:
 # --- Equivalents ------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60, deadline=None)
+@examples(10)
 @given(st.sampled_from([ROD, PLATE, BALL]), _rpy, _rpy)
 def test_the_frames_do_not_matter(shape: Shape, of_shape: Vector, of_inertial: Vector) -> None:
     """However the shape and the frame of <inertial> are turned, an inertia within the tolerance passes and another fails."""

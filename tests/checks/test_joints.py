@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.joints import joint_axis, joint_dynamics, joint_limits
@@ -21,6 +21,7 @@ from tests.checks.cases import CASE, gripping, swinging
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, joint, link, numbers, scene
 from tests.command_line import run
+from tests.examples import examples
 
 LIMITS: Arguments = {"link": "tip", "lower": -90.0, "upper": 45.0, "tolerance": 0.5}
 AXIS: Arguments = {"link": "tip", "relative_to": "base", "direction": (0.0, 1.0, 0.0), "tolerance": 1.0}
@@ -247,7 +248,7 @@ _lengths = st.floats(-2, 2)
 _directions = st.tuples(_lengths, _lengths, _lengths).filter(lambda axis: sum(map(abs, axis)) > 0.1)
 
 
-@settings(max_examples=40)
+@examples(10)
 @given(
     rpy=st.tuples(_angles, _angles, _angles),
     inner=st.tuples(_angles, _angles, _angles),

@@ -3,13 +3,14 @@
 from math import cos, radians, sin
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
+from tests.examples import examples
 
 FORWARDS: Arguments = {"link": "wheel", "base": "base", "tolerance": 1.0}
 ALONG: Arguments = {
@@ -260,7 +261,7 @@ def test_a_swapped_joint_still_has_a_direction() -> None:
     assert "backward" in fails(rolls_forward, swapped, **FORWARDS)
 
 
-@settings(deadline=None, max_examples=80)
+@examples(10)
 @given(yaw=st.floats(-180.0, 180.0), spin=st.floats(-4.0, 4.0), radius=st.floats(0.01, 2.0))
 def test_a_wheel_drives_where_its_axis_says(yaw: float, spin: float, radius: float) -> None:
     """For every heading, size and initial turn of the wheel, it drives perpendicular to its axis, seen from above."""
@@ -331,7 +332,7 @@ def test_an_axis_is_given_in_the_named_frame() -> None:
     passes(axis_along, found, **{**ALONG, "relative_to": "mast", "direction": (1.0, 0.0, 0.0)})
 
 
-@settings(deadline=None, max_examples=80)
+@examples(10)
 @given(off=st.floats(0.0, 180.0), about=st.floats(0.0, 360.0))
 def test_the_angle_between_axes_is_exact(off: float, about: float) -> None:
     """However small or large, the measured angle is the one by which the frame was turned."""
@@ -422,7 +423,7 @@ def test_the_largest_cylinder_is_the_wheel() -> None:
         )
 
 
-@settings(deadline=None, max_examples=80)
+@examples(10)
 @given(
     rpy=st.tuples(*[st.floats(-4.0, 4.0, width=16)] * 3),
     along=st.floats(-2.0, 2.0, width=16),
@@ -440,7 +441,7 @@ def test_the_eccentricity_does_not_depend_on_the_frame(
     assert (outcome.status == "passed") == (beside <= 0.002)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(10)
 @given(tilt=st.floats(0.0, 180.0))
 def test_a_wobble_is_at_most_a_right_angle(tilt: float) -> None:
     """An axis has no sign: turned by 179 degrees it is one degree off."""

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.counts import counts
@@ -15,6 +15,7 @@ from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of, mounted
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, own_message, passes
 from tests.checks.robots import Scene, joint, link, mesh, scene, visual
 from tests.command_line import run
+from tests.examples import examples
 
 MOVING = [kind for kind in JOINT_TYPES if kind != "fixed"]
 HELD: Arguments = {"link": "wheel", "parent": "base", "joint_type": "continuous"}
@@ -213,7 +214,7 @@ def test_links_on_a_loop_have_no_connection() -> None:
     assert "'wheel' is on or below a loop of joints" in str(error)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(10)
 @given(kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5), required=st.sampled_from(JOINT_TYPES))
 def test_a_chain_passes_exactly_for_its_moving_joints(kinds: list[str], required: str) -> None:
     """Only the moving joints of a chain count: none for a fixed one, else one of the type."""

@@ -16,6 +16,13 @@ from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.source import Location
 from tests.checks.submissions import Submitted, gif, png
+from tests.conversion import convert_here
+
+
+@pytest.fixture(autouse=True)
+def _convert_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.documents.collection.DocumentCollection._run", convert_here)
+
 
 STEP_8, STEP_18 = png(8, 8), png(18, 18)
 CHECKS = {check.function: check for check in own_checks()}

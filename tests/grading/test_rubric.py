@@ -5,12 +5,13 @@ from decimal import Decimal
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box
 from grader.errors import GraderError, InputError, RubricError
 from grader.grading.rubric import Part, Rubric, find_rubric, load_rubric, shipped_rubrics
+from tests.examples import examples
 
 GOOD = """\
 id = "lab0"
@@ -407,7 +408,7 @@ def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -
     assert all(isinstance(criterion.points, Decimal) for criterion in rubric.criteria)
 
 
-@settings(deadline=None, max_examples=50)
+@examples(10)
 @given(cents=st.lists(st.integers(0, 10_000), min_size=1, max_size=20))
 def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactory, cents: list[int]) -> None:
     """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""

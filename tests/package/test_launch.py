@@ -1,10 +1,11 @@
 """Launch files of every style that tutorials and students use, and hostile ones."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
+from tests.examples import examples, spread
 from tests.package.launch_samples import FOLDER, INNER, SAMPLES, LaunchSummary, read, summarize, summarize_sample
 from tests.work import limited_work
 
@@ -591,7 +592,7 @@ def is_well_formed(launch: Launch) -> bool:
     return len(locations) < 20_000 and all(at_location.line > 0 and at_location.column > 0 for at_location in locations)
 
 
-@pytest.mark.parametrize(("name", "data"), [pytest.param(*name, id=name[0]) for name in hostile()])
+@pytest.mark.parametrize(("name", "data"), spread(hostile(), 10), ids=[name for name, _ in hostile()])
 def test_hostile_files(name: str, data: bytes) -> None:
     """Whatever a launch file contains, nothing raises or takes long."""
     with limited_work(30_000_000):
@@ -648,7 +649,7 @@ PIECES = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(
     st.sampled_from(sorted(SAMPLES)),
     st.lists(
@@ -665,7 +666,7 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
         assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
 
 
-@settings(max_examples=100)
+@examples(20)
 @given(
     st.binary(max_size=300) | st.lists(PIECES, max_size=20).map(b"\n".join),
     st.sampled_from([".py", ".xml", ".yaml", ""]),

@@ -1,11 +1,12 @@
 """Reading RViz files: the fixed frame, the enabled displays, and problems."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import YamlNode, read_yaml
+from tests.examples import examples
 from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
@@ -215,7 +216,7 @@ def test_endless_groups(text: str) -> None:
 LINES = st.sampled_from(SAVED.splitlines(keepends=True))
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(
     st.lists(
         LINES | st.text(max_size=8) | st.sampled_from(["&a ", "*a", "- ", "\0", "[", "{", "'", '"', "\t"]), max_size=30
@@ -228,7 +229,7 @@ def test_any_text(pieces: list[str]) -> None:
     assert (found.fault is None) or not found.displays
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(st.integers(0, len(SAVED)), st.integers(0, 30), st.binary(max_size=6))
 def test_changed_files(start: int, length: int, put: bytes) -> None:
     """A saved file with text removed or inserted is read without an error."""

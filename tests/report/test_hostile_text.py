@@ -12,7 +12,7 @@ from typing import Any
 from unittest.mock import patch
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.cli.app import run
@@ -21,6 +21,7 @@ from grader.grading.report import Report
 from grader.report.formats import Format, InspectFormat, render
 from grader.report.locations import Base
 from grader.submission.opening import read_submission
+from tests.examples import examples
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
 from tests.report.reports import hinted
@@ -83,14 +84,14 @@ def written(texts: Mapping[str, str]) -> Report:
 @given(TEXTS)
 @example(EVERYWHERE)
 @example(FENCES)
-@settings(max_examples=60)
+@examples(10)
 def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
     """Names of robots, links, joints, materials, files and folders, comments, answers, values and Python strings."""
     written(texts)
 
 
 @given(st.dictionaries(st.sampled_from(UNASKED), TEXT, min_size=1))
-@settings(max_examples=40)
+@examples(10)
 def test_irrelevant_text_does_not_affect_the_score(texts: Mapping[str, str]) -> None:
     """The score is that of the reference, whatever its robot, a colour, or a file beside it is called."""
     assert written(texts).score == 90
@@ -119,7 +120,7 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
 @pytest.mark.parametrize("name", ["hints", "pictures-only", "setup-as-created", "smart-quotes", "reference"])
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
 @example(["`" * 90 + "![x](y)"])
-@settings(max_examples=10)
+@examples(5)
 def test_text_of_a_report_stays_text(name: str, base: Base, words: list[str]) -> None:
     """Also text that no file system and no XML can hold: NUL and lone surrogates, in every message, name and path."""
     following = cycle(words)
@@ -142,7 +143,7 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
 
 @given(TEXTS)
 @example(EVERYWHERE)
-@settings(max_examples=30)
+@examples(5)
 def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
     """Reports, warnings and inspections contain no command; standard error has annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:
@@ -167,7 +168,7 @@ def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
 
 @given(TEXT)
 @example("##[error]x\n::error::y")
-@settings(max_examples=60)
+@examples(10)
 def test_a_missing_path_is_escaped(text: str) -> None:
     """The message on standard error and in the summary names the path."""
     with tempfile.TemporaryDirectory() as folder:

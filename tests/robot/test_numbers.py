@@ -4,10 +4,11 @@ from fractions import Fraction
 from math import isclose
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.robot.numbers import NumberError, is_version_one, number, numbers, rgba, vector
+from tests.examples import examples
 from tests.work import limited_work
 
 _SPACE = " \t\n\v\f\r"
@@ -91,7 +92,7 @@ _likely = st.builds(
 )
 
 
-@settings(max_examples=1500)
+@examples(60)
 @given(text=_relevant | _likely)
 @example(text="1.7976931348623157e308")
 @example(text="1.7976931348623159e308")
@@ -112,7 +113,7 @@ def test_number_follows_the_rule(text: str) -> None:
     assert repr(actual) == repr(expected)
 
 
-@settings(max_examples=1000)
+@examples(60)
 @given(text=st.lists(_likely | _relevant | st.just("1"), max_size=5).map(" ".join))
 @example(text="1 2 3")
 @example(text="  1   2 3  ")
@@ -135,7 +136,7 @@ def test_vector_follows_the_rule(text: str) -> None:
         assert repr(actual) == repr(tuple(expected))
 
 
-@settings(max_examples=500)
+@examples(60)
 @given(text=st.lists(_likely | _relevant, max_size=5).map(" ".join))
 def test_lists_of_any_length(text: str) -> None:
     """`numbers` accepts any count; `rgba` only channels in 0..1, and distinguishes a wrong count from a wrong number."""

@@ -1,11 +1,14 @@
 """Broken XML: how far a parser reads it, and the edits after which it can be read."""
 
+from itertools import product
+
 import pytest
 
 from grader.edits import edited
 from grader.source import Source
 from grader.xml.pieces import Rules, remaining, scan
 from grader.xml.syntax import proposals
+from tests.examples import spread
 from tests.work import limited_work
 
 TAGS = (
@@ -77,8 +80,7 @@ def test_nothing_is_found_where_no_edit_helps(text: str) -> None:
     assert not fixed(text, is_urdf=False)
 
 
-@pytest.mark.parametrize("text", HOSTILE)
-@pytest.mark.parametrize("is_urdf", [False, True])
+@pytest.mark.parametrize(("text", "is_urdf"), spread(product(HOSTILE, (False, True)), 4))
 def test_hostile_text_costs_bounded_work(text: str, is_urdf: bool) -> None:
     """The work for 400 KB of nothing but errors is bounded."""
     with limited_work(40_000_000):

@@ -187,6 +187,7 @@ COMMENTS = (
     rejected("comment-with-space-before-bang", _NAME, one_link("< !-- a -->")),
     clean("comment-in-geometry", _COMMENT, geometry('<!-- a --><sphere radius="1"/>')),
     clean("comment-in-value", _IN_VALUE, reference("b<!-- -->", "b<!-- -->")),
+    clean("unknown-empty", _UNKNOWN, one_link("<!>")),
     clean("unknown-in-robot", _UNKNOWN, robot(f"{links('a')}<!ELEMENT link ANY>")),
     clean("unknown-conditional", _UNKNOWN, one_link("<![if a]> b <![endif]>")),
     clean("unknown-hides-tag", _UNKNOWN, robot(f"{links('a')}<!{links('b')}")),

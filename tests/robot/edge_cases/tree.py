@@ -55,6 +55,7 @@ CASES: tuple[EdgeCase, ...] = (
     degraded("detached-cycle-with-two-joints", _DETACHED, _tree("bc", "bc", "cb", extra="a")),
     rejected("reached-self-joint-on-leaf", _REACHED, _tree("ab", "bb"), "hangs"),
     rejected("reached-self-joint-in-middle", _REACHED, _tree("ab", "bb", "bc"), "hangs"),
+    rejected("reached-cycle-at-far-end", _REACHED, _tree("ab", "bc", "cd", "de", "ef", "fe"), "hangs"),
     rejected("reached-cycle-and-branch", _REACHED, _tree("ab", "ac", "cd", "dc"), "hangs"),
     rejected("reached-cycle-and-detached-cycle", _REACHED, _tree("ab", "bb", "cd", "dc"), "hangs"),
     rejected("reached-cycle-twice", _REACHED, _tree("ab", "bb", "ac", "cc"), "hangs"),
