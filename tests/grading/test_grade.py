@@ -189,7 +189,8 @@ WHOLE = (
         (rolling(), {"held": ["shape", "frame", "back"]}, ""),
         (rolling(kind="fixed"), {"held": ["shape", "frame", "back"], "continuous": ["forward", "spins"]}, ""),
         (rolling(axis="0 0 0"), {"held": ["shape", "frame", "back"], "placed": ["forward", "spins"]}, 'xyz="0 0 0"'),
-        (scene(BASE, LIDAR, WHEEL), {"held": ["frame", "back"], "continuous": ["placed", "forward", "spins"]}, "<link name"),
+        (scene(BASE, LIDAR, WHEEL), {"held": ["frame", "back"], "continuous": ["placed", "forward", "spins"]},
+         "<link name"),
     ],
     ids=["link", "fixed-joint", "zero-axis", "joint"],
 )  # fmt: skip

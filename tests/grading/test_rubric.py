@@ -549,7 +549,8 @@ def test_every_mistake_has_its_line(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize(
     ("line", "table", "key"),
     [
-        ('"a rubric" = 1', "rubric", "a rubric"), ("'quo.ted' = 1", "rubric", "quo.ted"), ("extra.deep = 1", "rubric", "extra"),
+        ('"a rubric" = 1', "rubric", "a rubric"), ("'quo.ted' = 1", "rubric", "quo.ted"),
+         ("extra.deep = 1", "rubric", "extra"),
         ("[extra]", "", "extra"), ("[extra.deep]", "", "extra"), ("[[extra.deep]]", "", "extra"),
         ("[ 'extra' . deep ] # and more", "", "extra"),
         ("hint.text.more = 1", "criterion", "hint"), ("'hint'.x = 1", "criterion", "hint"),
