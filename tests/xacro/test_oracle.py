@@ -34,6 +34,7 @@ def test_documents(group: str) -> None:
     assert different.keys() == known
 
 
+@pytest.mark.exhaustive
 def test_the_documents_are_many_and_of_both_kinds() -> None:
     """There are more than 300 documents, of which xacro refuses about a third, counted on every fifth."""
     documents = [document for group in GROUPS.values() for document in group.values()]
