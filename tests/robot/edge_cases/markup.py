@@ -75,6 +75,7 @@ TAGS = (
     clean("prefix-undeclared-on-attribute", _PREFIX, robot('<link name="a" x:y="z"/>')),
     clean("prefix-undeclared-nested", _PREFIX, robot(f"{links('a')}<a:b><c:d/></a:b>")),
     clean("prefix-declared", _PREFIX, robot(links("a"), 'name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"')),
+    clean("prefix-xmlns-empty", _PREFIX, robot(links("a"), 'name="r" xmlns:a=""')),
     rejected("prefix-on-link", _PREFIX, robot('<urdf:link name="a"/>', 'name="r" xmlns:urdf="urn:x"')),
     rejected("prefix-on-name", _PREFIX, robot(links("a"), 'x:name="r"')),
     clean("default-namespace", _PREFIX, robot(links("a"), 'name="r" xmlns="http://www.ros.org"')),
