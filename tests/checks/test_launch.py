@@ -149,7 +149,7 @@ launch:
     f"{FOLDER}/{NAME}")],
                          ids=["py", "xml", "yaml", "two", "folder"])  # fmt: skip
 def test_the_launch_file_is_found_in_any_language(submitted: Submitted) -> None:
-    """The name counts, not the language of the launch file, nor its folder, which is graded by the check of setup.py."""
+    """The name counts, not the language of the launch file, nor its folder, which the check of setup.py grades."""
     path = next(name for name in (LAUNCH, XML, YAML, f"{FOLDER}/{NAME}") if name in submitted.files)
     message = f"the launch file is {path.removeprefix('my_robot/')}"
     assert finds(launch_found, submitted, name=NAME) == ("passed", message, None)
@@ -166,7 +166,7 @@ def test_the_launch_file_is_found_in_any_language(submitted: Submitted) -> None:
     ],
 )
 def test_another_name_fails_only_the_name(name: str, more: str) -> None:
-    """A launch file of another name, or with another ending, fails the check of its name and is examined all the same."""
+    """A launch file of another name or ending fails the check of its name, and is examined all the same."""
     submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
     message = f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}{more}"
     assert finds(launch_found, submitted, name=NAME) == ("failed", message, None)
@@ -208,7 +208,7 @@ MORE = launch(RVIZ_NODE, RVIZ_NODE + "        Node(package='turtlesim', executab
     ids=["py", "imports", "urdf_launch", "include", "xml", "yaml", "default", "more"],
 )
 def test_equivalent_launch_files_pass(submitted: Submitted, started: str) -> None:
-    """Nodes are found in every language and in included files; defaults of arguments count, and there may be more nodes."""
+    """Nodes are found in every language and in included files; defaults of arguments count; there may be more nodes."""
     assert starts(submitted) == ("passed", started, None)
     assert finds_files(submitted)[0] == "passed"
 
@@ -477,7 +477,7 @@ ONLY_INNER = INCLUDES.replacing(
     SETUP, "glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "['launch/my_robot_rviz.launch.py']"
 )
 WHERE_RVIZ, WHERE_INCLUDE = "Node(\n            package='rviz2'", "IncludeLaunchDescription(\n"
-# What the launch file names instead, what is wrong with it, and where that is written; the nodes still count as started.
+# What the launch file names instead, what is wrong with it, and where that is written.
 WRONG_PATHS = {
     "home": (launch(URDF_PATH, "'/home/student/my_robot.urdf'"),
              LOOKS.format("URDF", "/home/student/my_robot.urdf") + ELSEWHERE, "open("),
@@ -563,7 +563,7 @@ def test_a_file_that_is_not_installed(submitted: Submitted, key: str, name: str)
 
 
 def test_unknown_installation_needs_manual_grading() -> None:
-    """If setup.py needs manual grading, so do the paths of the launch file; and files of packages that are not submitted."""
+    """If setup.py needs manual grading, so do the paths of the launch file; so do files of other packages."""
     unknown = REFERENCE.replacing(SETUP, "glob('urdf/*')", "os.environ['FILES'].split()")
     message = "cannot determine statically whether a build installs share/my_robot/my_robot.urdf; needs manual grading"
     assert finds_files(unknown) == ("pending", message, None)

@@ -248,7 +248,7 @@ NO_FOLDER = ", because there is no folder '{}'{}"
     ids=["folder", "folder-and-ending", "ending", "language", "other-folder"],
 )
 def test_a_pattern_without_a_match_is_reported(kind: str, old: str, pattern: str, reason: str) -> None:
-    """A glob without a match installs nothing, silently: it is reported with its location, if it is meant for the file."""
+    """A glob without a match installs nothing, silently: it is reported, with its location, if meant for the file."""
     submitted = setup(old, f"glob('{pattern}')")
     message = f"a build does not install {SOURCES[kind]}: {NO_MATCH.format(pattern, reason)}"
     expected = (f"installed {kind}", FOLDER, message, submitted.location_of(SETUP, f"glob('{pattern}')"))

@@ -195,7 +195,7 @@ WHOLE = (
     ids=["link", "fixed-joint", "zero-axis", "joint"],
 )  # fmt: skip
 def test_what_is_missing_fails_once(robot: Scene, lost: dict[str, list[str]], at: str) -> None:
-    """The first criterion that needs what is missing fails, at its place; others are skipped, and the rest is graded."""
+    """The first criterion that needs what is missing fails, at its place; others are skipped, the rest is graded."""
     report = run(*WHOLE, on=robot)
     found = {result.criterion.id: (result.outcome.status, result.because) for result in report.results}
     expected: dict[str, object] = {name: ("passed", None) for name in found}

@@ -539,7 +539,7 @@ PLACES = {
 
 @pytest.mark.parametrize("name", PLACES)
 def test_every_mistake_has_its_line(tmp_path: Path, name: str) -> None:
-    """The line is that of the key, of the table that lacks one, or of the criterion; other mistakes are not repeated."""
+    """The line is that of the key, of the table that lacks one, or of the criterion; nothing is repeated."""
     text, expected = PLACES[name]
     found = complaints(tmp_path, text)
     assert len(found) == expected.count("\n") + 1, found
@@ -606,7 +606,7 @@ def test_windows_line_endings(tmp_path: Path) -> None:
 
 
 def test_what_is_no_file_is_refused(tmp_path: Path) -> None:
-    """What is missing is unreadable input; a folder and a named pipe are refused at once, and a huge file is not read."""
+    """What is missing is unreadable input; a folder and a pipe are refused at once, and a huge file is not read."""
     with pytest.raises(InputError, match=r"cannot read .*nothing\.toml: No such file or directory"):
         load_rubric(str(tmp_path / "nothing.toml"))
     (tmp_path / "lab.toml").mkdir()
