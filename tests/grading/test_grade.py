@@ -28,6 +28,7 @@ from grader.robot.reader import Reading
 from grader.robot.shapes import UnknownShape
 from grader.submission.opening import read_submission
 from tests.checks.cases import BASE, LIDAR, MOUNT, WHEEL, rolling
+from tests.checks.outcomes import Arguments
 from tests.checks.robots import PATH, Scene, joint, mesh, scene
 from tests.examples import examples
 
@@ -166,10 +167,10 @@ def test_each_thing_that_is_missing_fails_once() -> None:
     assert causes(report) == [None, None, "x1", "y1"]
 
 
-_WHEEL = {"link": "wheel", "base": "base"}
-_PLACED = {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002}
-_LIDAR = {"link": "lidar", "relative_to": "base", "xyz": (0.0, 0.0, 0.0), "tolerance": 0.002}
-_SHAPE = {"radius": 0.1, "length": 0.05, "tolerance": 0.002}
+_WHEEL: Arguments = {"link": "wheel", "base": "base"}
+_PLACED: Arguments = {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002}
+_LIDAR: Arguments = {"link": "lidar", "relative_to": "base", "xyz": (0.0, 0.0, 0.0), "tolerance": 0.002}
+_SHAPE: Arguments = {"radius": 0.1, "length": 0.05, "tolerance": 0.002}
 WHOLE = (
     ask("held", held_by, link="lidar", parent="base", joint_type="fixed"),
     ask("shape", shows_cylinder, link="lidar", **_SHAPE),
