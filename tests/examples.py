@@ -1,6 +1,6 @@
 """How many examples are tried: few in the suite, where they are always the same, more where CI searches for others."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import pytest
@@ -14,6 +14,11 @@ def spread(rows: Iterable[Any], count: int) -> list[Any]:
     listed = list(rows)
     step = max(1, len(listed) // count)
     return [row if index % step == 0 else _exhaustive(row) for index, row in enumerate(listed)]
+
+
+def light(rows: Iterable[Any], is_costly: Callable[[Any], bool]) -> list[Any]:
+    """Return the rows of a table as parameters, those that cost seconds for CI only."""
+    return [_exhaustive(row) if is_costly(row) else row for row in rows]
 
 
 def _exhaustive(row: Any) -> Any:

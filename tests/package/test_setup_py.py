@@ -13,7 +13,6 @@ from grader.files.limits import ignored_part
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import parse
 from tests.command_line import HANG_TIMEOUT
-from tests.examples import spread
 from tests.package.my_robot import SAMPLES, make_package
 
 # The samples with unknown values, and the reason; no other sample may have any.
@@ -133,7 +132,7 @@ def run(sample: str, builds: dict[str, Build]) -> BuildRun:
     )
 
 
-@pytest.mark.parametrize("sample", spread(SAMPLES, 20))
+@pytest.mark.parametrize("sample", SAMPLES)
 def test_setuptools_installs_the_determined_files(sample: str, builds: dict[str, Build]) -> None:
     """Files and locations are the same; a run that fails is predicted; unknown values have their reason."""
     installed, error, reported = run(sample, builds)
