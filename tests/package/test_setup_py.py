@@ -91,12 +91,9 @@ class Build(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def builds(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Build]:
-    """Install the data files of the samples that are tested with setuptools."""
-    asked = [item for item in request.session.items if isinstance(item, pytest.Function) and hasattr(item, "callspec")]
-    chosen = {str(item.callspec.params["sample"]) for item in asked if "builds" in item.fixturenames}
-    samples = sorted({"literal_lists"} | chosen)
-    folders = {sample: tmp_path_factory.mktemp("sample") for sample in samples}
+def builds(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Build]:
+    """Install the data files of all samples with setuptools."""
+    folders = {sample: tmp_path_factory.mktemp("sample") for sample in SAMPLES}
     sources = {sample: make_package(sample, folder / "my_robot") for sample, folder in folders.items()}
     done = subprocess.run(
         [sys.executable, "-B", "-W", "ignore", "-c", _BUILDER, *map(str, folders.values())],
