@@ -215,6 +215,7 @@ def test_equivalent_launch_files_pass(submitted: Submitted, started: str) -> Non
 
 RETURN = "    return LaunchDescription(["
 OUTSIDE = launch(RETURN, f"    rviz = Node(package='rviz2', executable='rviz2')\n\n{RETURN}", launch(RVIZ_NODE, ""))
+OTHER_OUTSIDE = launch(RETURN, f"    other = Node(package='a', executable='b')\n\n{RETURN}", launch(RVIZ_NODE, ""))
 UNLESS = launch(
     "            arguments=['-d'", "            condition=UnlessCondition(gui),\n            arguments=['-d'"
 )
@@ -238,9 +239,10 @@ STATE_AT = "Node(\n            package='robot_state_publisher'"
         (DISPLAY.replacing(LAUNCH, "display.l", "description.l"), f"{STATES}, rviz2", "robot_state_publisher", None),
         (REFERENCE.with_files({LAUNCH: EMPTY}), f"robot_state_publisher, {STATES}, rviz2", "nothing", None),
         (OUTSIDE, "rviz2", NO_NODE, "Node(package='rviz2'"),
+        (OTHER_OUTSIDE, "rviz2", PUBLISHERS, None),
         (UNLESS, "rviz2", KEPT, RVIZ_AT),
     ],
-    ids=["left-out", "package", "executable", "misspelt", "description", "empty", "outside", "condition"],
+    ids=["left-out", "package", "executable", "misspelt", "description", "empty", "outside", "other-outside", "condition"],
 )  # fmt: skip
 def test_a_missing_node_is_named(submitted: Submitted, missing: str, running: str, at: str | None) -> None:
     """The message names the missing node, the started ones and why, and points to a similar node."""
@@ -574,6 +576,9 @@ def test_unknown_installation_needs_manual_grading() -> None:
     other = launch("get_package_share_directory('my_robot')", "get_package_share_directory('urdf_tutorial')")
     message = "the URDF is in 'urdf_tutorial', which is not part of the submission; needs manual grading"
     assert finds_files(other) == ("pending", message, None)
+    beside = launch(URDF_PATH, "os.path.join(share, '..', '..', 'lib', 'other.urdf')")
+    message = "the URDF /lib/other.urdf is not part of the package; needs manual grading"
+    assert finds_files(beside) == ("pending", message, None)
 
 
 def test_a_second_package_of_the_submission_counts() -> None:

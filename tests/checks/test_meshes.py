@@ -160,6 +160,11 @@ def test_a_mesh_that_a_build_does_not_install(submitted: Submitted, told: str) -
     ("submitted", "told"),
     [
         (package(installs="*entries(),\n"), "cannot determine statically what setup.py installs"),
+        (package().with_files({SETUP: "#" * 200_000}), "setup.py cannot be read ("),
+        (
+            package("package://elsewhere/meshes/hull.stl").with_files({"all.rar": b"Rar!"}),
+            "the package 'elsewhere' may be in an archive that could not be opened",
+        ),
         (
             REFERENCE.with_files({URDF: arm().text, "meshes.rar": b"Rar!"}),
             "hull.stl may be in an archive that could not be opened",

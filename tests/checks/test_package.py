@@ -5,7 +5,7 @@ import pytest
 from grader.checks.installs import build_installs, installs_files
 from grader.checks.package import package_found, package_type, setup_imports
 from grader.source import Location
-from tests.checks.outcomes import finds, lacks
+from tests.checks.outcomes import finds, graded, lacks
 from tests.checks.submissions import (
     FOLDER,
     LAUNCH,
@@ -115,6 +115,14 @@ def test_a_package_xml_that_cannot_be_read(submitted: Submitted, message: str, a
     expected = ("package.xml", "my_robot", message, at)
     assert lacks(package_found, submitted, name="my_robot") == expected
     assert lacks(package_type, submitted, build_type="ament_python") == expected
+
+
+def test_a_package_xml_that_is_too_large() -> None:
+    """It was not read, so it neither passes nor fails."""
+    large = REFERENCE.with_files({MANIFEST: str(REFERENCE.files[MANIFEST]) + " " * 1_100_000})
+    for check, arguments in ((package_found, {"name": "my_robot"}), (package_type, {"build_type": "ament_python"})):
+        outcome = graded(check, large, **arguments)
+        assert (outcome.status, "larger than" in outcome.message) == ("pending", True)
 
 
 def test_a_package_without_name() -> None:

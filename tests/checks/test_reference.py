@@ -9,6 +9,7 @@ from grader.checks.outcome import Outcome
 from grader.checks.reference import kinematics_match_reference
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.robot.kinematics import Configuration
+from grader.submission.opening import read_submission
 from tests.checks.outcomes import ask
 from tests.checks.robots import ARM, Scene, arm, joint, link, scene
 from tests.work import limited_work
@@ -192,6 +193,16 @@ def test_what_cannot_be_determined_is_pending() -> None:
     """Several tips leave a selector open."""
     with pytest.raises(NotDecided):
         compared(gripper(rule=""), gripper(), "@tip")
+
+
+def test_a_type_that_only_a_run_tells_is_pending() -> None:
+    """Whether a joint whose type xacro leaves open turns as that of the reference is not guessed."""
+    text = ARM.text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    left_open = text.replace('"continuous"', '"$(env KIND)"')
+    urdf = read_submission(left_open.encode(), identity="me", path="arm.urdf.xacro").needed_urdf()
+    assert urdf.robot is not None
+    with pytest.raises(NotDecided, match="is known only at run time"):
+        kinematics_match_reference(Configuration(urdf.robot), ARM.robot, links=["wheel"])
 
 
 def test_joints_stay_within_the_limits_of_the_reference() -> None:

@@ -136,6 +136,10 @@ HOLDING: dict[str, tuple[Scene, Arguments, str, str | None]] = {
         scene(BASE, LIDAR, WHEEL, *BESIDE), HELD, "the parent of 'wheel' is 'lidar'; it should be 'base' (joint 'b')",
         'link="lidar"/>\n<child link="wheel"',
     ),
+    "itself": (
+        joined("fixed"), {"link": "base", "parent": "base", "joint_type": "fixed"},
+        "'base' is itself the parent; it should be the child of a joint", '<link name="base"',
+    ),
     "below another link": (scene(BASE, LIDAR, WHEEL, *BELOW), HELD, ANYTHING, None),
     "zero axis": (joined("continuous", axis="0 0 0"), HELD, ANYTHING,
         None),  # graded by other criteria, as the next two are

@@ -529,6 +529,11 @@ PLACES = {
            27: points must be a number from 0 to 1000000, not -1
            28: there is no check 'urdf_load'; did you mean 'urdf_loads'?""",
     ),
+    "reserved id": (
+        GOOD.replace('"loads"', '"total"'),
+        "7: the id 'total' is reserved for final marks: choose another one",
+    ),
+    "adjusted by a number": (GOOD + "[adjust]\nloads = 3\n", "13: the adjustment of loads must be a table, not 3"),
     "tables in a criterion": (GOOD + HINTS + row("b", points="-1"), "12: a criterion has no key\n20: points must"),
     "quotes before quotes": (
         GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n',
