@@ -1,12 +1,13 @@
 """Numbers are read by urdfdom's rule, which is implemented here a second time, character by character."""
 
 from fractions import Fraction
-from math import isclose
+from math import inf, isclose
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from grader.robot.edits.numbers import number as written_number
 from grader.robot.numbers import NumberError, is_version_one, number, numbers, rgba, vector
 from tests.examples import examples
 from tests.work import limited_work
@@ -73,6 +74,15 @@ def read_vector(text: str) -> tuple[float, float, float] | None:
         return vector(text)
     except NumberError:
         return None
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.1 + 0.2, "0.3"), (-0.0, "0"), (1e-9, "1e-09"), (1e-14, "0"), (1e-5, "0.00001"), (12345678.0, "12345678"), (inf, "inf")],
+)  # fmt: skip
+def test_numbers_are_written_as_a_person_would(value: float, text: str) -> None:
+    """In few characters, without an exponent unless the number is tiny, as those of an inertia are."""
+    assert written_number(value) == text
 
 
 _relevant = st.text("0123456789+-.eE \t\n\r\v\f,xXnNaAiIfF_$u\u00a0\u2212\u0661\uff11\x1f\x85\u2028\udc80", max_size=12)
