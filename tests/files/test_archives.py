@@ -311,6 +311,7 @@ def test_hard_links() -> None:
     assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad", "worse"]
 
 
+@pytest.mark.exhaustive
 def test_many_symlinks() -> None:
     """Thousands of symlinks to folders of thousands of files are refused; long chains of symlinks end."""
     files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import YamlNode, read_yaml
-from tests.examples import examples
+from tests.examples import examples, spread
 from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
@@ -197,13 +197,16 @@ def test_the_last_of_equal_keys_counts() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
-        "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
-        "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
-        "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
-        "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
-    ],
+    spread(
+        [
+            "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
+            "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
+            "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
+            "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
+            "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
+        ],
+        2,
+    ),
 )
 def test_endless_groups(text: str) -> None:
     """Groups in themselves, and thousands of displays, are read up to a bound."""
