@@ -9,7 +9,10 @@ from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box, shows_cylinder, shows_nothing, shows_sphere
 from grader.checks.colours import shows_colour, shows_grey
+from grader.errors import NotDecided
+from grader.robot.kinematics import Configuration
 from grader.robot.transforms import Vector
+from grader.submission.opening import read_submission
 from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
@@ -298,6 +301,16 @@ def test_textures_and_meshes() -> None:
     painted_mesh = visual(mesh(), material=paint("0 0.6 0 1", "green"))
     passes(shows_colour, scene(link("base", painted_mesh)), **GREEN)
     passes(shows_colour, scene(link("base", visual(box(9.0, 9.0, 9.0)), painted_mesh)), **GREEN)
+
+
+def test_a_colour_that_only_a_run_tells() -> None:
+    """What xacro leaves open needs manual grading."""
+    text = painted("0 0.6 0 1").text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    left_open = text.replace('rgba="0 0.6 0 1"', 'rgba="$(env COLOUR)"')
+    urdf = read_submission(left_open.encode(), identity="me", path="a.urdf.xacro").needed_urdf()
+    assert urdf.robot is not None
+    with pytest.raises(NotDecided, match="is known only at run time"):
+        shows_colour(Configuration(urdf.robot), **GREEN)
 
 
 def test_the_largest_visual_determines_the_colour() -> None:
