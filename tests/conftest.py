@@ -8,8 +8,9 @@ import pytest
 from hypothesis import settings
 
 # Examples have no time limit of their own. They are the same in every run: `--hypothesis-profile=random` searches for others.
-settings.register_profile("repeatable", deadline=None, derandomize=True, database=None)
-settings.register_profile("random", deadline=None, derandomize=False, database=None, print_blob=True)
+# There are few of them where a test does not say how many; see tests/examples.py.
+settings.register_profile("repeatable", deadline=None, derandomize=True, database=None, max_examples=20)
+settings.register_profile("random", deadline=None, derandomize=False, database=None, max_examples=100, print_blob=True)
 settings.load_profile("repeatable")
 
 # A command that a shell starts with `&` ignores Ctrl-C, and so would the commands that the tests start and interrupt.

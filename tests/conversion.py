@@ -19,6 +19,7 @@ def convert_here(_documents: object, command: list[str], data: bytes, _path: str
         patch.object(sys, "argv", command[2:]),
         patch.multiple(sys, stdin=given, stdout=output, stderr=io.StringIO()),
         patch.multiple(converter, end_with_parent=lambda *_: None, _limit=lambda _: None),
+        patch("runpy.run_path", lambda _: vars(converter)),  # a second converter would set its limits
         warnings.catch_warnings(action="ignore"),
     ):
         code = module.main()

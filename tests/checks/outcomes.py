@@ -29,6 +29,7 @@ Arguments = dict[str, Any]
 Finding = tuple[Status, str, Location | None]
 Lack = tuple[str, str, str, Location | None]
 
+ANYTHING = "..."  # a message that a test does not look at
 _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
@@ -93,6 +94,12 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     expected: Location | None = scene.location_of(at) if at is not None else outcome.location
     assert outcome.location == expected, (outcome, expected)
     return own_message(outcome)
+
+
+def says(check: AnyCheck, scene: Scene, message: str, at: str | None, arguments: Arguments) -> None:
+    """Assert the message of a check that passes, where `at` is None, or fails at this text, anywhere if that is empty."""
+    found = passes(check, scene, **arguments) if at is None else fails(check, scene, at=at or None, **arguments)
+    assert message in (found, ANYTHING)
 
 
 def _subject(name: Subject, of: Scene | Submitted) -> object:

@@ -1,13 +1,14 @@
 """Contact: gaps and overlaps of two links, just inside and just outside their tolerances."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.contact import clear_of, stands_on
 from tests.checks.cases import BASE, FORWARD, LIDAR, Case, cases_of, mounted, rolling
 from tests.checks.outcomes import Arguments, ask, fails, graded, passes
 from tests.checks.robots import box, cylinder, joint, link, scene, sphere, turned, visual
+from tests.examples import examples
 
 ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
 CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
@@ -166,7 +167,7 @@ def test_the_visual_that_was_moved_inward_is_pointed_to() -> None:
     assert "50 mm deep" in fails(clear_of, scene(BASE, inward, joined), at='xyz="0 0 -0.025"', **CLEAR)
 
 
-@settings(deadline=None, max_examples=40)
+@examples(10)
 @given(x=st.floats(-0.5, 0.5, width=16), z=st.floats(-0.5, 0.5, width=16), yaw=st.floats(-4.0, 4.0, width=16))
 def test_the_depth_of_two_spheres(x: float, z: float, yaw: float) -> None:
     """For spheres the depth is known: the sum of the radii minus the distance of the centres."""

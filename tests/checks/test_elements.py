@@ -8,9 +8,10 @@ import pytest
 
 from grader.checks.elements import element_present
 from grader.checks.outcome import Outcome
+from grader.errors import MissingElement, NotDecided
 from tests.checks.cases import with_camera
 from tests.checks.outcomes import ask, graded, missing
-from tests.checks.robots import Scene, link, scene
+from tests.checks.robots import ARM, Scene, link, scene
 from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.command_line import run
 
@@ -165,6 +166,21 @@ def test_any_element_of_a_robot() -> None:
     for arguments in every:
         outcome = ask(element_present, robot, **arguments)
         assert outcome.status == "passed", outcome
+
+
+def test_a_file_without_elements() -> None:
+    """What is no XML misses the robot; xacro that cannot be expanded at all needs manual grading."""
+    empty = Scene("nothing").submission
+    with pytest.raises(MissingElement, match="the file is not well-formed XML, so it has no elements"):
+        element_present(ARM.robot, empty, tag="gazebo")
+    entities = (
+        '<!DOCTYPE r [<!ENTITY e "a">]>\n<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">${1}</robot>'
+    )
+    open_ = REFERENCE.with_files({URDF: entities}).renaming(URDF, f"{URDF}.xacro")
+    outcome = graded(element_present, open_, tag="gazebo")
+    assert (outcome.status, "entities of a DOCTYPE are not supported" in outcome.message) == ("pending", True)
+    with pytest.raises(NotDecided, match="entities of a DOCTYPE are not supported"):
+        element_present(ARM.robot, open_.submission, tag="gazebo")
 
 
 def test_what_is_missing_is_said_with_a_suggestion() -> None:

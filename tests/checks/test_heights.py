@@ -3,13 +3,14 @@
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.heights import bottom_at_height, bottoms_at_height, under_the_base
 from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, WHEEL, Case, cases_of, mounted, standing
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
+from tests.examples import examples
 
 BOTTOM: Arguments = {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002}
 BOTTOMS: Arguments = {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002}
@@ -98,7 +99,7 @@ def test_a_bottom_is_measured_in_the_named_frame() -> None:
     passes(bottom_at_height, found, link="lidar", relative_to="lidar", height=-0.025, tolerance=1e-9)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(10)
 @given(rpy=angles, height=st.floats(-2.0, 2.0, width=16))
 def test_a_sphere_stands_on_its_lowest_point_however_it_is_turned(rpy: tuple[float, ...], height: float) -> None:
     """A sphere's bottom is its radius below its centre, for every orientation."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.joints import joint_axis, joint_dynamics, joint_limits
@@ -21,6 +21,7 @@ from tests.checks.cases import CASE, gripping, swinging
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, joint, link, numbers, scene
 from tests.command_line import run
+from tests.examples import examples
 
 LIMITS: Arguments = {"link": "tip", "lower": -90.0, "upper": 45.0, "tolerance": 0.5}
 AXIS: Arguments = {"link": "tip", "relative_to": "base", "direction": (0.0, 1.0, 0.0), "tolerance": 1.0}
@@ -112,12 +113,6 @@ def test_wrong_limits(limit: str, at: str, shown: str) -> None:
     assert wrong == f"{RANGE} {shown} degrees; it should be -90 to 45 degrees{JOINT}"
 
 
-def test_limits_in_degrees_are_explained() -> None:
-    """The failure names the reader's note."""
-    outcome = graded(joint_limits, limited('lower="-90" upper="45"'), **LIMITS)
-    assert "(URDF079: lower is in radians, and -90 is more than a full turn: is it in degrees?)" in outcome.message
-
-
 @pytest.mark.parametrize("kind", ["continuous", "planar", "floating"])
 def test_a_joint_without_limits(kind: str) -> None:
     """A joint of another type has no limits, even if it has a <limit>."""
@@ -127,9 +122,11 @@ def test_a_joint_without_limits(kind: str) -> None:
 
 
 def test_a_missing_limit() -> None:
-    """ROS 2 rejects the file; the check says what is missing."""
+    """ROS 2 rejects the file; the check says what is missing. A failure names the reader's note on degrees."""
     message = f"the joint that moves 'tip' has no limits; it should be -90 to 45 degrees{JOINT}"
     assert fails(joint_limits, swinging(limit=""), at='<joint name="shoulder"', **LIMITS) == message
+    outcome = graded(joint_limits, limited('lower="-90" upper="45"'), **LIMITS)
+    assert "(URDF079: lower is in radians, and -90 is more than a full turn: is it in degrees?)" in outcome.message
 
 
 @pytest.mark.parametrize(("name", "value"), [("effort", 10.0), ("velocity", 2.0)])
@@ -192,6 +189,13 @@ def test_the_place_of_a_turned_frame() -> None:
     assert "points along 1 0 0" in fails(joint_axis, swinging(axis=""), at='<joint name="shoulder"', **AXIS)
 
 
+def test_axes_without_a_direction_or_far_away() -> None:
+    """An axis of length zero is missing; absurd distances are neither a crash nor within a distance."""
+    error = missing(joint_axis, swinging(axis="0 0 0"), **AXIS)
+    assert (error.kind, str(error)) == ("pose below joint", f"the pose is undefined: the joint's axis is 0 0 0{JOINT}")
+    assert graded(joint_axis, swinging(xyz="1e300 0 1e300"), **THROUGH).status == "failed"
+
+
 @pytest.mark.parametrize("along", [-3.0, 0.0, 0.5])
 def test_where_on_the_axis_the_frame_is(along: float) -> None:
     """It does not matter; beside the axis it does."""
@@ -201,18 +205,6 @@ def test_where_on_the_axis_the_frame_is(along: float) -> None:
     assert wrong.endswith(f"and passes 50 mm from 0.1 -3 0.2 m; it should pass through that point{JOINT}")
     passes(joint_axis, beside, **AXIS)
     passes(joint_axis, beside, **THROUGH, distance=0.06)
-
-
-def test_an_axis_of_length_zero_is_missing() -> None:
-    """It has no direction; the pose below it is undefined."""
-    error = missing(joint_axis, swinging(axis="0 0 0"), **AXIS)
-    assert (error.kind, str(error)) == ("pose below joint", f"the pose is undefined: the joint's axis is 0 0 0{JOINT}")
-
-
-def test_a_far_axis_fails() -> None:
-    """Absurd distances are neither a crash nor within a distance."""
-    outcome = graded(joint_axis, swinging(xyz="1e300 0 1e300"), **THROUGH)
-    assert outcome.status == "failed"
 
 
 def two_joints() -> Scene:
@@ -247,7 +239,7 @@ _lengths = st.floats(-2, 2)
 _directions = st.tuples(_lengths, _lengths, _lengths).filter(lambda axis: sum(map(abs, axis)) > 0.1)
 
 
-@settings(max_examples=40)
+@examples(10)
 @given(
     rpy=st.tuples(_angles, _angles, _angles),
     inner=st.tuples(_angles, _angles, _angles),
@@ -281,7 +273,8 @@ LEFT = 'joint="left_joint"'
 @pytest.mark.parametrize(
     ("kind", "limit", "wanted", "message"),
     [
-        ("revolute", 'upper="0.3"', (0.0, 0.3, 0.002), "is revolute; it should be prismatic, with a range of 0 to 0.3 m"),
+        ("revolute", 'upper="0.3"', (0.0, 0.3, 0.002),
+         "is revolute; it should be prismatic, with a range of 0 to 0.3 m"),
         ("prismatic", 'lower="-1.5708" upper="0.7854"', (-90.0, 45.0, 1.0),
          "is prismatic; it should be revolute, with a range of -90 to 45 degrees"),
         ("revolute", 'upper="0.4"', (0.0, 0.3, 0.002), "range of the joint that moves 'tip' is 0 to 22.918 degrees"),
@@ -374,20 +367,12 @@ def test_the_wrong_leader_and_the_wrong_way_round() -> None:
     assert ask(mimics, chained, link="a", leader="a").status == "failed"
 
 
-def test_a_loop_of_mimics() -> None:
-    """Neither follows the other: nothing ever moves them."""
+def test_what_follows_nothing() -> None:
+    """A loop of mimics, a joint with the name of its leader, which ROS 2 rejects, and a fixed joint move nothing."""
     error = missing(mimics, hand(("a", "jb", "1", "0"), ("b", "ja", "1", "0")), link="a", leader="b")
     assert (error.kind, "mimics itself, directly or through others" in str(error)) == ("mimicked joint", True)
-
-
-def test_a_joint_with_the_name_of_its_leader() -> None:
-    """ROS 2 rejects two joints of one name; a joint that mimics its own name follows nothing."""
     copied = Scene(gripping(LEFT).text.replace("right_joint", "left_joint"))
     assert "mimics itself" in str(missing(mimics, copied, **MIMIC))
-
-
-def test_a_fixed_joint_follows_nothing() -> None:
-    """A <mimic> in a fixed joint moves nothing."""
     with pytest.raises(MissingElement, match="no joint above 'right' moves"):
         ask(mimics, gripping(LEFT, kind="fixed"), **MIMIC)
 
@@ -540,7 +525,8 @@ with = {{ {2} }}
 """
 CRITERIA = (
     ("range", "joint_limits", 'link = "tip", lower = -90, upper = 45, tolerance = 1, effort = 10, velocity = 2.0'),
-    ("axis", "joint_axis", 'link = "tip", relative_to = "base", direction = [0, 1, 0], tolerance = 1, either_way = true, through = [0.1, 0, 0.2]'),
+    ("axis", "joint_axis",
+     'link = "tip", relative_to = "base", direction = [0, 1, 0], tolerance = 1, either_way = true, through = [0.1, 0, 0.2]'),
     ("friction", "joint_dynamics", 'link = "tip", friction = 0.5, damping = 0'),
     ("free", "mimics", 'link = "tip", leader = "arm", multiplier = -1'),
     ("size", "counts", "links = 3, joints = 2, moving = 1, revolute = 1, fixed = 1"),

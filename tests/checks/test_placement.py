@@ -4,7 +4,7 @@ from itertools import product
 from math import cos, pi, sin
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.contact import clear_of, stands_on
@@ -13,6 +13,7 @@ from grader.robot.kinematics import Configuration
 from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, LIDAR, WHEEL, Case, cases_of, mounted, rolling
 from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, numbers, scene, turned, visual
+from tests.examples import examples
 
 FRAME: Arguments = {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002}
 CENTRE: Arguments = {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002}
@@ -142,7 +143,7 @@ positions = st.tuples(*[st.floats(-1.0, 1.0, width=16)] * 3)
 angles = st.tuples(*[st.floats(-4.0, 4.0, width=16)] * 3)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(10)
 @given(steps=st.lists(st.tuples(positions, angles), min_size=1, max_size=4), moves=st.booleans())
 def test_a_frame_passes_where_forward_kinematics_puts_it(
     steps: list[tuple[tuple[float, ...], tuple[float, ...]]], moves: bool

@@ -9,6 +9,7 @@ from grader.checks.outcome import Outcome
 from grader.checks.reference import kinematics_match_reference
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.robot.kinematics import Configuration
+from grader.submission.opening import read_submission
 from tests.checks.outcomes import ask
 from tests.checks.robots import ARM, Scene, arm, joint, link, scene
 from tests.work import limited_work
@@ -192,6 +193,30 @@ def test_what_cannot_be_determined_is_pending() -> None:
     """Several tips leave a selector open."""
     with pytest.raises(NotDecided):
         compared(gripper(rule=""), gripper(), "@tip")
+
+
+@pytest.mark.parametrize(
+    ("robot", "old", "new", "link"),
+    [
+        (ARM, '"continuous"', '"$(env KIND)"', "wheel"),
+        (gripper(), 'mimic joint="left"', 'mimic joint="$(env LEADER)"', "right_finger"),
+    ],
+    ids=["type", "mimic"],
+)
+def test_what_only_a_run_tells_is_pending(robot: Scene, old: str, new: str, link: str) -> None:
+    """Whether a joint whose type or leader xacro leaves open moves as that of the reference is not guessed."""
+    text = robot.text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ').replace(old, new)
+    urdf = read_submission(text.encode(), identity="me", path="arm.urdf.xacro").needed_urdf()
+    assert urdf.robot is not None
+    with pytest.raises(NotDecided, match="is known only at run time"):
+        kinematics_match_reference(Configuration(urdf.robot), robot.robot, links=[link])
+
+
+def test_joints_that_follow_nothing() -> None:
+    """A joint that mimics itself, or one that does not exist, never moves, unlike that of the reference."""
+    for rule in ('<mimic joint="right"/>', '<mimic joint="nobody"/>'):
+        outcome = compared(gripper(rule=rule), gripper(), "right_finger")
+        assert outcome.status == "failed", outcome
 
 
 def test_joints_stay_within_the_limits_of_the_reference() -> None:

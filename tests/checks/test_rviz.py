@@ -122,18 +122,18 @@ def test_a_missing_package_is_reported() -> None:
     assert lacks(rviz_fixed_frame, Submitted({"x.png": png()}), name=NAME, frame=FRAME) == expected
 
 
+NO_MANAGER = "there is no 'Visualization Manager': this is not an RViz file"
+TAB = TEXT.replace("    - Alpha: 0.5", "\t- Alpha: 0.5")
+
+
 @pytest.mark.parametrize(
     ("text", "message", "line"),
     [
-        (
-            TEXT.replace("    - Alpha: 0.5", "\t- Alpha: 0.5"),
-            "not readable as YAML: while scanning for the next token",
-            9,
-        ),
+        (TAB, "not readable as YAML: while scanning for the next token", 9),
         ("hello: [world\n", "not readable as YAML: while parsing a flow sequence", 2),
-        ("hello\n", "there is no 'Visualization Manager': this is not an RViz file", 1),
-        ("", "there is no 'Visualization Manager': this is not an RViz file", 1),
-        (str(REFERENCE.files[LAUNCH]), "there is no 'Visualization Manager': this is not an RViz file", 1),
+        ("hello\n", NO_MANAGER, 1),
+        ("", NO_MANAGER, 1),
+        (str(REFERENCE.files[LAUNCH]), NO_MANAGER, 1),
     ],
     ids=["tab", "bracket", "text", "empty", "python"],
 )
@@ -230,42 +230,29 @@ def test_an_enabled_robot_model_passes(submitted: Submitted) -> None:
     assert robot_in(submitted) == ("passed", SHOWN, None)
 
 
+ON, NAMED = "Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"
+OFF, BARE = (
+    "the RobotModel display is off",
+    "the class 'RobotModel' names no package; in ROS 2 it is rviz_default_plugins/RobotModel",
+)
+ROS_1 = "rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel"
+TOPIC = "the RobotModel display reads the topic '/robot'; it should read '/robot_description'"
+NO_TOPIC = "the RobotModel display has no Description Topic; it should be '/robot_description'"
+INVISIBLE = "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing"
+
+
 @pytest.mark.parametrize(
     ("submitted", "message"),
     [
-        (
-            rviz("Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"),
-            "the RobotModel display is off",
-        ),
-        (
-            rviz("      Enabled: true\n      Name: RobotModel\n      Value: true\n", "      Name: RobotModel\n"),
-            "the RobotModel display is off",
-        ),
-        (grouped(enabled="false"), "the RobotModel display is off: its group is off"),
-        (
-            rviz("rviz_default_plugins/RobotModel", "rviz/RobotModel"),
-            "rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
-        ),
-        (
-            rviz("rviz_default_plugins/RobotModel", "RobotModel"),
-            "the class 'RobotModel' names no package; in ROS 2 it is rviz_default_plugins/RobotModel",
-        ),
-        (
-            rviz("Value: /robot_description", "Value: /robot"),
-            "the RobotModel display reads the topic '/robot'; it should read '/robot_description'",
-        ),
-        (
-            rviz("Value: /robot_description", 'Value: ""'),
-            "the RobotModel display has no Description Topic; it should be '/robot_description'",
-        ),
-        (
-            rviz("        Value: /robot_description\n", ""),
-            "the RobotModel display has no Description Topic; it should be '/robot_description'",
-        ),
-        (
-            rviz("Visual Enabled: true", "Visual Enabled: false"),
-            "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing",
-        ),
+        (rviz(ON, NAMED), OFF),
+        (rviz("      Enabled: true\n      Name: RobotModel\n      Value: true\n", "      Name: RobotModel\n"), OFF),
+        (grouped(enabled="false"), f"{OFF}: its group is off"),
+        (rviz("rviz_default_plugins/RobotModel", "rviz/RobotModel"), ROS_1),
+        (rviz("rviz_default_plugins/RobotModel", "RobotModel"), BARE),
+        (rviz("Value: /robot_description", "Value: /robot"), TOPIC),
+        (rviz("Value: /robot_description", 'Value: ""'), NO_TOPIC),
+        (rviz("        Value: /robot_description\n", ""), NO_TOPIC),
+        (rviz("Visual Enabled: true", "Visual Enabled: false"), INVISIBLE),
     ],
     ids=["off", "not-on", "group", "ros1", "bare", "topic", "empty", "no-topic", "visual"],
 )

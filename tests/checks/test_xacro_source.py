@@ -198,6 +198,26 @@ def test_broken_xacro() -> None:
     assert "xacro needs well-formed XML" in outcome.message
 
 
+@pytest.mark.parametrize(
+    ("files", "status", "message"),
+    [
+        ({"a/parts.xacro": "<robot/>", "b/parts.xacro": "<robot/>"}, "pending", "several files are called parts.xacro"),
+        ({"a/parts.xacro": "<robot>" + " " * 1_100_000}, "pending", "larger than"),
+        (
+            {"a/parts.xacro": '<robot name="r"><link name="a"/></robot>'},
+            "failed",
+            "has no expression and no tag of xacro",
+        ),
+        ({"a/parts.xacro": '<!DOCTYPE r [<!ENTITY e "a">]>\n<robot>${1}</robot>'}, "pending", "entities of a DOCTYPE"),
+    ],
+    ids=["several", "large", "plain", "entities"],
+)
+def test_another_file_of_the_submission(files: dict[str, str], status: str, message: str) -> None:
+    """A file that the URDF does not include is examined on its own, if it is the only one of its name and can be read."""
+    outcome = graded(xacro_uses, REFERENCE.with_files(files), file="parts.xacro", properties=["a"])
+    assert (outcome.status, message in outcome.message) == (status, True), outcome.message
+
+
 # --- The command line -------------------------------------------------------------------------------------------------
 
 HEIGHT = '<link name="base_link"/><xacro:property name="height" value="1"/><link name="l${height}"/>'

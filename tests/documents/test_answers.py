@@ -10,6 +10,7 @@ from grader.checks.outcome import Outcome
 from grader.submission.submission import Submission
 from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.documents.files import PICTURE, docx, pdf
+from tests.examples import spread
 from tests.work import limited_work
 
 VANISHES, NODES = "It vanishes, as it has two roots.", "robot_state_publisher publishes the transforms."
@@ -407,7 +408,9 @@ def test_long_documents_are_cut_with_a_note() -> None:
 
 @pytest.mark.parametrize(
     "line",
-    ["Step 15", "# Step 15", "we did then the step 15 of it and more", "REQUIRED Question:", "2. x", "a1 " * 160],
+    spread(
+        ["Step 15", "# Step 15", "we did then the step 15 of it and more", "REQUIRED Question:", "2. x", "a1 " * 160], 2
+    ),
 )
 def test_documents_of_headings_are_bounded(line: str) -> None:
     """Documents that consist of headings take no longer than their lines."""

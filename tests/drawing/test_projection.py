@@ -4,7 +4,7 @@ from itertools import product
 from math import cos, pi, sin
 
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.drawing.curves import FRONT, SIDE, TOP, Curve, View, inner_edges, outline
@@ -13,6 +13,7 @@ from grader.robot.model import Box
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Rotation, Transform, Vector, rotation_from_rpy
 from tests.drawing.shapes import POSES, ROTATIONS, SHAPES, Points, contains, placed, scene_with, surface
+from tests.examples import examples
 
 VIEWS = (TOP, SIDE, FRONT)
 EXACT = 0.0005  # metres
@@ -27,7 +28,7 @@ def points_of(curves: tuple[Curve, ...]) -> Points:
 
 @given(SHAPES, POSES, st.sampled_from(VIEWS))
 @example(Box((0.5, 0.5, 0.5)), Transform(rotation_from_rpy((pi / 2.0, 2.0, 0.0))), FRONT)  # edges above each other
-@settings(max_examples=60)
+@examples(10)
 def test_outline_is_that_of_the_sampled_surface(shape: Shape, pose: Transform, view: View) -> None:
     """The surface reaches as far as the outline in 16 directions and is inside of it, to 0.5 mm."""
     T_view_shape = view.T_view_frame @ pose
@@ -45,7 +46,7 @@ def test_outline_is_that_of_the_sampled_surface(shape: Shape, pose: Transform, v
 
 
 @given(SHAPES, POSES, st.sampled_from(VIEWS))
-@settings(max_examples=60)
+@examples(10)
 def test_inner_edge_is_hidden_where_a_ray_to_the_viewer_enters_the_shape(
     shape: Shape, pose: Transform, view: View
 ) -> None:
@@ -68,7 +69,7 @@ def test_inner_edge_is_hidden_where_a_ray_to_the_viewer_enters_the_shape(
     ),
     st.sampled_from(VIEWS),
 )
-@settings(max_examples=60)
+@examples(10)
 def test_shape_in_front_is_painted_last(shapes: list[tuple[Shape, Rotation, Vector]], view: View) -> None:
     """At the centre of each shape the one painted last is the one that a ray from the viewer meets first."""
     poses = [Transform(rotation, place) for _, rotation, place in shapes]

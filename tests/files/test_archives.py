@@ -18,7 +18,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import InputError
@@ -27,6 +27,7 @@ from grader.files.archive import read_archive
 from grader.files.folder import read_folder
 from grader.files.opening import archive_kind, open_tree, tree_name
 from grader.files.tree import File, Tree
+from tests.examples import examples
 from tests.files.archives import (
     FILES,
     MAKERS,
@@ -310,6 +311,7 @@ def test_hard_links() -> None:
     assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad", "worse"]
 
 
+@pytest.mark.exhaustive
 def test_many_symlinks() -> None:
     """Thousands of symlinks to folders of thousands of files are refused; long chains of symlinks end."""
     files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}
@@ -430,7 +432,7 @@ def test_truncated_archives(ending: str) -> None:
             read_all(tree)
 
 
-@settings(max_examples=250)
+@examples(30)
 @given(
     st.sampled_from(EVERY),
     st.lists(st.tuples(st.integers(0, 5000), st.integers(0, 2), st.binary(min_size=1, max_size=4)), max_size=6),
@@ -452,7 +454,7 @@ def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) 
     read_all(tree)
 
 
-@settings(max_examples=100)
+@examples(20)
 @given(st.sampled_from(["zip", "tar", "gz", "bz2", "xz"]), st.binary(max_size=1200))
 def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
     """Any bytes are refused in one line or are a file tree."""
@@ -845,6 +847,7 @@ def test_names_in_folders(home: Path) -> None:
     assert all(text(tree, path) == ROBOT for path in tree.files)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", ["a", "build"])
 def test_deep_folders(name: str, tmp_path: Path) -> None:
     """Folders nested deeper than a path may be long are read as far as possible."""

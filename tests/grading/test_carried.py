@@ -5,7 +5,6 @@ from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
-import jsonschema
 import pytest
 
 from grader.checks.check import describe
@@ -60,6 +59,35 @@ def fails_elsewhere(robot: Configuration) -> Outcome:
 # --- When it is carried -----------------------------------------------------------------------------------------------
 
 
+ONE = ask("one", fails_)
+# The criteria, their statuses by their first letters, and what each is carried from.
+CARRIED: dict[str, tuple[tuple[Criterion, ...], str, list[str]]] = {
+    "the other fact fails": ((ONE, carried_from("two", ["one"], fails_, fails_)), "ff", ["", ""]),
+    "the other fact misses a thing": (
+        (ONE, carried_from("two", ["one"], fails_, misses_), ask("three", misses_)), "fff",
+         ["", "", ""],  # and skips nobody
+    ),
+    "no early mistake": ((ask("one"), carried_from("two", ["one"], fails_)), "pf", ["", ""]),
+    "early one is open": ((ask("one", pends), carried_from("two", ["one"], fails_)), "?f", ["", ""]),
+    "passes": ((ONE, carried_from("two", ["one"], passes_)), "fp", ["", ""]),
+    "chain": (
+        (ONE, carried_from("two", ["one"], fails_), carried_from("three", ["two"], fails_)), "fff", ["", "one", "one"],
+    ),
+    "required": ((ONE, carried_from("two", ["one"], fails_), ask("three", requires=["two"])), "ffp", ["", "one", ""]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CARRIED)
+def test_what_is_carried(name: str) -> None:
+    """Only a failure after an early mistake, without which another fact would count; a chain names its first cause."""
+    criteria, letters, causes = CARRIED[name]
+    report = report_on(*criteria)
+    expected = {"f": "failed", "p": "passed", "?": "pending"}
+    assert (statuses(report), carried(report)) == ([expected[letter] for letter in letters], causes)
+    kept = [bool(cause) or letter == "p" for cause, letter in zip(causes, letters, strict=True)]
+    assert [result.points for result in report.results] == kept
+
+
 def test_a_failure_after_an_early_mistake_keeps_its_points() -> None:
     """It stays failed, earns its points, and names the first cause in the list that failed."""
     report = report_on(
@@ -72,43 +100,11 @@ def test_a_failure_after_an_early_mistake_keeps_its_points() -> None:
     assert [report.score, report.max_score] == [3, 7]
 
 
-@pytest.mark.parametrize("other", [fails_, misses_])
-def test_without_the_other_fact_it_is_lost(other: AnyCheck) -> None:
-    """If what counts instead is not true either, nothing is carried."""
-    report = report_on(ask("one", fails_), carried_from("two", ["one"], fails_, other))
-    assert (statuses(report), carried(report)) == (["failed", "failed"], ["", ""])
-    assert report.score == 0
-
-
-@pytest.mark.parametrize("early", [passes_, pends])
-def test_without_an_early_mistake_nothing_changes(early: AnyCheck) -> None:
-    """A criterion that fails on its own is lost, although the other fact holds."""
-    report = report_on(ask("one", early), carried_from("two", ["one"], fails_))
-    assert carried(report) == ["", ""]
-    assert report.results[1].points == 0
-
-
-def test_a_criterion_that_passes_is_not_carried() -> None:
-    """Passing needs no excuse."""
-    assert carried(report_on(ask("one", fails_), carried_from("two", ["one"], passes_))) == ["", ""]
-
-
-def test_a_chain_names_its_first_cause() -> None:
-    """What is carried from a carried criterion names the mistake itself."""
-    rows = ask("one", fails_), carried_from("two", ["one"], fails_), carried_from("three", ["two"], fails_)
-    assert carried(report_on(*rows)) == ["", "one", "one"]
-
-
-def test_a_carried_requirement_does_not_skip() -> None:
-    """A criterion that requires a carried one is graded."""
-    report = report_on(ask("one", fails_), carried_from("two", ["one"], fails_), ask("three", requires=["two"]))
-    assert statuses(report) == ["failed", "failed", "passed"]
-
-
 def test_a_skip_because_of_a_cause_is_a_failure() -> None:
     """What cannot be measured because of the mistake keeps its points; a skip because of another criterion does not."""
     report = report_on(
-        ask("one", fails_), ask("two", misses_), carried_from("three", ["two"], misses_), carried_from("four", ["one"], misses_),
+        ask("one", fails_), ask("two", misses_), carried_from("three", ["two"], misses_),
+            carried_from("four", ["one"], misses_),
     )  # fmt: skip
     assert statuses(report) == ["failed", "failed", "failed", "skipped"]
     assert carried(report) == ["", "", "two", ""]
@@ -135,12 +131,6 @@ def test_a_faulty_fact_is_a_fault_of_the_grader() -> None:
     report = report_on(ask("one", fails_), carried_from("two", ["one"], fails_, breaks))
     assert statuses(report) == ["failed", "errored"]
     assert report.results[1].traceback
-
-
-def test_a_missing_thing_in_the_other_fact_skips_nobody() -> None:
-    """Only what a criterion itself misses makes later ones skipped."""
-    report = report_on(ask("one", fails_), carried_from("two", ["one"], fails_, misses_), ask("three", misses_))
-    assert statuses(report) == ["failed", "failed", "failed"]
 
 
 def test_the_place_is_that_of_the_mistake() -> None:
@@ -209,27 +199,6 @@ def test_all_bad_rows_are_reported_at_once(tmp_path: Path) -> None:
     """A mistake in the criterion does not hide one in its carried table."""
     text = f'{GOOD}{AFTER.replace("size", "sizes")}from = ["load"]\n{FACT.replace("frame_at", "frame_on")}'
     assert len(complaints(tmp_path, text)) == 4
-
-
-def test_the_schema_knows_it() -> None:
-    """The JSON Schema of rubrics has the key, with the arguments of the other check."""
-    schema = json.loads(grader("schema", "rubric").stdout)
-    other = {"check": "frame_at", "with": {"link": "a", "relative_to": "b", "xyz": [0, 0, 1], "tolerance": 0.1}}
-    row = {
-        "id": "b",
-        "part": "a",
-        "title": "B",
-        "points": 1,
-        "check": "urdf_loads",
-        "carried": {"from": ["a"], **other},
-    }
-    lab = {"id": "r", "title": "R", "part": [{"id": "a", "title": "A"}], "criterion": [row]}
-    jsonschema.validate(lab, schema)
-    mistakes: tuple[dict[str, object], ...] = ({"from": []}, {"check": 3}, {"with": {"link": "a"}}, {"form": 1})
-    for wrong in mistakes:
-        bad = {**lab, "criterion": [{**row, "carried": {"from": ["a"], **other, **wrong}}]}
-        with pytest.raises(jsonschema.ValidationError):
-            jsonschema.validate(bad, schema)
 
 
 # --- In Lab 6 ---------------------------------------------------------------------------------------------------------
@@ -306,19 +275,15 @@ def test_every_format_says_so(kind: Format) -> None:
     assert kind is not Format.JSON or '"carried": "left-wheel-shape"' in text
 
 
-def test_the_json_names_the_cause() -> None:
-    """`status` stays failed, `points` equal `max_points`, `carried` is the cause; it is null elsewhere."""
-    results = json.loads(grader("grade", SMALL_WHEELS, "--format", "json").stdout)["results"]
-    found = {result["id"]: result for result in results}
-    row = found["footprint-at-wheel-bottoms"]
+def test_the_json_and_the_threshold() -> None:
+    """`status` stays failed, `points` equal `max_points`, `carried` is the cause; `--fail-under` looks at the points."""
+    done = grader("grade", SMALL_WHEELS, "--fail-under", "68", "--format", "json")
+    results = json.loads(done.stdout)["results"]
+    row = next(result for result in results if result["id"] == "footprint-at-wheel-bottoms")
     assert (row["status"], row["points"], row["max_points"]) == ("failed", 6, 6)
     assert (row["carried"], row["because"], row["feedback"]) == ("left-wheel-shape", None, "")
     assert {row["id"] for row in results if row["carried"]} == {"footprint-at-wheel-bottoms", "stands-on-ground"}
-
-
-def test_the_score_counts_it_for_a_threshold() -> None:
-    """`--fail-under` looks at the points."""
-    assert grader("grade", SMALL_WHEELS, "--fail-under", "68").returncode == 0
+    assert done.returncode == 0
     assert grader("grade", SMALL_WHEELS, "--fail-under", "68.5").returncode == 1
 
 

@@ -36,6 +36,10 @@ EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks.md").read_text(
 BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "missing": (lambda folder: (folder / "arm/robot.urdf").unlink(), "arm"),
     "not a URDF": (lambda folder: (folder / "arm/robot.urdf").write_text("nothing"), "cannot be compared with"),
+    "xacro without a robot": (
+        lambda folder: (folder / "arm/robot.urdf").write_text("<robot>${x}<robot"),
+        "cannot be compared with",
+    ),
     "no such link": (
         lambda folder: (folder / "arm.toml").write_text(RUBRIC.replace("@tip", "hand")),
         "the criterion moves: the reference solution cannot be compared with: there is no link 'hand'",

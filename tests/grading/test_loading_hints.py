@@ -78,7 +78,7 @@ def repaired_text(submission: Submission, found: FoundHint) -> bytes:
     return data
 
 
-@pytest.mark.parametrize("broken", BROKEN, ids=lambda broken: broken.name)
+@pytest.mark.parametrize("broken", BROKEN, ids=[broken.name for broken in BROKEN])
 def test_repair_restores_the_robot(broken: Broken, tmp_path: Path) -> None:
     """One hint restores the robot that the student meant, and all points, with edits of few characters."""
     submission = written(tmp_path, broken.text)
@@ -145,6 +145,7 @@ def test_xacro_in_a_urdf_is_not_repaired_number_by_number() -> None:
     assert not any("${" in edit.old for found in searched(SAMPLES["raw-xacro"].open()).found for edit in found.edits)
 
 
+@pytest.mark.exhaustive
 def test_every_kind_of_problem_is_repaired(tmp_path: Path) -> None:
     """Of every kind of problem, ROS 2's verdict on a sample gets better, even if its links are not those of the lab."""
     kinds, undone = set(), set()
@@ -161,7 +162,7 @@ def test_every_kind_of_problem_is_repaired(tmp_path: Path) -> None:
 def test_no_hint_loses_a_point(tmp_path: Path) -> None:
     """Random damage: every hint, graded from scratch, keeps what passed and gains what it says."""
     random = Random(14)
-    for _ in range(25):
+    for _ in range(8):
         text = REFERENCE
         for _ in range(random.randint(1, 3)):
             at = random.randrange(len(text))

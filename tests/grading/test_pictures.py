@@ -2,6 +2,7 @@
 
 import io
 import zlib
+from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
@@ -16,6 +17,13 @@ from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.source import Location
 from tests.checks.submissions import Submitted, gif, png
+from tests.conversion import convert_here
+
+
+@pytest.fixture(autouse=True)
+def _convert_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grader.documents.collection.DocumentCollection._run", convert_here)
+
 
 STEP_8, STEP_18 = png(8, 8), png(18, 18)
 CHECKS = {check.function: check for check in own_checks()}
@@ -228,3 +236,11 @@ def test_a_file_that_is_gone_is_named() -> None:
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["a"]})
     (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
     assert str(found) == "b.png: it is no longer in the submission"
+
+
+def test_documents_that_are_not_read_are_named() -> None:
+    """Where reading them broke the grading, the person opens them."""
+    submission = replace(Submitted({"Task1_Step8.docx": word("x")}).submission, no_documents="it took long")
+    criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["task 1 step 8"]})
+    (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("Task1_Step8.docx",))), submission)
+    assert str(found) == "Task1_Step8.docx: documents of this submission are not read: open it yourself"

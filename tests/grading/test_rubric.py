@@ -5,12 +5,13 @@ from decimal import Decimal
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box
 from grader.errors import GraderError, InputError, RubricError
 from grader.grading.rubric import Part, Rubric, find_rubric, load_rubric, shipped_rubrics
+from tests.examples import examples
 
 GOOD = """\
 id = "lab0"
@@ -148,7 +149,7 @@ def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
 
 
 def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
-    """An id with spaces or control characters is refused; a title may be broken in the file, and is one line in reports."""
+    """An id with spaces or control characters is refused; a title may be broken in the file, but not in reports."""
     for bad in ("a b", "a\\u001b", "a\\nb"):
         (reported,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
         assert "id must be one printable word" in reported
@@ -231,90 +232,65 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path) -> None:
     assert len(found) >= 25
 
 
+def instead(old: str, new: str) -> str:
+    """Return a rubric with another line, or with one before its first."""
+    assert not old or old in GOOD
+    return GOOD.replace(old, new) if old else f"{new}\n{GOOD}"
+
+
 @pytest.mark.parametrize(
-    "text",
+    ("old", "new"),
     [
-        GOOD + "with = 3  # !! with must be a table, not 3",
-        GOOD + "with = []  # !! with must be a table, not []",
-        GOOD + "requires = 'loads'  # !! requires must be a list of strings, not 'loads'",
-        GOOD + "requires = {}  # !! requires must be a list of strings, not {}",
-        GOOD.replace("points = 1", "points = true  # !! points must be a number, not true"),
-        GOOD.replace("points = 1", "points = 1979-05-27  # !! points must be a number, not 1979-05-27"),
-        GOOD.replace("points = 1", "points = 07:32:00  # !! points must be a number, not 07:32:00"),
-        GOOD.replace("points = 1", "points = -0.5  # !! points must be a number from 0 to 1000000, not -0.5"),
-        GOOD.replace("points = 1", "points = inf  # !! points must be a number, not Infinity"),
-        GOOD.replace("points = 1", "points = nan  # !! points must be a number, not NaN"),
-        GOOD.replace("points = 1", "points = -nan  # !! points must be a number, not -NaN"),
-        GOOD.replace('id = "loads"', "id = [\"loads\"]  # !! id must be a string, not ['loads']"),
-        GOOD.replace('id = "loads"', "id = 3  # !! id must be a string, not 3"),
-        GOOD.replace('id = "a"', "id = \"\\t \"  # !! id must be one printable word, not '\\t '").replace(
-            'part = "a"', r'part = "\t "'
-        ),
-        "folders = \"Lab0\"  # !! folders must be a list of strings, not 'Lab0'\n" + GOOD,
-        "folders = []  # !! folders must be a list of strings, not []\n" + GOOD,
-        "folders = ['Lab0', 3]  # !! folders must be a list of strings, not ['Lab0', 3]\n" + GOOD,
-        f"folders = ['Lab0', '-']  # !! folders must be {NAMES}, not ['Lab0', '-']\n" + GOOD,
-        f"folders = ['labs/Lab0']  # !! folders must be {NAMES}, not ['labs/Lab0']\n" + GOOD,
-        GOOD.replace('check = "urdf_loads"', "check = 3  # !! check must be a string, not 3"),
-        GOOD.replace('part = "a"', "part = 1.5  # !! part must be a string, not 1.5"),
-        GOOD.replace(
-            'title = "Lab 0"',
-            "title = 2026-01-01T00:00:00Z  # !! title must be a string, not 2026-01-01 00:00:00+00:00",
-        ),
-        GOOD.replace(
-            'title = "Part A"', 'title = "A"\nneeds = 3  # !! needs must be one of urdf, package, files, not 3'
-        ),
-        GOOD.replace('title = "Part A"', 'title = "A"\npoints = "1"  # !! points must be a number, not \'1\''),
+        ('check = "urdf_loads"\n', 'check = "urdf_loads"\nwith = 3  # !! with must be a table, not 3'),
+        ('check = "urdf_loads"\n', 'check = "urdf_loads"\nwith = []  # !! with must be a table, not []'),
+        ('part = "a"', "part = \"a\"\nrequires = 'loads'  # !! requires must be a list of strings, not 'loads'"),
+        ("points = 1", "points = true  # !! points must be a number, not true"),
+        ("points = 1", "points = 07:32:00  # !! points must be a number, not 07:32:00"),
+        ("points = 1", "points = -0.5  # !! points must be a number from 0 to 1000000, not -0.5"),
+        ("points = 1", "points = inf  # !! points must be a number, not Infinity"),
+        ("points = 1", "points = -nan  # !! points must be a number, not -NaN"),
+        ("points = 1", "points = 0.00001  # !! points must be a number with at most 4 decimals, not 0.00001"),
+        ('id = "loads"', "id = [\"loads\"]  # !! id must be a string, not ['loads']"),
+        ('id = "loads"', "id = \"\\t \"  # !! id must be one printable word, not '\\t '"),
+        ("", "folders = \"Lab0\"  # !! folders must be a list of strings, not 'Lab0'"),
+        ("", "folders = []  # !! folders must be a list of strings, not []"),
+        ("", "folders = ['Lab0', 3]  # !! folders must be a list of strings, not ['Lab0', 3]"),
+        ("", f"folders = ['Lab0', '-']  # !! folders must be {NAMES}, not ['Lab0', '-']"),
+        ("", f"folders = ['labs/Lab0']  # !! folders must be {NAMES}, not ['labs/Lab0']"),
+        ('check = "urdf_loads"', "check = 3  # !! check must be a string, not 3"),
+        ('title = "Part A"', 'title = "A"\nneeds = 3  # !! needs must be one of urdf, package, files, not 3'),
+        ('title = "Part A"', 'title = "A"\npoints = "1"  # !! points must be a number, not \'1\''),
     ],
 )
-def test_a_value_of_the_wrong_type_is_reported(tmp_path: Path, text: str) -> None:
+def test_a_value_of_the_wrong_type_is_reported(tmp_path: Path, old: str, new: str) -> None:
     """The complaint names the actual and the expected type, on the line of the key."""
-    assert complaints(tmp_path, text) == announced(text)
+    assert complaints(tmp_path, instead(old, new)) == announced(instead(old, new))
 
 
-@pytest.mark.parametrize(("line", "where"), [(0, "1: this rubric"), (3, "3: this part"), (6, "5: this criterion")])
-def test_ids_and_titles_are_needed(tmp_path: Path, line: int, where: str) -> None:
-    """Mistakes at the top level are reported for the first line, others for the header of their table."""
+@pytest.mark.parametrize("number", [1, 2, 4, 5, 7, 8, 9, 10, 11])
+def test_every_key_is_needed(tmp_path: Path, number: int) -> None:
+    """What is missing at the top level is reported for the first line, else for the header of its table."""
     lines = GOOD.split("\n")
-    without_id = "\n".join(lines[:line] + lines[line + 1 :])
-    header = where if line != 6 else where.replace("5", "6")
-    assert f"{header} has no id" in complaints(tmp_path, without_id)
-    title = next(index for index in range(line, len(lines)) if lines[index].startswith("title"))
-    without_title = "\n".join(lines[:title] + lines[title + 1 :])
-    assert complaints(tmp_path, without_title) == [f"{where if line != 6 else '6: this criterion'} has no title"]
-
-
-@pytest.mark.parametrize("key", ["part", "points", "check"])
-def test_part_points_and_check_are_needed(tmp_path: Path, key: str) -> None:
-    """A criterion without one of them is reported."""
-    kept = [line for line in GOOD.split("\n") if not line.startswith(f"{key} =")]
-    assert complaints(tmp_path, "\n".join(kept)) == [f"6: this criterion has no {key}"]
+    key = lines.pop(number - 1).partition(" ")[0]
+    where = "1: this rubric" if number < 3 else "3: this part" if number < 6 else "6: this criterion"
+    assert complaints(tmp_path, "\n".join(lines))[0] == f"{where} has no {key}"
 
 
 def test_a_rubric_has_parts_and_criteria(tmp_path: Path) -> None:
     """Without a part or a criterion there is nothing to grade; a single table is not an array of them."""
-    missing = ["this rubric has no part", "this rubric has no criterion"]
-    assert complaints(tmp_path, 'id = "r"\ntitle = "R"\n') == [f"1: {missing[0]}", f"1: {missing[1]}"]
+    missing = ["1: this rubric has no part", "1: this rubric has no criterion"]
+    assert complaints(tmp_path, 'id = "r"\ntitle = "R"\n') == missing
+    for empty in ("", "\n\n", "# only a comment\n"):
+        named = ["1: this rubric has no id", "1: this rubric has no title"]
+        assert complaints(tmp_path, empty) == named + missing, empty
     single = 'id = "r"\ntitle = "R"\n[part]\nid = "a"\n[criterion]\nid = "c"\n'
     assert complaints(tmp_path, single) == [
         "3: part must be one or more [[part]] tables, not { id = 'a' }",
         "5: criterion must be one or more [[criterion]] tables, not { id = 'c' }",
     ]
-    listed = 'id = "r"\ntitle = "R"\npart = [1]\ncriterion = []\n'
-    assert complaints(tmp_path, listed) == [
+    assert complaints(tmp_path, 'id = "r"\ntitle = "R"\npart = [1]\ncriterion = []\n') == [
         "3: part must be one or more [[part]] tables, not [1]",
         "4: criterion must be one or more [[criterion]] tables, not []",
-    ]
-
-
-@pytest.mark.parametrize("text", ["", "\n\n", "# only a comment\n"])
-def test_an_empty_file_misses_everything(tmp_path: Path, text: str) -> None:
-    """An empty file is a rubric without anything, and is reported as that."""
-    assert complaints(tmp_path, text) == [
-        "1: this rubric has no id",
-        "1: this rubric has no title",
-        "1: this rubric has no part",
-        "1: this rubric has no criterion",
     ]
 
 
@@ -328,105 +304,46 @@ def checked(check: str, given: str) -> str:
 
 BOX = 'link = "base", size = [1, 1, 1], tolerance = 0.1'
 BOTTOMS = 'links = ["a"], relative_to = "b", height = 0, tolerance = 1'
-SPHERE = 'link = "a", radius = 1, tolerance = 0'
-COLOUR = 'link = "a", colour = [0, 1, 0], tolerance = 0'
 
 
-@pytest.mark.parametrize(
-    ("check", "given", "complaint"),
-    [
-        ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1]"), "size of shows_box must be 3 numbers, not [1, 1]"),
-        ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1, 1, 1]"), "size of shows_box must be 3 numbers, not [1, 1, 1, 1]"),
-        ("shows_box", BOX.replace("[1, 1, 1]", "1"), "size of shows_box must be 3 numbers, not 1"),
-        ("shows_box", BOX.replace("[1, 1, 1]", "[]"), "size of shows_box must be 3 numbers, not []"),
-        ("shows_box", BOX.replace('"base"', "3"), "link of shows_box must be a string, not 3"),
-        ("shows_box", BOX.replace("0.1", '"0.1"'), "tolerance of shows_box must be a number, not '0.1'"),
-        ("shows_box", BOX.replace("0.1", "nan"), "tolerance of shows_box must be a number, not NaN"),
-        ("shows_box", BOX.replace("0.1", "inf"), "tolerance of shows_box must be a number, not Infinity"),
-        ("shows_box", BOX.replace(", tolerance = 0.1", ""), "the check shows_box needs tolerance: a number"),
-        ("shows_box", BOX + ", links = 3", "the check shows_box takes no 'links'; it takes: link, size, tolerance"),
-        ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), "links of bottoms_at_height must be a list of strings, not 'a'"),
-        ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), "links of bottoms_at_height must be a list of strings, not []"),
-        ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of strings, not ['j']"),
-        ("joints_named", 'parent = "a", joints = { j = true, k = [nan] }', "joints of joints_named must be a table of strings, not { j = true, k = [NaN] }"),
-    ],
+LINKS = "links of bottoms_at_height must be "
+CENTRE = 'link = "a", relative_to = "b", xyz = [0, 0, 0], tolerance = 1'
+TYPED = (
+    ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1]"), "size of shows_box must be 3 numbers, not [1, 1]"),
+    ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1, 1, 1]"), "size of shows_box must be 3 numbers, not [1, 1, 1, 1]"),
+    ("shows_box", BOX.replace("[1, 1, 1]", "1"), "size of shows_box must be 3 numbers, not 1"),
+    ("shows_box", BOX.replace("[1, 1, 1]", f"[1, 1, -1{'0' * 400}]"), "size of shows_box must be "),
+    ("shows_box", BOX.replace('"base"', "3"), "link of shows_box must be a string, not 3"),
+    ("shows_box", BOX.replace('"base"', f'["{"a" * 999}"]'), "link of shows_box must be "),
+    ("shows_box", BOX.replace("0.1", '"0.1"'), "tolerance of shows_box must be a number, not '0.1'"),
+    ("shows_box", BOX.replace("0.1", "true"), "tolerance of shows_box must be "),
+    ("shows_box", BOX.replace("0.1", "1979-05-27"), "tolerance of shows_box must be "),
+    ("shows_box", BOX.replace("0.1", "nan"), "tolerance of shows_box must be a number, not NaN"),
+    ("shows_box", BOX.replace("0.1", "inf"), "tolerance of shows_box must be a number, not Infinity"),
+    ("shows_box", BOX.replace("0.1", "1e400"), "tolerance of shows_box must be "),
+    ("shows_box", BOX.replace("0.1", f"1{'0' * 400}"), "tolerance of shows_box must be "),
+    ("shows_box", BOX.replace(", tolerance = 0.1", ""), "the check shows_box needs tolerance: a number"),
+    ("shows_box", BOX + ", links = 3", "the check shows_box takes no 'links'; it takes: link, size, tolerance"),
+    ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), f"{LINKS}a list of strings, not 'a'"),
+    ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), f"{LINKS}a list of strings, not []"),
+    ("bottoms_at_height", BOTTOMS.replace('["a"]', '["a", 1]'), LINKS),
+    ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of strings, not ['j']"),
+    ("joints_named", 'parent = "a", joints = { j = true, k = [nan] }',
+     "joints of joints_named must be a table of strings, not { j = true, k = [NaN] }"),
+    ("joints_named", 'parent = "a", joints = {}', ""),
+    ("centre_at", f"{CENTRE}, rigid = 1", "rigid of centre_at must be "),
+    ("shows_colour", 'link = "a", colour = [0, 1], tolerance = 0', ""),
+    ("shows_colour", 'link = "a", colour = [0, 1, 0, 1, 1], tolerance = 0', ""),
 )  # fmt: skip
+
+
+@pytest.mark.parametrize(("check", "given", "complaint"), TYPED)
 def test_wrong_arguments_are_reported(tmp_path: Path, check: str, given: str, complaint: str) -> None:
-    """Arguments are compared with the check's signature: unknown ones, missing ones, those of another type."""
-    assert complaints(tmp_path, checked(check, f"with = {{ {given} }}\n")) == [f"12: {complaint}"]
-
-
-@pytest.mark.parametrize(
-    ("check", "given", "name"),
-    [
-        ("shows_box", BOX.replace("0.1", "true"), "tolerance"),
-        ("shows_box", BOX.replace("0.1", "1979-05-27"), "tolerance"),
-        ("centre_at", 'link = "a", relative_to = "b", xyz = [0, 0, 0], tolerance = 1, rigid = 1', "rigid"),
-        ("bottoms_at_height", BOTTOMS.replace('["a"]', '["a", 1]'), "links"),
-        ("joints_named", 'parent = "a", joints = { j = 1 }', "joints"),
-        ("joints_named", 'parent = "a", joints = { j = ["l"] }', "joints"),
-        ("shows_sphere", SPHERE.replace('"a"', f'["{"a" * 999}"]'), "link"),
-    ],
-)
-def test_an_argument_of_another_type_is_reported(tmp_path: Path, check: str, given: str, name: str) -> None:
-    """Nothing is converted: no true for a number, no number for a text, no list for a table's value."""
+    """Unknown arguments, missing ones, and those of another type: nothing is converted, nothing is infinite."""
     (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
-    assert found.startswith(f"12: {name} of {check} must be ")
+    assert found.startswith(f"12: {complaint}")
     assert len(found) < 150
-
-
-@pytest.mark.parametrize(
-    ("check", "given", "name"),
-    [
-        ("shows_sphere", SPHERE.replace("radius = 1", "radius = 1e400"), "radius"),
-        ("shows_sphere", SPHERE.replace("radius = 1", f"radius = 1{'0' * 400}"), "radius"),
-        ("shows_box", BOX.replace("[1, 1, 1]", f"[1, 1, -1{'0' * 400}]"), "size"),
-    ],
-    ids=["exponent", "digits", "digits-in-a-list"],
-)
-def test_a_number_that_overflows_is_refused(tmp_path: Path, check: str, given: str, name: str) -> None:
-    """A number that is no float is a mistake in the rubric: not infinity, and not a crash."""
-    (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
-    assert found.startswith(f"12: {name} of {check} must be ")
-
-
-@pytest.mark.parametrize("colour", ["[0]", "[0, 1]", "[0, 1, 0, 1, 1]"])
-def test_a_colour_has_three_or_four_channels(tmp_path: Path, colour: str) -> None:
-    """Another count can never match a link, so it is reported when the rubric is loaded."""
-    (found,) = complaints(tmp_path, checked("shows_colour", f"with = {{ {COLOUR.replace('[0, 1, 0]', colour)} }}\n"))
-    assert found.startswith("12: ")
-
-
-def test_an_empty_table_of_names_is_refused(tmp_path: Path) -> None:
-    """An empty table of joints would pass every robot; it is refused like an empty list."""
-    assert complaints(tmp_path, checked("joints_named", 'with = { parent = "a", joints = {} }\n'))
-
-
-def test_a_misspelt_argument_is_reported_twice(tmp_path: Path) -> None:
-    """It is unknown, with a suggestion, and the suggested one is missing."""
-    given = f"with = {{ {BOX.replace('link', 'lnk')} }}\n"
-    assert complaints(tmp_path, checked("shows_box", given)) == [
-        "12: the check shows_box takes no 'lnk'; did you mean 'link'?",
-        "12: the check shows_box needs link: a string",
-    ]
-
-
-def test_all_arguments_are_reported_if_none_is_given(tmp_path: Path) -> None:
-    """Without a table each required argument is reported for the criterion; those with a default are not."""
-    assert complaints(tmp_path, checked("rolls_forward", "")) == [
-        "6: the check rolls_forward needs link: a string",
-        "6: the check rolls_forward needs base: a string",
-        "6: the check rolls_forward needs tolerance: a number",
-    ]
-
-
-def test_a_missing_argument_is_reported_at_the_table(tmp_path: Path) -> None:
-    """If the arguments have a table of their own, its header is the location of missing ones."""
-    text = checked("shows_box", '\n# the arguments\n[criterion.with]\nlink = "base"\nsize = [1, 2]\n')
-    assert complaints(tmp_path, text) == [
-        "14: the check shows_box needs tolerance: a number",
-        "16: size of shows_box must be 3 numbers, not [1, 2]",
-    ]
+    assert not complaint or complaint.endswith(" ") or found == f"12: {complaint}"
 
 
 def test_arguments_become_what_the_check_takes(tmp_path: Path) -> None:
@@ -458,20 +375,6 @@ def test_only_earlier_criteria_can_be_required(tmp_path: Path) -> None:
     ]
 
 
-def test_a_criterion_cannot_require_itself(tmp_path: Path) -> None:
-    """It does not precede itself."""
-    (found,) = complaints(tmp_path, GOOD + row("b", requires='["b"]'))
-    assert found.startswith("18: requires itself")
-
-
-def test_each_unknown_requirement_is_reported(tmp_path: Path) -> None:
-    """Every unknown name is reported with a suggestion."""
-    assert complaints(tmp_path, GOOD + row("b", requires='["load", "zzz", "loads"]')) == [
-        "18: requires 'load', which does not exist; did you mean 'loads'?",
-        "18: requires 'zzz', which does not exist",
-    ]
-
-
 # --- Points -----------------------------------------------------------------------------------------------------------
 
 
@@ -489,8 +392,6 @@ def worth(*points: str, total: str = "", part: str = "") -> str:
         (("0.1", "0.2"), "0.3"),
         (("0.1",) * 10, "1"),
         (("0.33", "0.33", "0.34"), "1.0"),
-        (("0.3333", "0.3333", "0.3334"), "1"),
-        (("1.1", "2.2"), "3.3"),
         (("1e-3", "0.999"), "1"),
         (("1", "2", "0"), "3"),
         (("0.1", "0.7"), "8e-1"),
@@ -507,7 +408,7 @@ def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -
     assert all(isinstance(criterion.points, Decimal) for criterion in rubric.criteria)
 
 
-@settings(deadline=None, max_examples=50)
+@examples(10)
 @given(cents=st.lists(st.integers(0, 10_000), min_size=1, max_size=20))
 def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactory, cents: list[int]) -> None:
     """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""
@@ -516,23 +417,6 @@ def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactor
     total, wrong = (f"{cent // 100}.{cent % 100:02d}" for cent in (sum(cents), sum(cents) + 1))
     assert loaded(folder, worth(*points, total=total, part=total)).points * 100 == sum(cents)
     assert len(complaints(folder, worth(*points, total=wrong, part=wrong))) == 2
-
-
-def test_wrong_totals_are_reported(tmp_path: Path) -> None:
-    """The totals that the rubric and each part declare are compared with the sums."""
-    assert complaints(tmp_path, worth("0.1", "0.2", total="0.3001", part="1")) == [
-        "3: the rubric declares 0.3001 points, but its criteria add up to 0.3",
-        "7: part 'a' declares 1 points, but its criteria add up to 0.3",
-    ]
-
-
-def test_points_have_four_decimals_at_most(tmp_path: Path) -> None:
-    """A gradebook keeps points as whole numbers of ten-thousandths."""
-    assert loaded(tmp_path, worth("0.0001")).points == Decimal("0.0001")
-    found = complaints(tmp_path, worth("0.00001"))
-    assert [line.split(": ", 1)[1] for line in found] == [
-        "points must be a number with at most 4 decimals, not 0.00001"
-    ]
 
 
 def test_a_late_policy_is_read(tmp_path: Path) -> None:
@@ -576,9 +460,114 @@ def test_a_part_is_worth_its_own_criteria(tmp_path: Path) -> None:
     ]
 
 
-def test_totals_are_not_reported_with_invalid_points(tmp_path: Path) -> None:
-    """A mistake in a criterion's points does not also make the totals wrong."""
-    assert complaints(tmp_path, worth("1", '"2"', total="3", part="3")) == ["19: points must be a number, not '2'"]
+AFTER_TEXTS = r'''feedback = """
+[[criterion]]
+id = "not a key"
+# no comment \
+  \""" still "text" """
+# [[criterion]] in a comment
+[[criterion]]   # a second one
+id = 'two' # 'quoted' "in" comment
+part = "a"
+title = """
+"""
+requires = [ # [ ] "
+  "loads", # one
+  'lods', # two ]
+]
+"points" = -1
+'check' = "urdf_load"
+'''
+ARGUMENTS = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
+OWN_TABLE = '\n# the arguments\n[criterion.with]\nlink = "base"\nsize = [1, 2]\n'
+HINTS = "[[criterion.hint]]\nx = 1\n" * 2
+# What is added to a rubric, or a whole one, and the beginnings of the complaints.
+# What is added to a rubric, or a whole one, and its complaints, of which the end may be left out.
+PLACES = {
+    "misspelt argument": (
+        checked("shows_box", f"with = {{ {BOX.replace('link', 'lnk')} }}\n"),
+        """12: the check shows_box takes no 'lnk'; did you mean 'link'?
+           12: the check shows_box needs link: a string""",
+    ),
+    "no arguments": (
+        checked("rolls_forward", ""),
+        """6: the check rolls_forward needs link: a string
+           6: the check rolls_forward needs base: a string
+           6: the check rolls_forward needs tolerance: a number""",
+    ),
+    "arguments in a table": (
+        checked("shows_box", OWN_TABLE),
+        """14: the check shows_box needs tolerance: a number
+           16: size of shows_box must be 3 numbers, not [1, 2]""",
+    ),
+    "arguments in two tables": (
+        checked("joints_named", ARGUMENTS),
+        """13: parent of joints_named must be a string, not 3
+           15: joints of joints_named must be a table of strings, not { j = 'lidar', k = 4 }""",
+    ),
+    "dotted arguments": (
+        checked("joints_named", 'with.parent = 3\nwith.joints.j = "lidar"\nwith.jionts = 3\n'),
+        """12: parent of joints_named must be a string, not 3
+           14: the check joints_named takes no 'jionts'; it takes: parent, joints""",
+    ),
+    "requires itself": (GOOD + row("b", requires='["b"]'), "18: requires itself"),
+    "requires nothing": (
+        GOOD + row("b", requires='["load", "zzz", "loads"]'),
+        """18: requires 'load', which does not exist; did you mean 'loads'?
+           18: requires 'zzz', which does not exist""",
+    ),
+    "totals": (
+        worth("0.1", "0.2", total="0.3001", part="1"),
+        """3: the rubric declares 0.3001 points, but its criteria add up to 0.3
+           7: part 'a' declares 1 points, but its criteria add up to 0.3""",
+    ),
+    "points, not totals": (worth("1", '"2"', total="3", part="3"), "19: points must be a number, not '2'"),
+    "multi-line values": (
+        GOOD + AFTER_TEXTS,
+        """21: title must be a non-empty string, not ''
+           23: requires 'lods', which does not exist; did you mean 'loads'?
+           27: points must be a number from 0 to 1000000, not -1
+           28: there is no check 'urdf_load'; did you mean 'urdf_loads'?""",
+    ),
+    "reserved id": (
+        GOOD.replace('"loads"', '"total"'),
+        "7: the id 'total' is reserved for final marks: choose another one",
+    ),
+    "adjusted by a number": (GOOD + "[adjust]\nloads = 3\n", "13: the adjustment of loads must be a table, not 3"),
+    "tables in a criterion": (GOOD + HINTS + row("b", points="-1"), "12: a criterion has no key\n20: points must"),
+    "quotes before quotes": (
+        GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n',
+        "13: requires 'a\"'\n13: requires '[b'\n14: a criterion has no key 'pints'",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_every_mistake_has_its_line(tmp_path: Path, name: str) -> None:
+    """The line is that of the key, of the table that lacks one, or of the criterion; nothing is repeated."""
+    text, expected = PLACES[name]
+    found = complaints(tmp_path, text)
+    assert len(found) == expected.count("\n") + 1, found
+    assert all(line.startswith(start.strip()) for line, start in zip(found, expected.split("\n"), strict=True)), found
+
+
+@pytest.mark.parametrize(
+    ("line", "table", "key"),
+    [
+        ('"a rubric" = 1', "rubric", "a rubric"), ("'quo.ted' = 1", "rubric", "quo.ted"),
+         ("extra.deep = 1", "rubric", "extra"),
+        ("[extra]", "", "extra"), ("[extra.deep]", "", "extra"), ("[[extra.deep]]", "", "extra"),
+        ("[ 'extra' . deep ] # and more", "", "extra"),
+        ("hint.text.more = 1", "criterion", "hint"), ("'hint'.x = 1", "criterion", "hint"),
+        ("hint = { a = 1 }", "criterion", "hint"), ("[criterion.hint.deep]", "criterion", "hint"),
+    ],
+)  # fmt: skip
+def test_an_unknown_key_has_its_line(tmp_path: Path, line: str, table: str, key: str) -> None:
+    """However an unknown key is written, the complaint has its line."""
+    at_the_top = table == "rubric"
+    text = GOOD.replace("[[part]]", line + "\n[[part]]") if at_the_top else GOOD + line + "\n"
+    (found,) = complaints(tmp_path, text)
+    assert found.startswith(f"{3 if at_the_top else 12}: a {table or 'rubric'} has no key {key!r};")
 
 
 @pytest.mark.parametrize(
@@ -621,30 +610,17 @@ def test_windows_line_endings(tmp_path: Path) -> None:
     assert complaints(tmp_path, EVERY_KIND_OF_MISTAKE.replace("\n", "\r\n")) == announced(EVERY_KIND_OF_MISTAKE)
 
 
-def test_a_missing_file_is_reported(tmp_path: Path) -> None:
-    """A missing path is unreadable input, not a broken rubric."""
+def test_what_is_no_file_is_refused(tmp_path: Path) -> None:
+    """What is missing is unreadable input; a folder and a pipe are refused at once, and a huge file is not read."""
     with pytest.raises(InputError, match=r"cannot read .*nothing\.toml: No such file or directory"):
         load_rubric(str(tmp_path / "nothing.toml"))
-
-
-def test_a_folder_is_no_rubric(tmp_path: Path) -> None:
-    """A folder is refused, whatever its name."""
     (tmp_path / "lab.toml").mkdir()
     for path in (tmp_path, tmp_path / "lab.toml"):
         with pytest.raises(InputError, match=r"cannot read|is not a regular file"):
             load_rubric(str(path))
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are a thing of POSIX")
-def test_a_pipe_is_no_rubric(tmp_path: Path) -> None:
-    """A named pipe is refused at once instead of being waited for."""
     os.mkfifo(tmp_path / "pipe.toml")
     with pytest.raises(InputError, match="not a regular file"):
         load_rubric(str(tmp_path / "pipe.toml"))
-
-
-def test_an_endless_file_is_refused(tmp_path: Path) -> None:
-    """No more than a limit is read."""
     with pytest.raises(InputError, match="larger than"):
         load_rubric(write(tmp_path, GOOD + "#" * (1 << 21)))
 
@@ -689,98 +665,3 @@ def test_a_path_is_shown_without_control_characters(tmp_path: Path) -> None:
 
 
 # --- Lines ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("line", "key"),
-    [
-        ('"a rubric" = 1', "a rubric"),
-        ("'quo.ted' = 1", "quo.ted"),
-        ("extra.deep = 1", "extra"),
-        ("[extra]", "extra"),
-        ("[extra.deep]", "extra"),
-        ("[[extra]]", "extra"),
-        ("[[extra.deep]]", "extra"),
-        ("[ 'extra' . deep ] # and more", "extra"),
-    ],
-)
-def test_an_unknown_key_of_a_rubric_has_its_line(tmp_path: Path, line: str, key: str) -> None:
-    """However an unknown key is written, the complaint has its line."""
-    if line.startswith("["):
-        text, number = GOOD + line + "\n", 12
-    else:
-        text, number = GOOD.replace("[[part]]", line + "\n[[part]]"), 3
-    (found,) = complaints(tmp_path, text)
-    assert found.startswith(f"{number}: a rubric has no key {key!r};")
-
-
-@pytest.mark.parametrize(
-    "line",
-    ["hint.text = 1", "hint.text.more = 1", '"hint" = 1', "'hint'.x = 1", "hint = { a = 1 }", "[criterion.hint.deep]"],
-)
-def test_an_unknown_key_of_a_criterion_has_its_line(tmp_path: Path, line: str) -> None:
-    """Dotted and quoted keys and tables have a line, too."""
-    (found,) = complaints(tmp_path, GOOD + line + "\n")
-    assert found.startswith("12: a criterion has no key 'hint';")
-
-
-def test_a_table_in_a_criterion_does_not_move_later_ones(tmp_path: Path) -> None:
-    """Arrays of tables below a criterion belong to it: the next criterion keeps its lines."""
-    text = GOOD + "[[criterion.hint]]\nx = 1\n[[criterion.hint]]\nx = 1\n" + row("b", points="-1")
-    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["12", "20"]
-
-
-AFTER_TEXTS = r'''feedback = """
-[[criterion]]
-id = "not a key"
-# no comment \
-  \""" still "text" """
-
-# [[criterion]] in a comment
-[[criterion]]   # a second one
-id = 'two' # 'quoted' "in" comment
-part = "a"
-title = """
-"""  # !!
-requires = [ # [ ] "
-  "loads", # one
-  'lods', # two ]
-]
-"points" = -1
-'check' = "urdf_load"
-'''
-
-
-def test_lines_after_multi_line_values(tmp_path: Path) -> None:
-    """Multi-line strings, comments and arrays do not move later lines."""
-    assert complaints(tmp_path, GOOD + AFTER_TEXTS) == [
-        "22: title must be a non-empty string, not ''",
-        "24: requires 'lods', which does not exist; did you mean 'loads'?",
-        "28: points must be a number from 0 to 1000000, not -1",
-        "29: there is no check 'urdf_load'; did you mean 'urdf_loads'?",
-    ]
-
-
-def test_lines_after_quotes_at_the_end_of_a_string(tmp_path: Path) -> None:
-    """A triple-quoted string may end in quotes, and brackets may follow."""
-    text = GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n'
-    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["13", "13", "14"]
-    text = GOOD + "feedback = '''It's 'fine'''' # ['\nrequires = ['''a'''', '[b']\npints = 1\n"
-    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["13", "13", "14"]
-
-
-def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:
-    """An argument in a table of its own has its own line; one in an inline table has the line of that table."""
-    names = GOOD.replace("urdf_loads", "joints_named")
-    tables = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
-    assert complaints(tmp_path, names + tables) == [
-        "13: parent of joints_named must be a string, not 3",
-        "15: joints of joints_named must be a table of strings, not { j = 'lidar', k = 4 }",
-    ]
-    dotted = 'with.parent = 3\nwith.joints.j = "lidar"\nwith.jionts = 3\n'
-    assert complaints(tmp_path, names + dotted) == [
-        "12: parent of joints_named must be a string, not 3",
-        "14: the check joints_named takes no 'jionts'; it takes: parent, joints",
-    ]
-    braces = 'with = { parent = 3, joints = { j = "lidar" } }\n'
-    assert complaints(tmp_path, names + braces) == ["12: parent of joints_named must be a string, not 3"]

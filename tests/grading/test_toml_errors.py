@@ -3,13 +3,14 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import RubricError
 from grader.grading.rubric import shipped_rubrics
 from grader.grading.toml_file import read_toml
 from tests.command_line import run_with_input
+from tests.examples import examples
 
 HEAD = 'id = "lab"\ntitle = "Lab"\n'
 BRACES = "a table in braces must be on one line: join the lines, or write it as a [table] after the other keys"
@@ -109,7 +110,7 @@ def test_long_lines_are_cut(tmp_path: Path) -> None:
 SHIPPED = next(iter(shipped_rubrics().values())).read_text(encoding="utf-8")[:3000]
 
 
-@settings(deadline=None, max_examples=150)
+@examples(20)
 @given(st.integers(0, len(SHIPPED)), st.integers(0, 3), st.text("\"'[]{}=,.\n\r#\\ aT1“\0\u00a0", max_size=3))
 def test_no_text_is_a_crash(at: int, deleted: int, inserted: str) -> None:
     """Whatever a typing error does to a rubric, it is TOML, or there is one complaint with a place."""

@@ -14,6 +14,7 @@ from grader.submission.editing import overlaid
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
+from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
 
 REFERENCE = reference()
@@ -44,7 +45,7 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
 
 @pytest.mark.parametrize(
     ("path", "old", "new"),
-    [
+    spread([
         ("", '"wheel_radius" value="0.1"', '"wheel_radius" value="0.01"'),
         ("", '"length" value="0.6"', '"length" value="6"'),
         ("", "${length/4}", "${length*4}"),
@@ -66,7 +67,7 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
         (WHEEL, 'link="base_link"/>\n      <child link="${side}_wheel"', 'link="${side}_wheel"/>\n      <child link="base_link"'),
         (WHEEL, "${outward * wheel_width / 2}", "${wheel_width / 2}"),
         (WHEEL, '      <axis xyz="0 0 1"/>\n', ""),
-    ],
+    ], 6),
 )  # fmt: skip
 def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
     """A wrong number, sign, operator, argument or name in xacro is undone by an edit of the xacro."""

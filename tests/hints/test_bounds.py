@@ -3,6 +3,7 @@
 import pytest
 
 from grader.submission.opening import read_submission
+from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for
 from tests.work import limited_work
 
@@ -46,7 +47,7 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", spread(HOSTILE, 1))
 def test_a_large_robot_is_searched_with_bounded_work(name: str) -> None:
     """Hundreds of anything that a search looks at take a bounded number of lines of Python."""
     submission = read_submission(HOSTILE[name].encode(), identity="student", path="my_robot.urdf")

@@ -13,6 +13,7 @@ REFERENCE = BASES["reference"]
 _MUTANTS = 8  # of each correct robot; all of them take minutes: python -m tests.hints.measure
 
 
+@pytest.mark.exhaustive
 def test_single_mistakes_get_hints_that_undo_them() -> None:
     """At least 95 % of the mutants have a verified hint, and 90 % become a robot that behaves like the correct one."""
     found = [verdict for base in BASES.values() for verdict in verdicts(base, _MUTANTS, Random(14))]
@@ -23,6 +24,7 @@ def test_single_mistakes_get_hints_that_undo_them() -> None:
     assert sum(verdict.marks.is_there for verdict in values) >= 0.90 * len(values)
 
 
+@pytest.mark.exhaustive
 def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
     """All but those in which a whole file is missing or empty, or for which no edit is known."""
     left = {verdict.label for verdict in of_samples() if not verdict.marks.is_full}

@@ -1,5 +1,6 @@
 """Hints never cost a point: over random robots with random mistakes, and over random edits of random texts."""
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -8,6 +9,7 @@ from grader.mutation.mutants import mutants
 from grader.source import Edit, Source
 from grader.submission.editing import edited_files
 from grader.submission.opening import read_submission
+from tests.examples import examples
 from tests.hints.trials import BASES, applied, graded, search_for, with_edits
 from tests.rewriting import parse, rewritings
 
@@ -27,7 +29,8 @@ def mistaken(draw: st.DrawFn) -> bytes:
     return data
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@pytest.mark.exhaustive
+@settings(examples(20), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(data=mistaken())
 def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
     """Each hint alone, and all hints together, applied to the file: what passed passes, and what is promised as well."""
@@ -59,7 +62,7 @@ def edits_of(draw: st.DrawFn, text: str) -> list[Edit]:
     return [Source(PATH, text).edit(start, end, draw(_TEXTS)) for start, end in spans]
 
 
-@settings(max_examples=150, deadline=None)
+@examples(20)
 @given(data=st.data(), text=_TEXTS, mark=st.sampled_from(("", "\ufeff")))
 def test_composed_edits_do_what_edits_do_one_after_the_other(data: st.DataObject, text: str, mark: str) -> None:
     """Also where the later touch the earlier, in any line breaks, and nothing else changes."""

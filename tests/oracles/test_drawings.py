@@ -2,9 +2,13 @@
 
 from pathlib import Path
 
+import pytest
+
 from tests.command_line import run
 from tests.oracles.example_robots import each_robot
 from tests.report.readers import read_svg
+
+pytestmark = pytest.mark.exhaustive
 
 
 @each_robot

@@ -9,6 +9,8 @@ from grader.robot.reader import read_urdf
 from tests.oracles.check_urdf import check_urdf
 from tests.oracles.example_robots import MISSING, URDFS, each_robot
 
+pytestmark = pytest.mark.exhaustive
+
 
 @each_robot
 def test_verdict_is_that_of_ros(path: Path) -> None:

@@ -13,6 +13,8 @@ from grader.robot.shapes import Shape, volume
 from grader.robot.transforms import Transform, Vector, rotation_from_rpy
 from tests.oracles.example_robots import MISSING
 
+pytestmark = pytest.mark.exhaustive
+
 pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 primitives: Any = pytest.importorskip("trimesh.primitives", reason=MISSING)
 

@@ -10,13 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.reader import read_urdf
+from tests.examples import examples
 from tests.oracles.example_robots import MISSING, each_robot
+
+pytestmark = pytest.mark.exhaustive
 
 pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 
@@ -120,7 +123,7 @@ def urdfs(draw: st.DrawFn) -> str:
     return f'<robot name="r">{"".join(draw(st.permutations(elements)))}</robot>'
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(text=urdfs(), seed=st.integers(0, 999))
 def test_random_trees(text: str, seed: int) -> None:
     """At zero and at random positions, read from the same text."""
@@ -133,7 +136,7 @@ def test_random_trees(text: str, seed: int) -> None:
     assert_same_poses(model, Configuration(read.robot, positions), positions)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(150)
 @given(text=urdfs(), multiplier=_length, offset=_length, position=_angle)
 def test_random_mimics(text: str, multiplier: float, offset: float, position: float) -> None:
     """A chain of mimics follows its rules, led by the first joint in the file."""

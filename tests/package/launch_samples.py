@@ -1,6 +1,5 @@
 """The samples of launch files, and the results of evaluating one in a form that is easy to compare."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from grader.package.launch.model import Launch, LaunchFault, NamedFile
@@ -32,25 +31,7 @@ def generate_launch_description():
 _SIGNS = {True: "", False: "!", None: "?"}
 
 
-@dataclass(frozen=True)
-class LaunchSummary:
-    """The results of evaluating a launch file, in a short form.
-
-    A node is named by its program, preceded by its package if that has another name; ! means not started, ? unknown.
-    Everything else has its line and its path or text; `wrong:` and `unknown:` precede the reason why there is no path.
-    """
-
-    nodes: str = ""
-    urdf: tuple[str, ...] = ()
-    rviz: tuple[str, ...] = ()
-    include: tuple[str, ...] = ()
-    faults: tuple[str, ...] = ()
-    unknown: tuple[str, ...] = ()
-    forgotten: str = ""
-    syntax: str = ""
-
-
-def summarize_sample(sample: str) -> LaunchSummary:
+def summarize_sample(sample: str) -> list[str]:
     """Return the results for a sample, which is installed in my_robot's folder launch."""
     return summarize(read(SAMPLES[sample].read_bytes(), sample))
 
@@ -64,18 +45,21 @@ def read(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
     return read_launch(data, f"launch/{name}", f"{FOLDER}/{name}", installed)
 
 
-def summarize(launch: Launch) -> LaunchSummary:
-    """Return the results for a launch file in a short form."""
-    return LaunchSummary(
-        " ".join(_node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes),
-        tuple(map(_reference, launch.named("urdf"))),
-        tuple(map(_reference, launch.named("rviz"))),
-        tuple(map(_reference, launch.named("include"))),
-        tuple(map(_fault, launch.faults)),
-        tuple(map(_fault, launch.unknown)),
-        " ".join(_node(node.package, node.executable) for node in launch.forgotten),
-        _fault(launch.syntax) if launch.syntax is not None else "",
-    )
+def summarize(launch: Launch) -> list[str]:
+    """Return the results for a launch file as lines.
+
+    A node is named by its program, preceded by its package if that has another name; ! means not started, ? unknown.
+    Everything else has its line and its path or text; `wrong:` and `unknown:` precede the reason why there is no path.
+    """
+    nodes = " ".join(_node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes)
+    forgotten = " ".join(_node(node.package, node.executable) for node in launch.forgotten)
+    found = [f"nodes: {nodes}"] if nodes else []
+    for kind in ("urdf", "rviz", "include"):
+        found += [f"{kind} {_reference(named)}" for named in launch.named(kind)]
+    found += [f"faults {_fault(fault)}" for fault in launch.faults]
+    found += [f"unknown {_fault(fault)}" for fault in launch.unknown]
+    found += [f"forgotten: {forgotten}"] if forgotten else []
+    return found + ([f"syntax: {_fault(launch.syntax)}"] if launch.syntax is not None else [])
 
 
 def _node(package: str, executable: str) -> str:

@@ -1,6 +1,7 @@
 """Edits of packages: for each mistake that students make, one of the first is the correction; none is made for hostile files."""
 
 from contextlib import nullcontext
+from itertools import product
 
 import pytest
 
@@ -9,6 +10,7 @@ from grader.grading.grade import grade
 from grader.package.edits.candidates import package_proposals
 from grader.submission.editing import content, edited_files, with_files
 from grader.submission.submission import Submission
+from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
 
 _REFERENCE = reference()
@@ -149,7 +151,7 @@ def test_a_mistake_is_undone(mistake: str) -> None:
     assert content(after, path) == content(_REFERENCE, path)
 
 
-@pytest.mark.parametrize("mistake", CORRECTED)
+@pytest.mark.parametrize("mistake", spread(CORRECTED, 3))
 def test_a_mistake_is_corrected(mistake: str) -> None:
     """There is an edit with which everything passes that passes for the reference."""
     broken = _with_mistake(*CORRECTED[mistake])
@@ -157,7 +159,7 @@ def test_a_mistake_is_corrected(mistake: str) -> None:
     assert _corrected(broken) is not None
 
 
-@pytest.mark.parametrize("mistake", MOVED)
+@pytest.mark.parametrize("mistake", spread(MOVED, 3))
 def test_a_file_is_renamed_or_created(mistake: str) -> None:
     """A file that is misnamed is renamed, and one that is missing is created as in the reference."""
     path, other = MOVED[mistake]
@@ -169,15 +171,15 @@ def test_a_file_is_renamed_or_created(mistake: str) -> None:
     assert content(after, path) == data
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "cmake-package", "folder-misspelt-in-setup", "glob-finds-a-folder", "glob-module-called", "launch-file-misspelt",
-        "launch-home-path", "launch-looks-in-other-folder", "launch-syntax-error", "launch-without-rviz", "missing-import-glob",
-        "no-launch-folder", "no-package-xml", "package-misnamed", "rviz-fixed-frame-map", "rviz-not-installed", "rviz-of-ros1",
-        "rviz-robot-off", "setup-as-created", "setup-syntax-error",
-    ],
+_CORRECTED_SAMPLES = (
+    "cmake-package", "folder-misspelt-in-setup", "glob-finds-a-folder", "glob-module-called", "launch-file-misspelt",
+    "launch-home-path", "launch-looks-in-other-folder", "launch-syntax-error", "launch-without-rviz",
+    "missing-import-glob", "no-launch-folder", "no-package-xml", "package-misnamed", "rviz-fixed-frame-map",
+    "rviz-not-installed", "rviz-of-ros1", "rviz-robot-off", "setup-as-created", "setup-syntax-error",
 )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", spread(_CORRECTED_SAMPLES, 5))
 def test_a_sample_is_corrected(name: str) -> None:
     """One edit corrects each sample with a mistake in its package."""
     assert _corrected(SAMPLES[name].open()) is not None
@@ -208,8 +210,7 @@ def test_a_node_that_is_wanted_is_not_taken_for_another_one() -> None:
     assert not any(edit.old == "robot_state_publisher" for proposal in _proposals(broken) for edit in proposal.edits)
 
 
-@pytest.mark.parametrize("path", [SETUP, LAUNCH, RVIZ, MANIFEST])
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize(("path", "name"), spread(product((SETUP, LAUNCH, RVIZ, MANIFEST), HOSTILE), 4))
 def test_hostile_files_get_few_edits(path: str, name: str) -> None:
     """No file makes the search for edits fail, or find many."""
     broken = with_files(_REFERENCE, {path: HOSTILE[name]})

@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, Tree, make_tree
@@ -20,6 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, parse
 from grader.static_python.values import Unknown, Value
+from tests.examples import examples, spread
 from tests.work import limited_work
 
 _NAMES = st.sampled_from(["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"])
@@ -78,7 +79,7 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
     return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
 
 
-@settings(max_examples=400)
+@examples(30)
 @given(tree=trees(), pattern=_PATTERNS, recursive=st.booleans(), hidden=st.booleans())
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="**", recursive=True, hidden=False)
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="a/**/", recursive=True, hidden=True)
@@ -97,7 +98,7 @@ def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive:
     assert [sorted(found) for found in reported] == [real] * len(ORDERS)
 
 
-@settings(max_examples=200)
+@examples(30)
 @given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS)
 def test_glob_in_a_folder(tree: Tree, pattern: str, folder: str) -> None:
     """root_dir is used literally, even if its name contains brackets."""
@@ -109,7 +110,7 @@ def test_glob_in_a_folder(tree: Tree, pattern: str, folder: str) -> None:
         assert sorted(found) == pythons_glob(pattern, os.path.join(root, folder))
 
 
-@settings(max_examples=200)
+@examples(30)
 @given(tree=trees(), pattern=_PATTERNS)
 def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
     """A pattern with an absolute path finds the file."""
@@ -121,7 +122,7 @@ def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
             assert sorted(found) == pythons_glob(os.path.join(root, pattern), root)
 
 
-@settings(max_examples=400)
+@examples(30)
 @given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS, method=st.sampled_from(["glob", "rglob"]))
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="*", folder="a", method="rglob")
 def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, method: str) -> None:
@@ -141,7 +142,7 @@ def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, me
     assert sorted(found) == sorted(real)
 
 
-@settings(max_examples=300)
+@examples(30)
 @given(tree=trees(), parts=st.lists(_PARTS | _NAMES, min_size=1, max_size=5))
 def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> None:
     """Dots, slashes and files used as folders mean what they mean to the system."""
@@ -156,7 +157,7 @@ def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> Non
         assert reported == real
 
 
-@settings(max_examples=100)
+@examples(20)
 @given(tree=trees(), folder=_FOLDERS)
 def test_listing_folders(tree: Tree, folder: str) -> None:
     """os.listdir, os.walk and iterdir name the entries; a missing folder is an error, or has nothing to walk through."""
@@ -195,14 +196,17 @@ def test_patterns_that_lead_out_are_unknown(pattern: str) -> None:
 
 @pytest.mark.parametrize(
     "expression",
-    [
-        "[glob(f'**/**/**/*{n}*', recursive=True) for n in range(10000)]",
-        "[glob('*/../' * 12 + '*') for n in range(10000)]",
-        "[list(Path('.').rglob(f'**/**/*{n}')) for n in range(10000)]",
-        "[list(os.walk('.')) for n in range(10000)]",
-        "[os.listdir('f0') for n in range(10000)]",
-        "glob('f*' + '[a-z0-9]*?' * 90 + 'x')",
-    ],
+    spread(
+        [
+            "[glob(f'**/**/**/*{n}*', recursive=True) for n in range(10000)]",
+            "[glob('*/../' * 12 + '*') for n in range(10000)]",
+            "[list(Path('.').rglob(f'**/**/*{n}')) for n in range(10000)]",
+            "[list(os.walk('.')) for n in range(10000)]",
+            "[os.listdir('f0') for n in range(10000)]",
+            "glob('f*' + '[a-z0-9]*?' * 90 + 'x')",
+        ],
+        2,
+    ),
 )
 def test_many_searches_through_many_files_end_soon(expression: str) -> None:
     """The evaluation of a submission of thousands of files with repeated searches is bounded."""

@@ -1,10 +1,11 @@
 """Reading package.xml: the package's name, its build type, what is missing, and where."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.package.manifest import Manifest, read_manifest
+from tests.examples import examples
 from tests.work import limited_work
 
 # As ros2 pkg create writes it, filled in.
@@ -137,7 +138,7 @@ def test_hostile_files(text: str) -> None:
         assert isinstance(read(text).problems, tuple)
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(
     st.integers(0, len(COMPLETE)),
     st.integers(0, 30),
@@ -150,7 +151,7 @@ def test_changed_files(start: int, length: int, put: bytes) -> None:
     assert all(problem.location.line > 0 and "\n" not in problem.message for problem in found.problems)
 
 
-@settings(max_examples=100)
+@examples(20)
 @given(st.binary(max_size=80) | st.text("<>&;!-[]?/= \"'package\n", max_size=60).map(str.encode))
 def test_any_bytes(data: bytes) -> None:
     """Any bytes are read without an error."""

@@ -1,11 +1,12 @@
 """Reading RViz files: the fixed frame, the enabled displays, and problems."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import YamlNode, read_yaml
+from tests.examples import examples, spread
 from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
@@ -196,13 +197,16 @@ def test_the_last_of_equal_keys_counts() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
-        "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
-        "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
-        "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
-        "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
-    ],
+    spread(
+        [
+            "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
+            "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
+            "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
+            "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
+            "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
+        ],
+        2,
+    ),
 )
 def test_endless_groups(text: str) -> None:
     """Groups in themselves, and thousands of displays, are read up to a bound."""
@@ -215,7 +219,7 @@ def test_endless_groups(text: str) -> None:
 LINES = st.sampled_from(SAVED.splitlines(keepends=True))
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(
     st.lists(
         LINES | st.text(max_size=8) | st.sampled_from(["&a ", "*a", "- ", "\0", "[", "{", "'", '"', "\t"]), max_size=30
@@ -228,7 +232,7 @@ def test_any_text(pieces: list[str]) -> None:
     assert (found.fault is None) or not found.displays
 
 
-@settings(max_examples=150)
+@examples(20)
 @given(st.integers(0, len(SAVED)), st.integers(0, 30), st.binary(max_size=6))
 def test_changed_files(start: int, length: int, put: bytes) -> None:
     """A saved file with text removed or inserted is read without an error."""

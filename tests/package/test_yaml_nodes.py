@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from tests.examples import examples
 from tests.work import limited_work
 
 TEXTS = st.text(st.characters(blacklist_categories=["Cs"]), max_size=12) | st.sampled_from(
@@ -48,7 +49,7 @@ def plain(node: YamlNode) -> Any:
     return [plain(item) for item in node.value] if isinstance(node.value, list) else node.value
 
 
-@settings(max_examples=300)
+@examples(30)
 @given(VALUES, st.booleans() | st.none(), st.sampled_from([None, "'", '"', "|", ">"]), st.booleans())
 def test_agreement_with_pyyaml(value: Any, flow: bool | None, style: str | None, marked: bool) -> None:
     """Structure and strings of any document equal those of PyYAML."""
@@ -64,7 +65,7 @@ class NoAliases(yaml.SafeDumper):
         return True
 
 
-@settings(max_examples=300)
+@examples(30)
 @given(st.binary(max_size=60) | st.text("[]{}:-,&*!|>'\"%@`#? \n\tab1\\", max_size=40).map(str.encode))
 @example(b"a: *b")
 @example(b"&a [*a]")

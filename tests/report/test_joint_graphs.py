@@ -4,11 +4,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from zipfile import ZipFile
 
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.report.formats import Format, InspectFormat
 from tests.command_line import run
+from tests.examples import examples
 
 LINKS = ("base_footprint", "base_link", "lidar", "left_wheel", "w")
 LOOP = [("base_link", "lidar", "fixed"), ("lidar", "base_link", "fixed")]
@@ -28,7 +29,7 @@ def robot(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> str:
     return f'<robot name="r">{"".join(parts)}</robot>'
 
 
-@settings(max_examples=40)
+@examples(10)
 @given(st.dictionaries(names, st.booleans(), min_size=1), st.lists(joints, max_size=6))
 @example({"base_link": False, "lidar": False, "w": False}, LOOP)
 @example({"base_link": True, "lidar": True, "w": False}, LOOP)

@@ -61,13 +61,12 @@ def test_reports_are_valid(name: str) -> None:
         assert result["status"] == "failed" or result["feedback"] == ""
 
 
-@pytest.mark.slow
-def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
+def test_reports_and_inspections_of_edge_cases_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (
         jsonschema.Draft202012Validator(schema) for schema in (json_schema("report"), json_schema("inspect"))
     )
-    for case in EDGE_CASES:
+    for case in EDGE_CASES[::8]:
         if len(case.text) > 20_000:
             continue
         report = grade(RUBRIC, read_submission(case.text, identity=case.name, path="a.urdf"))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement
@@ -18,6 +18,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
+from tests.examples import examples
 from tests.work import limited_work
 
 Z: Vector = (0.0, 0.0, 1.0)
@@ -497,6 +498,7 @@ def chain_of(count: int) -> bytes:
     return f'<robot name="chain">{links}{joints}</robot>'.encode()
 
 
+@pytest.mark.exhaustive
 def test_a_chain_of_20000_links() -> None:
     """It is read and solved in linear time, and without recursion, whose depth Python limits."""
     assert sys.getrecursionlimit() < 20_000
@@ -556,7 +558,7 @@ huge = st.sampled_from((1.7e308, -1.7e308, 1e308, 1e300, 1e154, 1.0, 0.0, -1e-30
 huge_vectors = st.tuples(huge, huge, huge)
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])
+@examples(20)
 @given(
     xyz=st.lists(huge_vectors, min_size=3, max_size=3),
     rpy=st.lists(huge_vectors, min_size=3, max_size=3),

@@ -1,13 +1,15 @@
 """Numbers are read by urdfdom's rule, which is implemented here a second time, character by character."""
 
 from fractions import Fraction
-from math import isclose
+from math import inf, isclose
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
+from grader.robot.edits.numbers import number as written_number
 from grader.robot.numbers import NumberError, is_version_one, number, numbers, rgba, vector
+from tests.examples import examples
 from tests.work import limited_work
 
 _SPACE = " \t\n\v\f\r"
@@ -74,6 +76,15 @@ def read_vector(text: str) -> tuple[float, float, float] | None:
         return None
 
 
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.1 + 0.2, "0.3"), (-0.0, "0"), (1e-9, "1e-09"), (1e-14, "0"), (1e-5, "0.00001"), (12345678.0, "12345678"), (inf, "inf")],
+)  # fmt: skip
+def test_numbers_are_written_as_a_person_would(value: float, text: str) -> None:
+    """In few characters, without an exponent unless the number is tiny, as those of an inertia are."""
+    assert written_number(value) == text
+
+
 _relevant = st.text("0123456789+-.eE \t\n\r\v\f,xXnNaAiIfF_$u\u00a0\u2212\u0661\uff11\x1f\x85\u2028\udc80", max_size=12)
 _digits = st.text(_DIGITS, max_size=4)
 _likely = st.builds(
@@ -91,7 +102,7 @@ _likely = st.builds(
 )
 
 
-@settings(max_examples=1500)
+@examples(60)
 @given(text=_relevant | _likely)
 @example(text="1.7976931348623157e308")
 @example(text="1.7976931348623159e308")
@@ -112,7 +123,7 @@ def test_number_follows_the_rule(text: str) -> None:
     assert repr(actual) == repr(expected)
 
 
-@settings(max_examples=1000)
+@examples(60)
 @given(text=st.lists(_likely | _relevant | st.just("1"), max_size=5).map(" ".join))
 @example(text="1 2 3")
 @example(text="  1   2 3  ")
@@ -135,7 +146,7 @@ def test_vector_follows_the_rule(text: str) -> None:
         assert repr(actual) == repr(tuple(expected))
 
 
-@settings(max_examples=500)
+@examples(60)
 @given(text=st.lists(_likely | _relevant, max_size=5).map(" ".join))
 def test_lists_of_any_length(text: str) -> None:
     """`numbers` accepts any count; `rgba` only channels in 0..1, and distinguishes a wrong count from a wrong number."""

@@ -4,13 +4,14 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement
 from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
+from tests.examples import examples, spread
 from tests.robot.edge_cases.case import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample
 from tests.robot.random_text import data
@@ -34,7 +35,7 @@ def message(read: Reading, code: str) -> str:
 # --- Any bytes --------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=750, deadline=None)
+@examples(60)
 @given(raw=data | st.binary(max_size=100))
 @example(raw=b"")
 @example(raw=b"\xff")
@@ -60,7 +61,7 @@ def test_nothing_is_raised(raw: bytes) -> None:
     assert locations == sorted(locations)
 
 
-@settings(max_examples=400, deadline=None)
+@examples(30)
 @given(raw=data)
 def test_every_link_has_a_pose_or_a_reason(raw: bytes) -> None:
     """Every link of a robot that was read has a pose or a reason for having none."""
@@ -346,7 +347,7 @@ _FRAMES = {
 }
 
 
-@pytest.mark.parametrize("frame", _FRAMES.values(), ids=_FRAMES)
+@pytest.mark.parametrize("frame", spread(_FRAMES.values(), 4), ids=_FRAMES)
 def test_a_megabyte_is_read_in_linear_time(frame: str) -> None:
     """Whatever a megabyte contains, it is read in linear time."""
     raw = _filled(frame)(_MEGABYTE).encode()

@@ -14,6 +14,7 @@ from grader.robot.model import Box, Cylinder, Mesh, Sphere
 from grader.robot.separation import penetration, separation
 from grader.robot.shapes import Shape, UnknownShape, extent
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
+from tests.examples import examples
 
 slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
 
@@ -157,7 +158,7 @@ def test_the_distance_is_that_along_the_direction(a: Shape, T_w_a: Transform, b:
     assert distance_along(a, T_w_a, b, T_w_b, found.direction) == pytest.approx(found.distance, abs=1e-9)
 
 
-@settings(slow, max_examples=200)
+@examples(30)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_no_other_direction_has_a_larger_distance(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
     """Along none of 400 directions, nor along those close to the answer, are the shapes farther apart."""

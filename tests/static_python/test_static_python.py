@@ -5,12 +5,13 @@ import random
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, make_tree
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import Code, parse
+from tests.examples import examples, spread
 from tests.package.my_robot import FILES, SAMPLES
 from tests.work import limited_work
 
@@ -130,14 +131,14 @@ _PROGRAMS = st.lists(st.recursive(_SIMPLE, _compound, max_leaves=5), min_size=1,
 _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setuptools import setup\na = ['urdf']\nb = {'a': a}\n"
 
 
-@settings(max_examples=250)
+@examples(30)
 @given(program=_PROGRAMS)
 def test_any_program_is_evaluated(program: str) -> None:
     """No program raises an exception in the evaluation."""
     evaluated(_START + program)
 
 
-@settings(max_examples=200)
+@examples(30)
 @given(text=st.sampled_from(_TEXTS), seed=st.integers(0, 10**6), count=st.integers(1, 4), of_lines=st.booleans())
 def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_lines: bool) -> None:
     """A file whose lines or characters were lost, doubled or swapped is evaluated without an exception."""
@@ -152,7 +153,7 @@ def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_line
     evaluated("".join(parts))
 
 
-@settings(max_examples=200)
+@examples(30)
 @given(data=st.binary(max_size=200) | st.text(max_size=200).map(lambda text: text.encode("utf-8", "replace")))
 def test_any_bytes_are_evaluated(data: bytes) -> None:
     """Bytes that are no program are evaluated without an exception."""
@@ -235,7 +236,7 @@ EXPENSIVE = {
 }
 
 
-@pytest.mark.parametrize("name", EXPENSIVE)
+@pytest.mark.parametrize("name", spread(EXPENSIVE, 6))
 def test_expensive_programs_are_stopped(name: str) -> None:
     """A program that would take long, or much memory, is not evaluated further, which is reported."""
     setup = evaluated(_SETUP + EXPENSIVE[name])
@@ -265,7 +266,7 @@ SLOW = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SLOW)
+@pytest.mark.parametrize("name", spread(SLOW, 3))
 def test_repeated_expensive_steps_are_bounded(name: str) -> None:
     """A large value is evaluated only so often."""
     evaluated(SLOW[name])

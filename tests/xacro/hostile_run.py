@@ -1,4 +1,4 @@
-"""Expand every hostile document in this process, and print what happened to each: `python -m tests.xacro.hostile_run`.
+"""Expand hostile documents in this process, and print what happened to each: `python -m tests.xacro.hostile_run 1`.
 
 A process of its own, because an audit hook cannot be removed, and because a crash or an endless loop then is a failed test.
 """
@@ -70,8 +70,8 @@ def _watched(document: Document, paths: list[str], parts: int = READING, limit: 
     }
 
 
-def main() -> None:
-    """Print a line of JSON for each document: first its name, then what happened."""
+def main(step: int) -> None:
+    """Print a line of JSON for each document, or for every third and so on: first its name, then what happened."""
     files = {"urdf/a.yaml": "a: !degrees 1\n", "urdf/b.xacro": robot("")}
     warm = (
         named("y", "${xacro.load_yaml('a.yaml')}")
@@ -82,11 +82,11 @@ def main() -> None:
     expand(Document("<robot"))
     sys.addaudithook(_watch)
     print(json.dumps([CONTROL, _watched(Document(robot(warm), files), _Opening())]), flush=True)
-    for name, document in {**HOSTILE, **LARGE}.items():
+    for name, document in list({**HOSTILE, **LARGE}.items())[::step]:
         print(json.dumps([name, _watched(document, [])]), flush=True)
-    for name, document in COSTS.items():
+    for name, document in list(COSTS.items())[::step]:
         print(json.dumps([f"cost-{name}", _watched(document, [], PARTS, LIMIT_OF_PARTS)]), flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    main(int(sys.argv[1]))

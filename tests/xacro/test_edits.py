@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
 from grader.edits import edited
 from grader.source import Edit
+from tests.examples import examples
 from tests.xacro import grammar
 from tests.xacro.comparing import expand
 from tests.xacro.documents.document import Document, named, part, robot
@@ -213,7 +214,7 @@ def values(text: str) -> Iterator[tuple[str, str, str]]:
 @given(
     seed=st.integers(0, 400), which=st.integers(0, 30), new=st.sampled_from(("0.3", "-0.5 1 2", "arm_link", "&quot;"))
 )
-@settings(max_examples=120, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@examples(20)
 def test_an_edit_changes_one_attribute_and_nothing_else(seed: int, which: int, new: str) -> None:
     """On random documents, each edit replaces or adds one attribute, and every other byte stays."""
     document = grammar.document(seed)

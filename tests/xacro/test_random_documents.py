@@ -2,15 +2,15 @@
 
 import pytest
 
+from tests.examples import spread
 from tests.xacro import grammar, oracle
 from tests.xacro.compare import compared, summary
 
-PARTS = 4
-PART = 250
+PARTS = 10
+PART = 100
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", spread(range(PARTS), 1))
 def test_random_documents(part: int) -> None:
     """A thousand random documents are expanded, or refused, as xacro does."""
     counted, *differences = summary(map(compared, range(part * PART, (part + 1) * PART)))
@@ -19,10 +19,10 @@ def test_random_documents(part: int) -> None:
 
 def test_random_documents_are_the_same_in_every_run_and_mostly_accepted() -> None:
     """A seed gives one document; xacro accepts most of them and refuses some."""
-    documents = [grammar.document(seed) for seed in range(100)]
-    assert documents == [grammar.document(seed) for seed in range(100)]
+    documents = [grammar.document(seed) for seed in range(25)]
+    assert documents == [grammar.document(seed) for seed in range(25)]
     accepted = sum(isinstance(oracle.expand(document), oracle.Accepted) for document in documents)
-    assert 70 < accepted < 100
+    assert 15 < accepted < 25
 
 
 def test_random_documents_use_every_tag() -> None:

@@ -1,7 +1,9 @@
 """TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree if no translation is needed."""
 
+from itertools import product
+
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from lxml import etree
 
@@ -9,6 +11,7 @@ from grader.robot.reader import read_urdf
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2.scanner import Scan, Scanner
+from tests.examples import examples, spread
 from tests.robot.random_text import data
 from tests.work import limited_work
 
@@ -41,7 +44,7 @@ def assert_sound(scan: Scan, text: str) -> None:
     assert fatal <= {MISPLACED_DECLARATION}
 
 
-@settings(max_examples=1000, deadline=None)
+@examples(60)
 @given(raw=data)
 @example(raw=b"")
 @example(raw=b"<robot name='&#;'/>")
@@ -55,7 +58,7 @@ def test_translation_is_sound(raw: bytes) -> None:
     assert_sound(Scanner(text).scan(), text)
 
 
-@settings(max_examples=300, deadline=None)
+@examples(30)
 @given(text=st.text(max_size=200))
 def test_any_text_is_translated_or_refused(text: str) -> None:
     """Text without any tags in mind."""
@@ -134,7 +137,7 @@ def assert_same_if_plain(text: str) -> None:
         assert tree(root) == tree(etree.fromstring(Scanner(text).scan().xml, _PARSER))
 
 
-@settings(max_examples=300, deadline=None)
+@examples(30)
 @given(text=_robots)
 def test_plain_text_means_the_same_to_lxml(text: str) -> None:
     """If no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
@@ -142,7 +145,7 @@ def test_plain_text_means_the_same_to_lxml(text: str) -> None:
     assert_same_if_plain(text)
 
 
-@settings(max_examples=1000, deadline=None)
+@examples(60)
 @given(
     values=st.lists(st.text("a=\"'\n\r\t <!-&;", max_size=5), min_size=1, max_size=3),
     quote=st.sampled_from("\"'"),
@@ -158,7 +161,7 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
     assert_same_if_plain(f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>")
 
 
-@settings(max_examples=750, deadline=None)
+@examples(60)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
     """Also for text without meaning, except names that XML and TinyXML2 read differently."""
@@ -176,7 +179,7 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
         assert {name: value for name, value in attributes.items() if name.isascii() and name.isalnum()} == others
 
 
-@settings(max_examples=400, deadline=None)
+@examples(30)
 @given(text=_robots)
 def test_both_readings_give_the_same_robot(text: str) -> None:
     """An empty CDATA section forces the translation: robot, problems and locations stay the same."""
@@ -216,12 +219,11 @@ def test_text_that_both_read_differently_is_not_plain(text: str) -> None:
     assert_same_if_plain(text)
 
 
-@pytest.mark.parametrize(
-    "piece", ["<", ">", "&", "&#", "&#x", '="', "='", "<!", "<!--", "<?", "<a", "<a ", "<a>", "</a>", "\r"]
-)
-@pytest.mark.parametrize(
-    "frame", ["{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}"]
-)
+_PIECES = ("<", ">", "&", "&#", "&#x", '="', "='", "<!", "<!--", "<?", "<a", "<a ", "<a>", "</a>", "\r")
+_FRAMES = ("{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}")
+
+
+@pytest.mark.parametrize(("piece", "frame"), spread(product(_PIECES, _FRAMES), 18))
 def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
     """Time is linear wherever the piece is: a quarter of a megabyte takes a bounded number of lines."""
     text = frame.format(piece * (2**18 // len(piece)))

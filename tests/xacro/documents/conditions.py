@@ -29,9 +29,7 @@ _ARGUMENTS = {
 }
 
 _PLACES = bodies(
-    nested='<xacro:if value="1"><a><xacro:if value="0"><b/></xacro:if><xacro:unless value="0"><c/></xacro:unless></a></xacro:if>',
     several='<xacro:if value="1"><a/><b/>text</xacro:if>',
-    empty='<v><xacro:if value="1"/><xacro:unless value="1"/></v>',
     false_is_not_evaluated='<xacro:if value="0">' + shown("${missing}") + "<xacro:nothing/></xacro:if><a/>",
     true_is_evaluated='<xacro:if value="1">' + shown("${missing}") + "</xacro:if>",
     unless_is_evaluated='<xacro:unless value="0"><xacro:nothing/></xacro:unless>',

@@ -21,7 +21,6 @@ _EVALUATION = bodies(
     circular_unused=named("a", "${b}") + named("b", "${a}") + shown("1"),
     undefined_unused=named("a", "${missing}") + shown("1"),
     undefined_used=named("a", "${missing}") + shown("${a}"),
-    bad_expression_unused=named("a", "${1 +}") + shown("1"),
     use_before_definition=shown("${a}") + named("a", "1"),
     redefinition=named("a", "1") + shown("${a}") + named("a", "2") + shown("${a}"),
     chain=named("a", "2") + named("b", "${a * 2}") + named("c", "${b * a}") + shown("${c} ${b} ${a}"),
@@ -70,10 +69,8 @@ _SCOPES = bodies(
     scope_parent_at_top_undefined=named("a", "${b}", 'scope="parent"') + shown("${1}"),
     scope_global_at_top=named("a", "1", 'scope="global"') + shown("${a}"),
     scope_unknown=named("a", "1", 'scope="somewhere"') + shown("${a}"),
-    scope_empty=named("a", "1", 'scope=""') + shown("${a}"),
     scope_parent_in_if='<xacro:if value="1">' + named("a", "1", 'scope="parent"') + "</xacro:if>" + shown("${a}"),
     property_in_if='<xacro:if value="1">' + named("a", "1") + "</xacro:if>" + shown("${a}"),
-    property_in_link='<link name="l">' + named("a", "1") + "</link>" + shown("${a}"),
     macro_sees_global=_NESTED.format(shown("${a}")) + named("a", "1") + "<xacro:m/>" + named("a", "2") + "<xacro:m/>",
     macro_sees_callers_scope='<xacro:macro name="n" params="a"><xacro:m/></xacro:macro>'
     + _NESTED.format(shown("${a}"))
@@ -97,7 +94,6 @@ _SCOPES = bodies(
     + '<xacro:n b="3"/>',
     global_symbol_redefined=named("pi", "3") + shown("${pi} ${math.pi}"),
     function_redefined=named("sin", "3") + shown("${sin} ${math.sin(0)}"),
-    namespace_redefined=named("math", "3") + shown("${math}"),
     python_survives=named("len", "3") + shown("${len} ${python.len('ab')}"),
 )
 
@@ -119,7 +115,6 @@ _DEFAULTS = bodies(
     remove_then_default=named("a", "1")
     + '<xacro:property name="a" remove="true"/><xacro:property name="a" default="5"/>'
     + shown("${a}"),
-    remove_false=named("a", "1", 'remove="false"') + shown("${a}"),
     remove_and_value=named("a", "1", 'remove="true"'),
     remove_undefined='<xacro:property name="a" remove="true"/>' + shown("1"),
     remove_undefined_is_block='<xacro:property name="a" remove="true"/><xacro:insert_block name="a"/>' + shown("1"),
@@ -143,9 +138,7 @@ _BLOCKS = bodies(
     block_without_name="<xacro:insert_block/>",
     block_is_a_value=named("b", "1") + '<xacro:insert_block name="b"/>',
     block_as_value='<xacro:property name="b"><a/></xacro:property>' + shown("${b}"),
-    block_empty='<xacro:property name="b"/><v><xacro:insert_block name="b"/></v>',
     block_of_text='<xacro:property name="b"> text ${1+2} </xacro:property><v><xacro:insert_block name="b"/></v>',
-    block_and_value='<xacro:property name="b" value="1"><a/></xacro:property>' + shown("${b}"),
     block_with_macro='<xacro:macro name="m" params=""><a/></xacro:macro><xacro:property name="b"><xacro:m/></xacro:property>'
     '<xacro:insert_block name="b"/>',
     block_with_property='<xacro:property name="b">' + named("c", "4") + shown("${c}") + "</xacro:property>"
@@ -185,8 +178,6 @@ _NAME_DOCUMENTS = {f"name-{name}": Document(robot(named(name, "1") + shown("1"))
 
 _ATTRIBUTES = bodies(
     without_name='<xacro:property value="1"/>',
-    unknown_attribute=named("a", "1", 'type="double"') + shown("${a}"),
-    unused_prefix=named("a", "1", 'xmlns:b="urn:b"') + shown("${a}"),
     name_with_undefined=named("${missing}", "1"),
 )
 
