@@ -303,11 +303,16 @@ def test_textures_and_meshes() -> None:
     passes(shows_colour, scene(link("base", visual(box(9.0, 9.0, 9.0)), painted_mesh)), **GREEN)
 
 
-def test_a_colour_that_only_a_run_tells() -> None:
-    """What xacro leaves open needs manual grading."""
-    text = painted("0 0.6 0 1").text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
-    left_open = text.replace('rgba="0 0.6 0 1"', 'rgba="$(env COLOUR)"')
-    urdf = read_submission(left_open.encode(), identity="me", path="a.urdf.xacro").needed_urdf()
+@pytest.mark.parametrize(
+    "material", ["<material name='green'/>", "<material name='red'><color rgba='$(env B)'/></material>"]
+)
+def test_a_colour_that_only_a_run_tells(material: str) -> None:
+    """What xacro leaves open needs manual grading, in the visual or in the material that it names."""
+    namespace = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    shown = f"<visual><geometry><box size='1 1 1'/></geometry>{material}</visual>"
+    named = "<material name='green'><color rgba='$(env A)'/></material>"
+    text = f"<robot name='r' {namespace}>{named}<link name='base'>{shown}</link></robot>"
+    urdf = read_submission(text.encode(), identity="me", path="a.urdf.xacro").needed_urdf()
     assert urdf.robot is not None
     with pytest.raises(NotDecided, match="is known only at run time"):
         shows_colour(Configuration(urdf.robot), **GREEN)

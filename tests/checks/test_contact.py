@@ -5,9 +5,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.contact import clear_of, stands_on
+from grader.robot.shapes import UnknownShape
 from tests.checks.cases import BASE, FORWARD, LIDAR, Case, cases_of, mounted, rolling
 from tests.checks.outcomes import Arguments, ask, fails, graded, passes
-from tests.checks.robots import box, cylinder, joint, link, scene, sphere, turned, visual
+from tests.checks.robots import box, cylinder, joint, link, mesh, scene, sphere, turned, visual
 from tests.examples import examples
 
 ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
@@ -187,6 +188,17 @@ def test_all_visuals_of_a_link_count() -> None:
     axle = visual(cylinder(0.01, 0.3))
     joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0.1", rpy=FORWARD)
     fails(clear_of, scene(BASE, link("wheel", visual(cylinder()), axle), joined), **CLEAR)
+
+
+@pytest.mark.parametrize("shapes", [(mesh(), box(1, 1, 1)), (box(1, 1, 1), mesh())], ids=["own", "other"])
+def test_a_mesh_may_overlap(shapes: tuple[str, str]) -> None:
+    """The size of a mesh is unknown, whichever link shows it; what overlaps beside it is wrong all the same."""
+    own, other = map(visual, shapes)
+    mounting = joint("j", "fixed", "base", "wheel", xyz="3 0 0")
+    with pytest.raises(UnknownShape):
+        ask(clear_of, scene(link("base", other), link("wheel", own), mounting), **CLEAR)
+    ball = visual(sphere(3.0))
+    fails(clear_of, scene(link("base", other, ball), link("wheel", own, ball), mounting), **CLEAR)
 
 
 def test_too_many_shapes_need_manual_grading() -> None:

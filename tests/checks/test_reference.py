@@ -195,13 +195,19 @@ def test_what_cannot_be_determined_is_pending() -> None:
         compared(gripper(rule=""), gripper(), "@tip")
 
 
+_ASIDE = """<link name="aside"/>
+<joint name="spin" type="$(env KIND)"><parent link="base"/><child link="aside"/></joint>
+<joint name="glue" type="fixed">"""
+
+
 @pytest.mark.parametrize(
     ("robot", "old", "new", "link"),
     [
         (ARM, '"continuous"', '"$(env KIND)"', "wheel"),
+        (ARM, '<joint name="spin" type="continuous">', _ASIDE, "wheel"),
         (gripper(), 'mimic joint="left"', 'mimic joint="$(env LEADER)"', "right_finger"),
     ],
-    ids=["type", "mimic"],
+    ids=["type", "type of a joint elsewhere", "mimic"],
 )
 def test_what_only_a_run_tells_is_pending(robot: Scene, old: str, new: str, link: str) -> None:
     """Whether a joint whose type or leader xacro leaves open moves as that of the reference is not guessed."""

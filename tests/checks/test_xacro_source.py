@@ -7,6 +7,7 @@ import pytest
 
 from grader.checks.outcome import Outcome
 from grader.checks.xacro_source import xacro_uses
+from grader.errors import NotDecided
 from tests.checks.outcomes import graded
 from tests.checks.package_cases import IN_XACRO
 from tests.checks.submissions import REFERENCE, URDF, Submitted
@@ -216,6 +217,15 @@ def test_another_file_of_the_submission(files: dict[str, str], status: str, mess
     """A file that the URDF does not include is examined on its own, if it is the only one of its name and can be read."""
     outcome = graded(xacro_uses, REFERENCE.with_files(files), file="parts.xacro", properties=["a"])
     assert (outcome.status, message in outcome.message) == (status, True), outcome.message
+
+
+def test_a_submission_that_used_up_its_work() -> None:
+    """What is too much work to look through needs manual grading."""
+    submission = IN_XACRO.with_files({}).submission  # its own: that of the sample is shared
+    submission.needed_urdf()
+    submission.budget.left = 0
+    with pytest.raises(NotDecided, match="more work than one submission may use"):
+        xacro_uses(submission, macros=1)
 
 
 # --- The command line -------------------------------------------------------------------------------------------------
