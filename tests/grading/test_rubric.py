@@ -482,7 +482,7 @@ ARGUMENTS = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\
 OWN_TABLE = '\n# the arguments\n[criterion.with]\nlink = "base"\nsize = [1, 2]\n'
 HINTS = "[[criterion.hint]]\nx = 1\n" * 2
 # What is added to a rubric, or a whole one, and the beginnings of the complaints.
-# What is added to a rubric, or a whole one, and its complaints, of which the end may be left out.
+# What is added to a rubric, or a whole one, and its complaints, of which the end may be omitted.
 PLACES = {
     "misspelt argument": (
         checked("shows_box", f"with = {{ {BOX.replace('link', 'lnk')} }}\n"),
