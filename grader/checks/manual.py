@@ -30,9 +30,9 @@ def answered(
     del answer  # students read outcomes, so they do not contain it
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
-    if submission.no_documents:
-        message = f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading"
-        return pending(message, problem=f"the documents cannot be read: {submission.no_documents}")
+    if submission.opening.no_documents:
+        message = f"{question} The documents cannot be read: {submission.opening.no_documents}; needs manual grading"
+        return pending(message, problem=f"the documents cannot be read: {submission.opening.no_documents}")
     found = find_answer(submission.documents, files, places, question)
     unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
     passage = found.passage

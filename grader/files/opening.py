@@ -32,13 +32,13 @@ def archive_kind(start: bytes) -> str | None:
     return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
 
 
-def open_tree(path: Path, is_wanted: Callable[[str], bool] = lambda _: False) -> Tree | None:
+def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) -> Tree | None:
     """Return the files at a path, including those in its archives; None for a single file that is not an archive.
 
-    `is_wanted` is that of `with_inner`.
+    `is_opened` is that of `with_inner`.
     """
     tree = outer_tree(path)
-    return with_inner(tree, is_wanted) if tree is not None else None
+    return with_inner(tree, is_opened) if tree is not None else None
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
@@ -80,12 +80,12 @@ def tree_name(path: Path) -> str:
 
 def with_inner(
     tree: Tree,
-    is_wanted: Callable[[str], bool] = lambda _: False,
+    is_opened: Callable[[str], bool] = lambda _: False,
     allowance: limits.Allowance | None = None,
     depth: int = 0,
 ) -> Tree:
-    """Return the tree with what is in its archives; beside a package and a URDF, only in those with wanted names."""
-    archives = _archives(tree, is_wanted)
+    """Return the tree with what is in its archives; beside a package and a URDF, only in those that are."""
+    archives = _archives(tree, is_opened)
     if not archives:
         return tree
     allowance = allowance or limits.Allowance()
@@ -106,13 +106,13 @@ def with_inner(
     return _combined(tree.name, parts, unopened)
 
 
-def _archives(tree: Tree, is_wanted: Callable[[str], bool]) -> list[File]:
+def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     """Return the archives that are opened."""
     files = tree.files.values()
     archives = [file for file in files if file.suffix in ARCHIVES]
     has_package = any(file.name in ("package.xml", "setup.py") for file in files)
     if has_package and any(file.suffix == ".urdf" for file in files):
-        return [file for file in archives if is_wanted(file.name)]
+        return [file for file in archives if is_opened(file.name)]
     return archives
 
 

@@ -12,7 +12,7 @@ from grader.source import Source
 from grader.xml.catalogue import NOT_WELL_FORMED
 
 if TYPE_CHECKING:
-    from grader.submission.workspace import Surroundings
+    from grader.submission.surroundings import Surroundings
 
 
 class OtherCandidate(NamedTuple):
@@ -85,7 +85,7 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
     if around is None:
-        from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
+        from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
 
         around = Surroundings()
     launched = around.robot_references(path)

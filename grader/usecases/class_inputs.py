@@ -21,9 +21,7 @@ _MAX_NAMED = 5
 def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     """Yield the hashes of the robots that the course handed out. Raises InputError for a file without a robot."""
     for path in files:
-        hashes = robot_hashes(
-            open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-        )
+        hashes = robot_hashes(open_submission(str(path), rubric.lab))
         if not any(hashes):
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from filter(None, hashes)

@@ -110,6 +110,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
     from grader.submission.opening import open_submission
+    from grader.submission.submission import Opening
 
     rubric = requested_rubric(request, warn)
     if not request.path.lower().endswith(ROBOT_FILES):
@@ -118,19 +119,14 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
         refuse_class(request.path, rubric, request.choice)
     submission = open_submission(
         request.path,
-        wanted=rubric.urdf,
-        package=rubric.package,
-        folders=rubric.folders,
-        limit=request.max_size,
-        arguments=_arguments(request),
+        rubric.lab,
+        Opening(request.max_size, _arguments(request), show_file=show_progress),
         with_neighbours=True,
     )
     if submission.students:
         from grader.usecases.several_students import refusal  # late: few submissions are several
 
         raise refusal(request.path, submission.students, rubric, request.choice)
-    if not submission.is_single:
-        submission.documents.show_progress = show_progress
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:

@@ -24,7 +24,7 @@ from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import package_around
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
 from grader.usecases import Warn
@@ -82,11 +82,11 @@ def _solution(reference: str, warn: Warn) -> Solution:
 
 def _opened(reference: str) -> Submission:
     """Return the reference as a submission; of several packages, the one with the URDF is graded."""
-    submission = open_submission(reference, wanted=_URDF)
+    submission = open_submission(reference, Lab(_URDF))
     package = package_around(submission.packages, submission.path)
     if package is None or package is submission.package or submission.path is None:
         return submission
-    return open_submission(reference, wanted=submission.path.removeprefix(f"{package.folder}/"), package=package.name)
+    return open_submission(reference, Lab(submission.path.removeprefix(f"{package.folder}/"), package.name))
 
 
 def _head(file: Path, reference: str, submission: Submission) -> Head:
