@@ -176,7 +176,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     def _stored(self, query: str) -> Iterator[StoredSubmission]:
         with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(query):
-                yield StoredSubmission._make((*row[:13], row[13:]))
+                yield StoredSubmission.of(row)
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
         """Return a stored rubric, with or without model answers; raises RubricError if this grader cannot read it."""

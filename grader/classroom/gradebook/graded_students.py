@@ -98,7 +98,7 @@ def _add_outcome(
 ) -> None:
     mark, maximum, position = marks.get(criterion.id), units_of(criterion.maximum), criterion.position
     student.statuses[position], student.earned[position] = outcome.status, outcome.points
-    if outcome.status == "settled":
+    if outcome.status in ("carried", "adjusted"):
         student.earned[position] = full_units(criterion)
     elif outcome.status == "failed" and not criterion.bonus and mark != units_of(criterion.points):
         student.failures.append(Failure.of(outcome))

@@ -74,9 +74,9 @@ class Grades:
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
         outcomes = self.book.outcomes(grade.result).values() if grade.result is not None else ()
-        criteria = [self.rubric(grade.rubric).criteria[one.position] for one in outcomes if one.status == "settled"]
+        criteria = [self.rubric(grade.rubric).criteria[one.position] for one in outcomes if one.status == "carried"]
         marks = self._manual_marks(grade) if criteria else {}
-        return [row.id for row in criteria if row.adjustment is None and row.id not in marks]
+        return [row.id for row in criteria if row.id not in marks]
 
     def automatic_points(self, grade: StudentGrade) -> dict[str, Decimal]:
         """Return the points of each criterion that a check decided."""
@@ -141,7 +141,7 @@ class Grades:
             yield self._grade(row)
 
     def _grade(self, row: dict[str, Any]) -> StudentGrade:
-        paths, names, attempt, earlier = json.loads(row["files"])
+        *_, attempt, earlier = json.loads(row["files"])
         values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}
         values |= {name: self._in_order(row["rubric"], row[name]) for name in _NAMES}
         values |= {name: points_of(row[name] or 0) for name in _POINTS}
@@ -155,9 +155,7 @@ class Grades:
             is_on_roster=None if row["is_on_roster"] is None else bool(row["is_on_roster"]),
             is_outdated=is_outdated,
             has_other_parts=is_current and tuple(row["parts"].split()) != self.parts,
-            files=SubmissionFiles(
-                row["source"], tuple(paths), tuple(names), row["key"], row["fingerprint"], row["digest"]
-            ),
+            files=SubmissionFiles.of(row),
             attempt=attempt,
             earlier=tuple(earlier),
             late=self._lateness(row, values["score"]),

@@ -124,8 +124,8 @@ def _outcomes(report: Report) -> tuple[OutcomeRow, ...]:
 def _outcome(result: Result) -> OutcomeRow:
     criterion, outcome = result.criterion, result.outcome
     status, position = outcome.status, criterion.position
-    if result.why_given:
-        return position, "settled", units_of(result.points), "", None
+    if result.is_adjusted or result.carried:
+        return position, "adjusted" if result.is_adjusted else "carried", units_of(result.points), "", None
     if status == "failed":
         return position, status, 0, _cause(outcome.mistake or outcome.message), _measured(outcome)
     if status == "pending" and criterion.check.function not in MANUAL_CHECKS:

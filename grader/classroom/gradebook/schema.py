@@ -67,6 +67,7 @@ CREATE TABLE run (
     version TEXT NOT NULL,         -- of the grader
     last_mark INTEGER NOT NULL,    -- the newest manual mark when the run began
     deadline TEXT NOT NULL,        -- as the command was given it, ISO 8601
+    max_size INTEGER NOT NULL,     -- bytes of a URDF
     assignment TEXT NOT NULL       -- its name in the class folder, empty if it has none
 );
 
@@ -93,8 +94,9 @@ CREATE INDEX result_of_student ON result (student);
 CREATE TABLE outcome (
     result INTEGER NOT NULL REFERENCES result,
     position INTEGER NOT NULL,     -- of the criterion in the rubric
-    -- `settled`: it did not pass, but loses nothing, because an earlier mistake alone is the cause, or it is adjusted
-    status TEXT NOT NULL CHECK (status IN ('failed', 'skipped', 'settled', 'pending', 'errored', 'ungraded')),
+    -- It did not pass, but loses nothing: `carried` if only an earlier mistake is the cause, `adjusted` by the rubric.
+    status TEXT NOT NULL CHECK
+        (status IN ('failed', 'skipped', 'carried', 'adjusted', 'pending', 'errored', 'ungraded')),
     points INTEGER,                -- NULL if it is undecided
     cause TEXT NOT NULL,           -- what equal mistakes, or equal reasons for manual grading, have in common
     measured TEXT,                 -- JSON, see gradebook/failures.py; NULL unless numbers were compared
@@ -178,7 +180,9 @@ CREATE VIEW newest_submission AS
 SELECT * FROM submission
 WHERE run = (SELECT max(run) FROM submission AS newer WHERE newer.student = submission.student);
 
--- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks.
+-- What the manual marks change in each student's newest result: sums over a class, without reading each rubric.
+-- criterion_points (gradebook/result.py) has the same rules for one student; tests/classroom/gradebook compares both.
+-- CROSS JOIN makes SQLite start from the few marks.
 -- `older` names the criteria whose mark was given for another submission, `revalued` those that had another maximum
 -- then, and `over` those whose mark exceeds the maximum.
 CREATE VIEW override AS
@@ -231,7 +235,7 @@ SELECT student.*, newest.run, newest.result, coalesce(result.rubric, '') AS rubr
     coalesce(newest.is_gone, 0) AS is_gone, result.urdf, result.robot,
     coalesce(newest.files, '[[], [], 0, []]') AS files, coalesce(newest.fingerprint, '') AS fingerprint,
     coalesce(newest.is_late, 0) AS is_late, coalesce(newest.submitted, '') AS submitted,
-    coalesce(run.source, '') AS source
+    coalesce(run.source, '') AS source, coalesce(run.max_size, 0) AS max_size
 FROM student
 LEFT JOIN newest_submission AS newest ON newest.student = student.id
 LEFT JOIN result ON result.id = newest.result

@@ -233,7 +233,7 @@ def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> Criter
         decided=count,
         passed=found["passed"],
         manual_marks=found["manual_marks"],
-        carried=found["settled"],
+        carried=found["carried"] + found["adjusted"],
         failed=found["failed"],
         skipped=found["skipped"],
         pending=found["pending"],

@@ -1,16 +1,17 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
+import json
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.opening import OpenedSubmission, open_submission
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
@@ -51,6 +52,18 @@ class SubmissionFiles(NamedTuple):
     key: str
     fingerprint: str
     digest: str = ""
+    max_size: int = URDF_LIMIT  # bytes of a URDF
+
+    @classmethod
+    def of(cls, row: Mapping[str, Any]) -> "SubmissionFiles":
+        """Return the files in a row of the view `grade`."""
+        paths, names, *_ = json.loads(row["files"])
+        known = row["key"], row["fingerprint"], row["digest"], row["max_size"]
+        return cls(row["source"], tuple(paths), tuple(names), *known)
+
+    def open(self) -> OpenedSubmission:
+        """Open the submission. Raises InputError."""
+        return open_submission(self.root, self.paths, self.names, self.key, self.max_size)
 
 
 class SubmissionSources:
@@ -71,13 +84,12 @@ class SubmissionSources:
     @cached_property
     def submission(self) -> Submission | None:
         """The submission; None if it cannot be read or has changed since it was graded."""
-        root, paths, names, key, stored, digest = self._files
-        found = fingerprint(root, paths, time.time_ns())
-        limit = stored.removeprefix(found).removeprefix(" ")  # of a URDF, if it is not the default
-        is_unchanged = found != "" and stored in (found, f"{found} {limit}")
+        files = self._files
+        found = fingerprint(files.root, files.paths, time.time_ns())
         try:
-            opened = open_submission(root, paths, names, key, int(limit) if is_unchanged and limit else URDF_LIMIT)
-            return opened.submission(self._rubric) if is_unchanged or opened.digest == digest else None
+            opened = files.open()
+            is_unchanged = (found and found == files.fingerprint) or opened.digest == files.digest
+            return opened.submission(self._rubric) if is_unchanged else None
         except InputError:
             return None
 

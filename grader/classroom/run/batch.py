@@ -102,8 +102,15 @@ class Batch:
         identities = Identities(book, settings.root, settings.roster, intake.keys)
         if not settings.add:
             check_same_class(book, intake, identities, self._rubric.id)
-        assignment = assignments_text(intake.assignments)
-        writer = RunWriter(book, settings.root, settings.layout, self._rubric, settings.deadline, assignment)
+        writer = RunWriter(
+            book,
+            settings.root,
+            settings.layout,
+            self._rubric,
+            settings.deadline,
+            assignments_text(intake.assignments),
+            settings.max_size,
+        )
         self._writer = writer
         writer.add_handed_out(settings.handed_out)
         self._report(())  # the total, before the first result
@@ -174,8 +181,9 @@ class Batch:
         root, max_size = self._settings.root, self._settings.max_size
         return (
             stored.fingerprint != ""
+            and stored.max_size == max_size
             and stored.is_same(submission, self._enrolment(submission.student))
-            and fingerprint(root, submission.paths, time.time_ns(), max_size) == stored.fingerprint
+            and fingerprint(root, submission.paths, time.time_ns()) == stored.fingerprint
         )
 
     def _collect(self, writer: RunWriter, *, all_in: bool) -> None:

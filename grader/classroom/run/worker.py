@@ -58,9 +58,7 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[GradingResul
 
 def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     rubric = _rubric(context.rubric, context.rubric_path)
-    result = GradingResult(
-        task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns(), context.max_size)
-    )
+    result = GradingResult(task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns()))
     try:
         opened = open_submission(context.root, task.paths, task.names, task.key, context.max_size)
         result = result._replace(digest=opened.digest)
