@@ -3,8 +3,8 @@
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade

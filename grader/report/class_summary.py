@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure, CriterionStatistics
 from grader.classroom.gradebook.summary import Agreement, Attention, ClassSummary

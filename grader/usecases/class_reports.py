@@ -1,22 +1,23 @@
 """Write a report for each student of a class, from the gradebook, and the class's page beside reports in HTML."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import datetime
-from itertools import islice
+from functools import partial
 from pathlib import Path
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import summary_of
 from grader.classroom.run.batch import Progress
-from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.pool import WorkerError, processors
+from grader.classroom.run.queue import Queue
 from grader.errors import InputError, RubricError
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Grade, Report, Result
@@ -88,7 +89,6 @@ def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3
 REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
-_Write = Callable[[dict[str, str]], "Future[None]"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
@@ -129,41 +129,32 @@ def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable
 def render_reports(
     executor: Executor, run: ReportRun, names: dict[str, str], show: Callable[[Progress], None]
 ) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why."""
-
-    def write(some: dict[str, str]) -> "Future[None]":
-        return executor.submit(_write_some, run, some)
-
-    chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
-    show(Progress(len(names)))
-    lost: dict[str, str] = {}
-    done = 0
-    for some, task in [(some, write(some)) for some in chunks]:
-        lost |= _lost(write, some, task)
-        done += len(some)
-        show(Progress(len(names), done))
-    return lost
-
-
-def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students without one, and why. If they fail together, each is retried alone.
+    """Write the reports of students, by their file names; return who has none, and why.
 
     Raises InputError and RubricError, which concern all reports.
     """
-    try:
-        task.result()
-    except (InputError, RubricError):
-        raise
-    except Exception as error:  # noqa: BLE001  a fault of the grader affects only this report
-        if len(names) == 1:
-            fault = f"the grader itself failed: {type(error).__name__}: {error}"
-            return dict.fromkeys(names, str(error) if isinstance(error, WorkerError) else fault)
-        alone = [{key: name} for key, name in names.items()]
-        return {key: why for one in alone for key, why in _lost(write, one, write(one)).items()}
-    return {}
+    progress = Progress(len(names))
+    show(progress)
+    lost: dict[str, str] = {}
+    queue = Queue(executor, processors(), partial(_write_some, run), _lost, _TASK_SIZE)
+    for results in queue.all(names.items()):
+        lost |= {key: why for key, why in results if why}
+        progress = replace(progress, graded=progress.graded + len(results))
+        show(progress)
+    return {key: lost[key] for key in names if key in lost}
 
 
-def _write_some(run: ReportRun, names: dict[str, str]) -> None:
+def _lost(named: tuple[str, str], error: Exception) -> tuple[str, str]:
+    """Return the student without a report, and why."""
+    if isinstance(error, InputError | RubricError):
+        raise error
+    fault = f"the grader itself failed: {type(error).__name__}: {error}"
+    return named[0], str(error) if isinstance(error, WorkerError) else fault
+
+
+def _write_some(run: ReportRun, named: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Write the reports of students, given with their file names in the order of the keys; return the students."""
+    names = dict(named)
     with Gradebook(run.book) as opened:
         grades = Grades(opened, run.due)
         for grade in list(grades.between(min(names), max(names))):
@@ -173,6 +164,7 @@ def _write_some(run: ReportRun, names: dict[str, str]) -> None:
                 picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
                 for kind in run.formats:
                     save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
+    return [(key, "") for key in names]
 
 
 def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:

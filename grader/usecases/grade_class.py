@@ -125,7 +125,7 @@ def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) ->
     """Search the hints of reports and of the class; return whether all were searched that statistics need."""
     if request.force:
         remove_hints(book)
-    options = HintOptions(request.jobs, request.timeout, request.max_size)
+    options = HintOptions(request.jobs, request.timeout)
     is_json, reports = request.output_format is OutputFormat.JSON, request.reports is not None
     statistics = is_json or (reports and Format.HTML in request.report_format)
     search_class_hints(book, options, terminal, reports=reports, statistics=statistics)

@@ -14,7 +14,7 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.text import cut
 
-Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+GradingVerdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 _MAX_CAUSE = 200  # characters
 _DIGITS = 6  # of a measured value
@@ -42,7 +42,7 @@ class GradingResult(NamedTuple):
     """
 
     key: str
-    verdict: Verdict
+    verdict: GradingVerdict
     digest: str
     fingerprint: str
     parts: str = ""

@@ -45,13 +45,8 @@ class RunWriter:
         with book.transaction():
             _save_rubric(book, rubric)
             (last_mark,) = book.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()
-            row: dict[str, Any] = {
-                "started": _now(),
-                "source": storable(source),
-                "layout": layout,
-                "rubric": rubric.sha256,
-            }
-            row |= {"version": __version__, "last_mark": last_mark}
+            row: dict[str, Any] = {"started": _now(), "source": storable(source), "layout": layout}
+            row |= {"rubric": rubric.sha256, "version": __version__, "last_mark": last_mark}
             row |= {"deadline": deadline, "assignment": storable(assignment), "max_size": max_size}
             self.run = book.insert("run", row)
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.gradebook.fixes import CommonFix, common_fixes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix, common_fixes
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
 from grader.classroom.gradebook.result import points_of
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics

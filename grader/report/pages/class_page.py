@@ -8,8 +8,8 @@ from lxml import etree
 from markupsafe import Markup
 
 from grader import __version__
-from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics, members
 from grader.classroom.gradebook.summary import ClassSummary
