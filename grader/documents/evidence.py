@@ -82,16 +82,16 @@ def find_evidence(
     wanted = [read_label(name) for name in names]
     exact = [labelled for labelled in files if _is_labelled(labelled, wanted)]
     if exact:
-        return FoundEvidence(describe(exact))
+        return FoundEvidence(evidence_files(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
     meant = [labelled for labelled in others if _is_misspelt(labelled, wanted)]
     perhaps = [labelled for labelled in others if labelled not in meant and _may_be_meant(labelled, wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
-        return FoundEvidence((*describe(meant), *certain))
+        return FoundEvidence((*evidence_files(meant), *certain))
     whole = _described(_whole_documents(documents), {labelled.file.path for labelled in perhaps})
-    return FoundEvidence((), (*describe(perhaps), *(it for it, _ in inside), *whole))
+    return FoundEvidence((), (*evidence_files(perhaps), *(it for it, _ in inside), *whole))
 
 
 def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[EvidenceFile]:
@@ -126,7 +126,7 @@ def find_all_evidence(
     for labelled in files:
         near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *describe([labelled])))
+            found[near] = FoundEvidence((), (*found[near].possible, *evidence_files([labelled])))
     return found
 
 
@@ -138,7 +138,7 @@ def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
     return min(distances)[1] if distances else None
 
 
-def describe(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
+def evidence_files(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
     return tuple(_evidence_file(labelled.file, is_opened=index < _MAX_OPENED) for index, labelled in enumerate(files))
 

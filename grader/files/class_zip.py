@@ -74,7 +74,7 @@ class ClassZip:
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)
         if member.size > limits.MAX_ARCHIVE_SIZE:
-            raise limits.too_large(name)
+            raise limits.archive_size_error(name)
         kind = None
         stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
         try:

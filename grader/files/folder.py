@@ -60,7 +60,7 @@ class _Walk:
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > limits.MAX_FILES:
-                    raise limits.too_many(self._shown)
+                    raise limits.files_limit_error(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
                 if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)

@@ -50,22 +50,22 @@ class Allowance:
         self.unpacked -= unpacked
         self.streamed -= streamed
         if self.unpacked < 0:
-            raise too_much(name, MAX_UNPACKED_SIZE)
+            raise unpacked_limit_error(name, MAX_UNPACKED_SIZE)
         if self.streamed < 0:
-            raise too_much(name, MAX_ARCHIVE_SIZE)
+            raise unpacked_limit_error(name, MAX_ARCHIVE_SIZE)
 
 
-def too_many(name: str) -> InputError:
+def files_limit_error(name: str) -> InputError:
     """Return the error for a submission with more files than any student submits."""
     return FileError(name, f"contains more than {MAX_FILES} files: name the package or the URDF")
 
 
-def too_large(name: str) -> FileError:
+def archive_size_error(name: str) -> FileError:
     """Return the error for an archive of more than `MAX_ARCHIVE_SIZE` bytes."""
     return FileError(name, f"is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
 
 
-def too_much(name: str, limit: int) -> FileError:
+def unpacked_limit_error(name: str, limit: int) -> FileError:
     """Return the error for an archive that would unpack to more than a limit."""
     ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
     reason = f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"

@@ -96,7 +96,7 @@ def with_inner(
         try:
             inner = _inner(archive, allowance, depth)
             if count + len(inner.files) > limits.MAX_FILES:
-                raise limits.too_many(archive.path)
+                raise limits.files_limit_error(archive.path)
         except InputError as error:
             reason = error.reason if isinstance(error, FileError) else f"cannot be opened: {error}"
             unopened.append(IgnoredFile(archive.path, reason, is_archive=True))

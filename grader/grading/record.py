@@ -46,7 +46,7 @@ def to_record(report: Report) -> str:
         "evidence": [
             {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.evidence
         ],
-        "others": report.others,
+        "others": report.other_pictures,
         "notes": report.notes,
     }
     return _ENCODER.encode(data)

@@ -145,7 +145,7 @@ def _print_rest(console: Console, count: int) -> None:
 
 def effect(reading: Reading) -> str:
     """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[reading.verdict] if reading.is_decided else _UNDECIDED
+    return _EFFECTS[reading.verdict] if reading.is_certain else _UNDECIDED
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:

@@ -102,7 +102,7 @@ class Submission:
         return read_labelled_files(self.tree)
 
     @property
-    def evidence(self) -> tuple[File, ...]:
+    def evidence_files(self) -> tuple[File, ...]:
         """The files that may show the work: pictures, films, PDF and Word files."""
         named = {labelled.file.path for labelled in self.labelled_files}
         return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
@@ -146,7 +146,7 @@ class Submission:
     @property
     def verdict(self) -> Verdict | None:
         """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
-        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_decided else None
+        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain else None
 
     @property
     def ignored(self) -> tuple[str, ...]:

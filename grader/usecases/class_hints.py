@@ -11,7 +11,7 @@ from grader.classroom.run.batch import Progress
 from grader.classroom.run.hint_search import ClassHintSearch
 from grader.classroom.run.pool import Processes, processors
 from grader.text import counted
-from grader.usecases import Terminal
+from grader.usecases.terminal import Terminal
 
 
 class HintOptions(NamedTuple):
@@ -52,7 +52,7 @@ def search_class_hints(
 
 def _run(searches: Iterable[ClassHintSearch], total: int, options: HintOptions, terminal: Terminal) -> None:
     workers = options.jobs or processors()
-    with Processes(workers, options.timeout) as executor, terminal.class_progress("searching hints") as show:
+    with Processes(workers, options.timeout) as executor, terminal.show_class("searching hints") as show:
         done = Progress(total)
         show(done)
         for search in searches:

@@ -13,7 +13,8 @@ from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
 from grader.text import counted, enumerated, printable_path, shell_quoted
-from grader.usecases import DEFAULT_RUBRIC, Warn
+from grader.usecases.rubrics import DEFAULT_RUBRIC
+from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 5
 

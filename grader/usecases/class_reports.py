@@ -23,9 +23,9 @@ from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Grade, Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path, without_commands
-from grader.usecases import Warn
 from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
+from grader.usecases.terminal import Warn
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _MAX_TRIED = 3  # students whose submissions may have changed since they were graded
@@ -181,7 +181,7 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
         note += f": the late penalty is {penalty} points, the total is {format_points(grade.total)}"
     remarks = remarks_of(grades, grade)
     graded = remarks.graded if feedback or remarks.graders.is_manual else []
-    is_changed = grade.is_decided or grade.late.points or any(result.manual_mark for result in report.results)
+    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
     notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
     return replace(report, notes=notes, grade=counting if is_changed else None)

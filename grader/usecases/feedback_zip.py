@@ -19,10 +19,10 @@ from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.report.formats import Format
 from grader.text import counted, first_lines, printable
-from grader.usecases import Terminal
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_reports
 from grader.usecases.report_names import file_names, report_names
+from grader.usecases.terminal import Terminal
 
 _MAX_LISTED = 50  # students without a file
 
@@ -73,7 +73,7 @@ def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> F
     with (
         tempfile.TemporaryDirectory() as folder,
         Processes(processors(), REPORT_SECONDS) as executor,
-        terminal.class_progress("writing reports") as show,
+        terminal.show_class("writing reports") as show,
     ):
         run = ReportRun(grades.book.path, Path(folder), (kind,), request.due, feedback=True)
         without = render_reports(executor, run, names, show)

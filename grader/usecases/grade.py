@@ -13,10 +13,10 @@ from grader.errors import GraderError, InputError
 from grader.grading.levels import Level
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
-from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
-from grader.usecases.rubrics import files_of, load
+from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
+from grader.usecases.terminal import ShowFile, Warn
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
@@ -71,18 +71,18 @@ class GradeResult(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.order import undecided_results
+        from grader.report.order import pending_automatic
 
-        names = ", ".join(result.criterion.id for result in undecided_results(self.report))
+        names = ", ".join(result.criterion.id for result in pending_automatic(self.report))
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
+def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeResult:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request.saves, request.rubric, request.path)
-    result = grade_submission(request, warn, show_progress)
+    result = grade_submission(request, warn, show_file)
     if request.fix is None or result.fix is None:
         save_reports(request, result, modes)
         return result
@@ -103,7 +103,7 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
+def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeResult:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
@@ -120,7 +120,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress)
     submission = open_submission(
         request.path,
         rubric.lab,
-        Opening(request.max_size, _arguments(request), show_file=show_progress),
+        Opening(request.max_size, _arguments(request), show_file=show_file),
         with_neighbours=True,
     )
     if submission.students:

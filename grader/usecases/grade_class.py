@@ -19,13 +19,13 @@ from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
 from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases import Terminal, Warn
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
 from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
+from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
 
 _MAX_LINES = 10
@@ -101,7 +101,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
                 parts=request.part,
                 handed_out=handed_out,
             )
-            with terminal.class_progress("grading") as show:
+            with terminal.show_class("grading") as show:
                 batch = Batch(book, rubric, settings, executor, show)
                 done = _run(batch, intake, warn)
             _warn_lines(batch.notes, warn)
@@ -112,7 +112,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
             run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
             with (
                 _processes(request.jobs, REPORT_SECONDS) as executor,
-                terminal.class_progress("writing reports") as show,
+                terminal.show_class("writing reports") as show,
             ):
                 write_reports(executor, run, warn, show)
         if request.csv is not None:

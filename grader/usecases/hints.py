@@ -11,7 +11,7 @@ from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
-from grader.usecases import Warn
+from grader.usecases.terminal import Warn
 from grader.usecases.writing import ROBOT_FILES, make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
 _MAX_NAMED = 6

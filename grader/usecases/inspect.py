@@ -12,8 +12,8 @@ from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Opening
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
-from grader.usecases import Warn
 from grader.usecases.saves import read_arguments
+from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 20
 

@@ -28,7 +28,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
 from grader.text import counted_points, enumerated, format_points, printable
-from grader.usecases import Warn
+from grader.usecases.terminal import Warn
 
 _NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
 _MAX_NAMED = 10

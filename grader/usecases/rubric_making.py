@@ -2,8 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
@@ -27,9 +26,9 @@ from grader.submission.packages import package_around
 from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
-from grader.usecases import Warn
 from grader.usecases.exit_codes import ExitCode, read_threshold
 from grader.usecases.rubrics import load, summary
+from grader.usecases.terminal import ShowClass, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 
 _URDF = "robot.urdf"
@@ -131,7 +130,6 @@ def _grouped(omissions: Iterable[Omission]) -> Iterator[str]:
 
 
 _MAX_PERCENT = 100
-ShowProgress = Callable[[str], AbstractContextManager[Callable[[Progress], None]]]
 
 
 class TestRequest(NamedTuple):
@@ -145,12 +143,12 @@ class TestRequest(NamedTuple):
     format: OutputFormat
 
 
-def test(request: TestRequest, screen: Screen, warn: Warn, show_progress: ShowProgress) -> tuple[str, ExitCode]:
+def test(request: TestRequest, screen: Screen, warn: Warn, show_class: ShowClass) -> tuple[str, ExitCode]:
     """Return the result as text and the exit code; raises GraderError for a broken rubric or without a reference."""
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
     samples = read_samples(request.folder) if request.folder is not None else None
-    with show_progress(f"Testing {rubric.id}") as show:
+    with show_class(f"Testing {rubric.id}") as show:
         result = tested(
             rubric,
             samples,

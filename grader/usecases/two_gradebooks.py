@@ -16,8 +16,8 @@ from grader.report.formats import OutputFormat
 from grader.report.review import mark_text
 from grader.report.screen import Screen, draw
 from grader.text import counted, printable, printable_path
-from grader.usecases import Terminal
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.terminal import Terminal
 
 
 class DiffRequest(NamedTuple):
@@ -72,12 +72,12 @@ def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Termina
     choices: dict[Conflict, Choice] = {}
     prompt = f"k to keep the mark of {names[0]}, t to take that of {names[1]}, s to skip: "
     for item in conflicts:
-        terminal.show("".join(f"{line}\n" for line in _conflict_lines(item, names)))
+        terminal.print("".join(f"{line}\n" for line in _conflict_lines(item, names)))
         answer = terminal.ask(prompt)
         while answer is not None and answer.strip().lower() not in _ANSWERS:
             answer = terminal.ask(prompt)
         if answer is None:
-            terminal.show("\n")
+            terminal.print("\n")
             break
         if choice := _ANSWERS[answer.strip().lower()]:
             choices[conflict_of(item)] = choice

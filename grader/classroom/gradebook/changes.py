@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import criterion_points, points_of
+from grader.classroom.gradebook.result import criterion_points, points_from_units
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.grading.rubric_changes import RubricChange, concerning, rubric_changes
@@ -166,7 +166,7 @@ def changes(before: Snapshot, after: Snapshot) -> list[Change]:
 def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
     marks: dict[int, dict[str, Decimal | None]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
-        marks.setdefault(student, {})[criterion] = None if units is None else points_of(units)
+        marks.setdefault(student, {})[criterion] = None if units is None else points_from_units(units)
     rubric_of, deadline = cache(snapshot.book.rubric), snapshot.newest_run.deadline
     states: dict[str, _StudentState] = {}
     for student, key, name, result, verdict, parts, digest, sha256, version, *times in snapshot.book.rows(

@@ -11,7 +11,7 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import criterion_points, points_of, storable
+from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
@@ -126,7 +126,7 @@ class Grades:
         query = "SELECT criterion, points, grader_name, comment FROM manual_mark WHERE student = ?"
         adjusted = {row.id for row in self.rubric(grade.rubric).criteria if row.adjustment is not None}
         return {
-            name: ManualMark(points_of(points), by, comment)
+            name: ManualMark(points_from_units(points), by, comment)
             for name, points, by, comment in self.book.rows(query, grade.id)
             if name not in adjusted
         }
@@ -144,8 +144,8 @@ class Grades:
         *_, attempt, earlier = json.loads(row["files"])
         values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}
         values |= {name: self._in_order(row["rubric"], row[name]) for name in _NAMES}
-        values |= {name: points_of(row[name] or 0) for name in _POINTS}
-        final = None if row["final"] is None else points_of(row["final"])
+        values |= {name: points_from_units(row[name] or 0) for name in _POINTS}
+        final = None if row["final"] is None else points_from_units(row["final"])
         is_outdated = bool(row["rubric"]) and row["rubric"] != self._newest_sha256
         is_current = bool(row["rubric"]) and not is_outdated
         return StudentGrade(

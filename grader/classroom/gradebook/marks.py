@@ -7,7 +7,7 @@ from decimal import Decimal, InvalidOperation
 from typing import Any, Literal, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, storable, units_of
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
@@ -211,7 +211,7 @@ def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
 
 def mark_of(row: Mapping[str, Any]) -> Mark:
     """Return a row of the table of marks."""
-    points = None if row["points"] is None else points_of(row["points"])
+    points = None if row["points"] is None else points_from_units(row["points"])
     entry = Entry(row["kind"], points, row["comment"])
     return Mark(row["id"], entry, row["grader_name"], row["at"], row["result"])
 

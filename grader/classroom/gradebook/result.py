@@ -78,7 +78,7 @@ def units_of(points: Decimal) -> int:
     return int(points * UNITS_PER_POINT)
 
 
-def points_of(units: int) -> Decimal:
+def points_from_units(units: int) -> Decimal:
     """Return ten-thousandths as points."""
     return Decimal(units) / UNITS_PER_POINT
 
@@ -109,7 +109,7 @@ def criterion_points(
         elif outcome is None:
             points[row.id] = row.points
         else:
-            points[row.id] = points_of(outcome.points) if outcome.points is not None else None
+            points[row.id] = points_from_units(outcome.points) if outcome.points is not None else None
     return points
 
 

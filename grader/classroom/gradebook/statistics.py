@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
@@ -121,7 +121,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
         final=sum(final for *_, final in verdicts),
         final_graded=sum(student.final is not None for student in students),
-        out_of=points_of(most),
+        out_of=points_from_units(most),
         graded=len(students),
         pending=sum(student.pending > 0 for student in students),
         undecided=len(students) - decided,
@@ -203,7 +203,7 @@ def _totals(students: Iterable[GradedStudent]) -> PointTotals:
         earned += student.score
         pending += student.pending
         lost += max(0, student.decided - (student.score - student.bonus))  # a mark may exceed the maximum
-    return PointTotals(points_of(earned), points_of(lost), points_of(pending))
+    return PointTotals(points_from_units(earned), points_from_units(lost), points_from_units(pending))
 
 
 def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
@@ -248,7 +248,7 @@ def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
     for score, count in values:
         rank -= count
         if rank < 0:
-            return points_of(score)
+            return points_from_units(score)
     return Decimal(0)
 
 

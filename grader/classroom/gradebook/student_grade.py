@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import OpenedSubmission, open_submission
+from grader.classroom.intake.opening import OpenedSubmission, open_class_submission
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
@@ -63,7 +63,7 @@ class SubmissionFiles(NamedTuple):
 
     def open(self) -> OpenedSubmission:
         """Open the submission. Raises InputError."""
-        return open_submission(self.root, self.paths, self.names, self.key, self.max_size)
+        return open_class_submission(self.root, self.paths, self.names, self.key, self.max_size)
 
 
 class SubmissionSources:
@@ -140,7 +140,7 @@ class StudentGrade:
     marker: str = ""
 
     @property
-    def is_decided(self) -> bool:
+    def has_final(self) -> bool:
         """Whether a person has decided the whole grade: with a final mark or an excuse, there is no late penalty."""
         return self.final is not None or self.is_excused
 
@@ -175,9 +175,9 @@ class StudentGrade:
     def concerns(self) -> Iterator[tuple[Reason, str]]:
         """Yield why an instructor should look at this grade, each reason with its details."""
         is_errored = self.verdict == "errored" or self.faults
-        is_open = not self.is_decided and (self.faults or self.pending)
-        is_current = not self.is_decided and self.rubric and not self.is_outdated
-        is_ungraded = not self.is_decided and self.verdict in ("errored", "unreadable")
+        is_open = not self.has_final and (self.faults or self.pending)
+        is_current = not self.has_final and self.rubric and not self.is_outdated
+        is_ungraded = not self.has_final and self.verdict in ("errored", "unreadable")
         reasons = (
             (
                 is_open and is_errored,
@@ -186,9 +186,9 @@ class StudentGrade:
             ),
             (is_open and self.verdict == "unreadable", Reason.UNREADABLE, self.reason),
             (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not self.is_decided and self.verdict == "missing", Reason.MISSING, ""),
+            (not self.has_final and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
-            (not self.is_decided and self.is_outdated, Reason.OUTDATED, ""),
+            (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
             (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
             (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),

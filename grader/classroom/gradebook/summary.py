@@ -10,7 +10,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import CommonFix, common_fixes
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
-from grader.classroom.gradebook.result import points_of
+from grader.classroom.gradebook.result import points_from_units
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.classroom.gradebook.student_grade import Reason
 from grader.grading.record import submission_of
@@ -59,7 +59,7 @@ def agreement(book: Gradebook, rubric: Rubric) -> Agreement:
     """Return the agreement on the criteria of a rubric that have points."""
     maxima = {criterion.id: criterion.points for criterion in rubric.criteria if criterion.points}
     items = [
-        MarkedTwice(str(key), name, points_of(first), points_of(second), maxima[name])
+        MarkedTwice(str(key), name, points_from_units(first), points_from_units(second), maxima[name])
         for key, name, first, second in book.rows(_PAIRS)
         if name in maxima
     ]

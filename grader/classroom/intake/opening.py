@@ -58,7 +58,7 @@ class OpenedSubmission(NamedTuple):
         )
 
 
-def open_submission(
+def open_class_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
 ) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
+from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
 from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
@@ -152,7 +152,7 @@ class Filling:
     def with_points(self, row: TableRow, column: int, total: Decimal, like: str) -> TableRow:
         """Return a row with the total, written `like` another number, in a column; another old grade is a conflict."""
         old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
-        return row if read_points(old) == read_points(new) else self.with_value(row, column, new)
+        return row if read_lms_points(old) == read_lms_points(new) else self.with_value(row, column, new)
 
     def with_value(self, row: TableRow, column: int, new: str) -> TableRow:
         """Return a row with a value in a column, the same row if it has it; another old value is a conflict."""
@@ -191,7 +191,7 @@ def first_of_each(titles: Sequence[str], wanted: Container[str]) -> list[int]:
 def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
     """Raise InputError if a maximum in an LMS file is not that of the rubric: 9.33 of 100 is not 9.33 of 10."""
     for text in maxima:
-        maximum = read_points(text)
+        maximum = read_lms_points(text)
         if maximum is not None and maximum != out_of:
             raise InputError(
                 f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: "

@@ -56,7 +56,7 @@ def points_text(points: Decimal, *, comma: bool = False) -> str:
     return text.replace(".", ",") if comma else text
 
 
-def read_points(text: str) -> Decimal | None:
+def read_lms_points(text: str) -> Decimal | None:
     """Return the points in a cell, or None; the last comma or point is decimal (Canvas gradebook_importer.rb)."""
     text = re.sub(r"\s", "", text)
     if not _NUMBER.fullmatch(text):

@@ -28,7 +28,7 @@ from grader.classroom.lms.filling import (
     check_maximum,
     first_of_each,
 )
-from grader.classroom.lms.grades import LmsGrade, read_points
+from grader.classroom.lms.grades import LmsGrade, read_lms_points
 from grader.classroom.students import Student
 from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError
@@ -104,7 +104,7 @@ def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, 
     preflight = filling.preflight
 
     def fill_row(row: TableRow, _: LmsGrade, total: Decimal) -> TableRow | str:
-        maximum = read_points(grade.maximum)
+        maximum = read_lms_points(grade.maximum)
         if form.above and maximum is not None and total > maximum:
             note = filling.note(row, form.above)
             preflight.warnings.append(f"row {row.number}, {note.who}: {format_points(total)} points: {note.why}")
@@ -139,7 +139,7 @@ def _student(row: TableRow, titles: Sequence[str], form: OfflineFormat) -> LmsSt
 def _warnings(
     columns: Sequence[GradeColumn], grade: GradeColumn, options: FillOptions, form: OfflineFormat
 ) -> Iterator[str]:
-    maximum = read_points(grade.maximum)
+    maximum = read_lms_points(grade.maximum)
     if maximum is None:
         yield f"the file does not state the maximum of {grade.title!r} in {form.lms}"
     elif maximum != options.out_of:

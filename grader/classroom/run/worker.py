@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.result import GradingResult, GradingVerdict
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission, unreadable_digest
+from grader.classroom.intake.opening import open_class_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
@@ -60,7 +60,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     rubric = rubric_from(context.rubric, context.rubric_path)
     result = GradingResult(task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns()))
     try:
-        opened = open_submission(context.root, task.paths, task.names, task.key, context.max_size)
+        opened = open_class_submission(context.root, task.paths, task.names, task.key, context.max_size)
         result = result._replace(digest=opened.digest)
         if opened.digest == task.graded:
             return result
