@@ -7,7 +7,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import EvidenceFile
+    from grader.documents.evidence_files import EvidenceFile
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAX_LISTED = 6  # files in one message

@@ -11,7 +11,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import EvidenceFile
+    from grader.documents.evidence_files import EvidenceFile
 
 _MAX_PICTURES = 50
 _MAX_UNREAD = 4
@@ -24,7 +24,8 @@ def evidence_of(
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
     if not wanted:
         return (), ()
-    from grader.documents.evidence import evidence_files, find_all_evidence  # a URDF on its own has none
+    from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
+    from grader.documents.evidence_files import evidence_files
 
     graded = {evidence.id: _graded_names(evidence, rubric) for evidence in wanted}
     # A file that may be meant for several pieces is listed where a criterion lists it, too.

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from grader.checks.outcome import Outcome
-from grader.documents.evidence import EvidenceFile
+from grader.documents.evidence_files import EvidenceFile
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
 from grader.grading.report import EvidenceResult, Report, Result

@@ -15,7 +15,7 @@ from grader.problems import Problem
 from grader.source import Edit, Location
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import EvidenceFile
+    from grader.documents.evidence_files import EvidenceFile
 
 _NOTHING = Decimal(0)
 

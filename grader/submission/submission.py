@@ -20,7 +20,7 @@ from grader.text import was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
-    from grader.documents.evidence import LabelledFile
+    from grader.documents.evidence_files import LabelledFile
 
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
@@ -97,7 +97,7 @@ class Submission:
     @cached_property
     def labelled_files(self) -> tuple[LabelledFile, ...]:
         """The pictures, films and PDF files in it."""
-        from grader.documents.evidence import read_labelled_files
+        from grader.documents.evidence_files import read_labelled_files
 
         return read_labelled_files(self.tree)
 

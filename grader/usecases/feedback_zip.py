@@ -11,9 +11,10 @@ from typing import NamedTuple
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.feedback_names import ARCHIVES, canvas_name, moodle_folder
-from grader.classroom.lms.filling import FillOptions, Preflight, match_rows
+from grader.classroom.lms.filling import FillOptions, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
+from grader.classroom.lms.preflight import Preflight
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of

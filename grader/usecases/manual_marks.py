@@ -16,13 +16,12 @@ from grader.classroom.gradebook.marks import (
     Mark,
     NewerMarkError,
     add_mark,
-    criterion_of,
     newest_mark,
-    read_points,
     undo_mark,
 )
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import Student
+from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL

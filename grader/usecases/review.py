@@ -8,8 +8,9 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, ReviewScope
-from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review import ReviewSession
+from grader.classroom.typed_names import read_points
 from grader.errors import InputError
 from grader.report.review import mark_text, render_item
 from grader.report.screen import draw

@@ -12,8 +12,9 @@ from typing import Any
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
-from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review import ReviewSession
+from grader.classroom.typed_names import read_points
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of

@@ -6,10 +6,11 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.gradebook.changes import Snapshot, changes, last_two
+from grader.classroom.gradebook.changes import changes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.histories import MergeItem, compare
 from grader.classroom.gradebook.merge import Choice, Conflict, Merged, conflict_of, copy_of, merge
+from grader.classroom.gradebook.snapshots import Snapshot, last_two
 from grader.errors import GraderError, InputError
 from grader.report.changes import render_changes, render_changes_json
 from grader.report.formats import OutputFormat

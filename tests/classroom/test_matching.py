@@ -12,8 +12,9 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.intake.roster import Roster, RosterEntry
-from grader.classroom.lms.filling import LmsStudent, Preflight, match_rows
+from grader.classroom.lms.filling import LmsStudent, match_rows
 from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.preflight import Preflight
 from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
 from grader.classroom.students import Student
 from grader.errors import InputError

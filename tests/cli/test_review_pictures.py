@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from grader.classroom.gradebook.student_grade import SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.files.reading import URDF_LIMIT
 from grader.submission.urdf import Read

@@ -13,7 +13,8 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
-from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
 from grader.errors import InputError

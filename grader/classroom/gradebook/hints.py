@@ -11,7 +11,7 @@ from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.graded_students import manual_units
 from grader.classroom.gradebook.result import units_of
-from grader.classroom.gradebook.student_grade import SubmissionFiles
+from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.hints.record import StoredHint, hints_from_record
 from grader.grading.record import submission_of

@@ -1,24 +1,13 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
-import json
-import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
-from functools import cached_property
-from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness
-from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import OpenedSubmission, open_class_submission
+from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.classroom.students import Student
-from grader.errors import InputError
-from grader.files.reading import URDF_LIMIT
-from grader.grading.rubric import Rubric
-from grader.source import Source
-from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, Urdf
 from grader.text import counted, counted_points
 
 
@@ -37,61 +26,6 @@ class Reason(StrEnum):
     OLDER_MARKS = "marked before the submission changed"
     REVALUED_MARKS = "marked before the points of the criterion changed"
     MARKED = "could not be graded, and was marked manually"
-
-
-class SubmissionFiles(NamedTuple):
-    """Where a submission was when graded: paths below the class `root`, and the fingerprint and digest of the files.
-
-    The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The
-    digest is of the contents.
-    """
-
-    root: str
-    paths: tuple[str, ...]
-    names: tuple[str, ...]
-    key: str
-    fingerprint: str
-    digest: str = ""
-    max_size: int = URDF_LIMIT  # bytes of a URDF
-
-    @classmethod
-    def of(cls, row: Mapping[str, Any]) -> "SubmissionFiles":
-        """Return the files in a row of the view `grade`."""
-        paths, names, *_ = json.loads(row["files"])
-        known = row["key"], row["fingerprint"], row["digest"], row["max_size"]
-        return cls(row["source"], tuple(paths), tuple(names), *known)
-
-    def open(self) -> OpenedSubmission:
-        """Open the submission. Raises InputError."""
-        return open_class_submission(self.root, self.paths, self.names, self.key, self.max_size)
-
-
-class SubmissionSources:
-    """Opens a submission when one of its files is first asked for."""
-
-    def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
-        self._files, self._rubric = files, rubric
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one file; None if it cannot be read or has changed."""
-        return self.submission.source(path) if self.submission is not None else None
-
-    @property
-    def urdf(self) -> Urdf:
-        """The URDF; absent if it cannot be read or has changed."""
-        return self.submission.urdf if self.submission is not None else Absent()
-
-    @cached_property
-    def submission(self) -> Submission | None:
-        """The submission; None if it cannot be read or has changed since it was graded."""
-        files = self._files
-        found = fingerprint(files.root, files.paths, time.time_ns())
-        try:
-            opened = files.open()
-            is_unchanged = (found and found == files.fingerprint) or opened.digest == files.digest
-            return opened.submission(self._rubric) if is_unchanged else None
-        except InputError:
-            return None
 
 
 @dataclass(frozen=True, slots=True)

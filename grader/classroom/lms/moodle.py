@@ -12,17 +12,10 @@ import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
-from grader.classroom.lms.filling import (
-    Filled,
-    Filling,
-    FillOptions,
-    LmsStudent,
-    Preflight,
-    RowNote,
-    check_maximum,
-)
+from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum
 from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_lms_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
+from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow, neutral, read_table
 from grader.text import format_points

@@ -20,15 +20,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
-from grader.classroom.lms.filling import (
-    Filled,
-    Filling,
-    FillOptions,
-    LmsStudent,
-    check_maximum,
-    first_of_each,
-)
+from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum, first_of_each
 from grader.classroom.lms.grades import LmsGrade, read_lms_points
+from grader.classroom.lms.preflight import Filled
 from grader.classroom.students import Student
 from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.student_grade import SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.intake.fingerprint import fingerprint, is_zip
 from grader.classroom.intake.opening import open_class_submission
 from grader.errors import InputError

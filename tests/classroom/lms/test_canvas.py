@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
+from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
+from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import read_table
 from grader.errors import InputError
