@@ -7,9 +7,9 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_old_hints, rubrics_of
-from grader.classroom.run.batch import Progress
 from grader.classroom.run.hint_search import ClassHintSearch
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.progress import Progress
 from grader.text import counted
 from grader.usecases.terminal import Terminal
 

@@ -15,8 +15,8 @@ from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import summary_of
-from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError, processors
+from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.errors import InputError, RubricError
 from grader.grading.graded_submission import GradedSubmission

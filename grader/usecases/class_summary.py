@@ -17,7 +17,7 @@ from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.terminal import Terminal, Warn
 
 if TYPE_CHECKING:
-    from grader.classroom.run.batch import Progress
+    from grader.classroom.run.progress import Progress
     from grader.grading.rubric import Rubric
 
 

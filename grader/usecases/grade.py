@@ -3,7 +3,6 @@
 import os
 import re
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -14,10 +13,11 @@ from grader.grading.levels import Level
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
+from grader.usecases.repository import base_of, folder_of
 from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import ShowFile, Warn
-from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.usecases.writing import ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.report import Fix, Report
@@ -59,7 +59,7 @@ class GradeRequest:
         return "".join(f" {option} {shell_quoted(value)}" for option, value in words)
 
 
-class GradeResult(NamedTuple):
+class GradeRun(NamedTuple):
     """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
 
     report: "Report"
@@ -79,20 +79,20 @@ class GradeResult(NamedTuple):
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeResult:
+def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request.saves, request.rubric, request.path)
-    result = grade_submission(request, warn, show_file)
-    if request.fix is None or result.fix is None:
-        save_reports(request, result, modes)
-        return result
+    run = grade_submission(request, warn, show_file)
+    if request.fix is None or run.fix is None:
+        save_reports(request, run, modes)
+        return run
     from grader.usecases.hints import files_to_fix, write_fix  # late: few ask for it
 
     others = [*files_of(request.rubric), *(file for _, file in request.saves)]
-    files = files_to_fix(request.fix, request.path, result.report, result.fix, result.besides, others)
-    save_reports(request, result, modes)
-    warn(write_fix(request.fix, request.path, result.report, result.fix, files))
-    return result
+    files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
+    save_reports(request, run, modes)
+    warn(write_fix(request.fix, request.path, run.report, run.fix, files))
+    return run
 
 
 def _arguments(request: GradeRequest) -> dict[str, str]:
@@ -103,7 +103,7 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeResult:
+def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
@@ -133,12 +133,12 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     fix = None
     if report.has_failures or request.fix is not None or request.hints is not None:
-        from grader.usecases.hints import with_hints  # late: many submissions lose nothing
+        from grader.usecases.hints import add_hints  # late: many submissions lose nothing
 
-        report, fix = with_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
-    folder = _folder_of(request.path, submission.path) if submission.is_single else None
+        report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
+    folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeResult(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
@@ -168,15 +168,15 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     return {file: mode for file, mode in modes.items() if mode is not None}
 
 
-def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path, int]) -> None:
+def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]) -> None:
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
-    graded = Path(request.path, result.report.submission.path or "")
+    graded = Path(request.path, run.report.submission.path or "")
     for _, file in request.saves:
         is_source = file.suffix.lower() in _KEPT
-        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *result.besides))
+        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
     for kind, file in request.saves:
         picture = picture_beside(file, request.saves)
-        text = render(result.report, kind, result.base, verbose=request.verbose, picture=picture)
+        text = render(run.report, kind, run.base, verbose=request.verbose, picture=picture)
         save(file, text, (request.path,), modes.get(file))
 
 
@@ -195,46 +195,3 @@ def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     for name in request.parts:
         rubric.part(name)
     return rubric
-
-
-def _folder_of(path: str, inside: str | None) -> Path:
-    """Return the folder that the paths of a single URDF start in, given the path in it."""
-    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
-
-
-def _base_of(path: str, single: Path | None) -> "Base":
-    """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
-    from grader.report.locations import Base
-
-    if path == "-":
-        return Base(is_outside=True)
-    named = Path(path)
-    is_folder = named.is_dir()
-    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
-    place = named.resolve() if is_folder else named.parent.resolve() / named.name
-    root = _repository(place)
-    if root is None:
-        return Base(is_outside=True)
-    if is_folder or single is not None:
-        start = place if single is None else single
-        if not start.is_relative_to(root):
-            return Base(is_outside=True)
-        folder = start.relative_to(root).as_posix()
-        return Base("" if folder == "." else f"{folder}/")
-    return Base(archive=place.relative_to(root).as_posix())
-
-
-def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the current folder."""
-    around = [place, *place.parents]
-    for name in CHECKOUTS:
-        checkout = Path(os.environ.get(name) or os.sep).resolve()
-        if checkout in around[:-1]:  # the last is the root of the file system
-            return checkout
-    for folder in around:
-        if (folder / ".git").exists():
-            return folder
-    with suppress(OSError):  # the current folder may have been deleted
-        here = Path.cwd()
-        return here if here in around else None
-    return None

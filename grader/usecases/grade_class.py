@@ -13,9 +13,10 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_hints
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
-from grader.classroom.run.batch import Batch, Progress, RunSettings
+from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.run.class_check import check_roster
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.progress import Progress
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
 from grader.text import counted, first_lines, printable, printable_path

@@ -18,7 +18,7 @@ _MAX_NAMED = 6
 _FILES = (*ROBOT_FILES, ".zip")  # endings that no folder has
 
 
-def with_hints(
+def add_hints(
     report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
 ) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.

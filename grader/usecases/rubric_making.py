@@ -11,7 +11,7 @@ from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
 from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
-from grader.classroom.run.batch import Progress
+from grader.classroom.run.progress import Progress
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.mutation.samples import read_samples

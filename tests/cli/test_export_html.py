@@ -10,8 +10,8 @@ from urllib.parse import unquote
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.progress import Progress
 from grader.errors import InputError
 from grader.report.formats import Format
 from grader.usecases.class_reports import ReportRun, write_reports

@@ -15,7 +15,7 @@ import pytest
 from rich.console import Console
 from rich.progress import Progress
 
-from grader.classroom.run.batch import Progress as State
+from grader.classroom.run.progress import Progress as State
 from grader.cli import terminal
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT

@@ -4,7 +4,6 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from functools import partial
 from itertools import chain
 from typing import NamedTuple
@@ -19,6 +18,7 @@ from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json
 from grader.classroom.run.class_check import assignments_text, check_same_class
 from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.stored_students import Identities, StoredStudents
 from grader.classroom.run.worker import ClassContext, Task, grade_all, robot_hashes, undecided_result
@@ -28,27 +28,6 @@ from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
 from grader.grading.record import to_record
 from grader.grading.rubric import Rubric
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
-
-    total: int
-    graded: int = 0
-    unchanged: int = 0
-    unreadable: int = 0
-    errored: int = 0
-
-    @property
-    def done(self) -> int:
-        """The number of submissions that have a result."""
-        return self.graded + self.unchanged
-
-    def with_result(self, verdict: str) -> "Progress":
-        """Return the progress after one more result."""
-        counted = {"unchanged"} if verdict == "unchanged" else {"graded", verdict}
-        return replace(self, **{name: getattr(self, name) + 1 for name in counted})
 
 
 class RunSettings(NamedTuple):
