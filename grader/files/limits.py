@@ -2,6 +2,15 @@
 
 from grader.errors import FileError, InputError
 
+MAX_FILES = 50_000  # and as many folders, in a submission
+MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
+MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
+MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, without those that are too large and ignored
+MAX_ARCHIVES = 20  # in an archive or folder
+MAX_NESTED = 3  # archives inside each other
+MAX_RATIO = 200  # of the content of an archive to its own size
+HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
+
 BUILD_FOLDERS = frozenset({"build", "install", "log"})
 # And those with a pyvenv.cfg.
 IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
@@ -22,16 +31,6 @@ def ignored_part(path: str) -> str | None:
 def is_generated(path: str) -> bool:
     """Return whether a path is that of a file of a package which a build has copied."""
     return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
-
-
-MAX_FILES = 50_000  # and as many folders, in a submission
-MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
-MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
-MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, without those that are too large and ignored
-MAX_ARCHIVES = 20  # in an archive or folder
-MAX_NESTED = 3  # archives inside each other
-MAX_RATIO = 200  # of the content of an archive to its own size
-HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
 
 
 class Allowance:

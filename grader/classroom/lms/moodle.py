@@ -12,8 +12,9 @@ import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
+from grader.classroom.lms.feedback import is_own_feedback
 from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum
-from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_lms_points, rounded_down
+from grader.classroom.lms.grades import LmsGrade, points_text, read_lms_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
 from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.students import Student

@@ -10,7 +10,8 @@ from json import dumps
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.run_writer import RunWriter
 from grader.classroom.gradebook.stored import StoredSubmission
-from grader.classroom.intake.layouts.layout import home_of, is_path_key, path_key
+from grader.classroom.intake.attempts import home_of
+from grader.classroom.intake.layouts.layout import is_path_key, path_key
 from grader.classroom.intake.roster import Roster, RosterEntry, entry_from_json
 from grader.classroom.matching import NUMBERS, Clue, Clues, People, clues_of, numbers_of
 from grader.classroom.students import ClassSubmission, Student
