@@ -99,7 +99,7 @@ CREATE TABLE outcome (
         (status IN ('failed', 'skipped', 'carried', 'adjusted', 'pending', 'errored', 'ungraded')),
     points INTEGER,                -- NULL if it is undecided
     cause TEXT NOT NULL,           -- what equal mistakes, or equal reasons for manual grading, have in common
-    measured TEXT,                 -- JSON, see gradebook/failures.py; NULL unless numbers were compared
+    measured TEXT,                 -- JSON, see gradebook/graded_students.py; NULL unless numbers were compared
     PRIMARY KEY (result, position)
 ) WITHOUT ROWID;
 

@@ -8,9 +8,8 @@ from math import sqrt
 from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.criterion_statistics import CriterionStatistics, criteria_statistics
-from grader.classroom.gradebook.failures import grouped, groups_of
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
+from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students, grouped, groups_of
 from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
