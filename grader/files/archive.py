@@ -15,8 +15,8 @@ from typing import IO
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.limits import ignored_part, is_generated
 from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path, zip_members
+from grader.files.names import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
 from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
 from grader.files.tree import File, IgnoredFile, Tree, folders_above, make_tree, parents

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.limits import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
+from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path

@@ -11,27 +11,6 @@ MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
 HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
 
-BUILD_FOLDERS = frozenset({"build", "install", "log"})
-# And those with a pyvenv.cfg.
-IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
-# The ends of the names of files that a build copies, and that a submission may lack.
-_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
-_LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
-
-
-def ignored_part(path: str) -> str | None:
-    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
-    *folders, name = path.split("/")
-    for index, folder in enumerate(folders):
-        if folder in IGNORED_FOLDERS or folder.startswith("."):
-            return "/".join(folders[: index + 1])
-    return path if name.startswith(".") or name in _LITTER else None
-
-
-def is_generated(path: str) -> bool:
-    """Return whether a path is that of a file of a package which a build has copied."""
-    return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
-
 
 class Allowance:
     """The number of bytes that an archive may unpack to, together with the archives in it.

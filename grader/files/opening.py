@@ -9,11 +9,11 @@ from pathlib import Path, PurePosixPath
 
 from grader.errors import FileError, InputError
 from grader.files import limits
+from grader.files.names import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
 from grader.files.reading import not_there, open_regular, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
-ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
 NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
 _SIGNATURES = {
     b"PK\x03\x04": "zip",
@@ -58,7 +58,7 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
         from grader.files.folder import read_folder  # late: a single URDF does not need it
 
         return read_folder(path, top)
-    if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
+    if path.name.lower().endswith((*ROBOT_ENDINGS, ".xml")):
         return None
     kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
@@ -110,7 +110,7 @@ def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     """Return the archives that are opened."""
     files = tree.files.values()
     archives = [file for file in files if file.suffix in ARCHIVES]
-    has_package = any(file.name in ("package.xml", "setup.py") for file in files)
+    has_package = any(file.name in PACKAGE_FILES for file in files)
     if has_package and any(file.suffix == ".urdf" for file in files):
         return [file for file in archives if is_opened(file.name)]
     return archives

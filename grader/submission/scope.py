@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from grader.files.names import PACKAGE_FILES
 from grader.files.tree import Tree
-from grader.package.package import MANIFEST, SETUP, Package
+from grader.package.package import MANIFEST, Package
 from grader.submission.labs import Belonging, LabFolders
 from grader.submission.packages import read_packages, why_none
 from grader.submission.robots import RobotFile, find_robots
@@ -80,7 +81,7 @@ def lab_scope(tree: Tree, lab: Lab, max_size: int) -> Scope:
     only for the robot that the rubric names. `max_size` is in bytes of a URDF.
     """
     robots = find_robots(tree, lab.urdf.rpartition("/")[2], max_size)
-    roots = [path for path in tree.files if path.rpartition("/")[2] in (MANIFEST, SETUP)]
+    roots = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
     places = _places(tree, lab, robots, roots)
     has_own = any(places.labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
     search_tree = places.only(tree, places.searched)

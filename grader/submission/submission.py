@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.limits import MAX_FILE_SIZE
+from grader.files.names import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
@@ -174,7 +175,7 @@ class Submission:
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
-        built = next((path for path in self.tree.generated if path.lower().endswith((".urdf", ".xacro"))), "")
+        built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
         raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
 

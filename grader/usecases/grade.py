@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
+from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import Level
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
@@ -17,14 +18,22 @@ from grader.usecases.repository import base_of, folder_of
 from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import ShowFile, Warn
-from grader.usecases.writing import ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.report import Fix, Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
-_KEPT = (*ROBOT_FILES, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that stay until a report replaces them
+_KEPT = (
+    *ROBOT_ENDINGS,
+    ".toml",
+    ".py",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".cfg",
+)  # files that stay until a report replaces them
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
@@ -113,7 +122,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request, warn)
-    if not request.path.lower().endswith(ROBOT_FILES):
+    if not request.path.lower().endswith(ROBOT_ENDINGS):
         from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
 
         refuse_class(request.path, rubric, request.choice)

@@ -12,6 +12,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import CommonFix, common_fixes
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
+from grader.files.names import ROBOT_ENDINGS
 from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
 
@@ -37,7 +38,7 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
 
 def _is_single(files: str) -> bool:
     paths = json.loads(files)[0]
-    return len(paths) == 1 and paths[0].lower().endswith((".urdf", ".xacro"))
+    return len(paths) == 1 and paths[0].lower().endswith(ROBOT_ENDINGS)
 
 
 _MAYBE_LATE = (

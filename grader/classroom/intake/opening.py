@@ -10,8 +10,8 @@ from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.errors import InputError
 from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
-from grader.files.limits import ignored_part, is_generated
 from grader.files.members import ARCHIVE_ERRORS
+from grader.files.names import ROBOT_ENDINGS, ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start
 from grader.files.tree import Tree, make_tree
@@ -25,7 +25,6 @@ from grader.text import printable_path
 if TYPE_CHECKING:
     import hashlib
 
-_URDF_ENDINGS = (".urdf", ".xacro")
 _UNSUPPORTED = "is neither a URDF nor a folder or archive"
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 _CHUNK = 1024 * 1024
@@ -92,7 +91,7 @@ def _raw(root: str, path: str) -> IO[bytes]:
 
 def _open_on_disk(root: str, path: str, max_size: int) -> OpenedSubmission:
     last = path.rpartition("/")[2]
-    if last.lower().endswith(_URDF_ENDINGS):
+    if last.lower().endswith(ROBOT_ENDINGS):
         shown = printable_path(last)
         return _lone_urdf(shown, read_capped(f"{root}/{path}", max_size, shown=shown, top=root), max_size)
     place = Path(root, path)
@@ -113,7 +112,7 @@ def _open_in_zip(root: str, path: str, max_size: int) -> OpenedSubmission:
     if class_zip.is_folder(path):
         tree = class_zip.folder(path)
         return OpenedSubmission(last, path, _digest_of_tree(last, tree, max_size), None, tree, max_size)
-    if last.lower().endswith(_URDF_ENDINGS):
+    if last.lower().endswith(ROBOT_ENDINGS):
         return _lone_urdf(last, class_zip.read(path, max_size), max_size)
     name = without_endings(last)
     digest = _digest(name, max_size)

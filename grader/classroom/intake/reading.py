@@ -15,6 +15,7 @@ from grader.classroom.intake.listing import Children, ClassListing, FolderListin
 from grader.classroom.intake.names import ending_of, is_course_folder, stems_of
 from grader.classroom.intake.roster import Roster
 from grader.errors import InputError
+from grader.files.names import ROBOT_ENDINGS
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
 from grader.submission.labs import MAX_WRAPPERS
@@ -79,7 +80,7 @@ def is_download(folder: ClassFolder) -> bool:
 
 
 def _is_one_submission(children: Children) -> bool:
-    robots = [name for name in children.files if name.lower().endswith((".urdf", ".xacro"))]
+    robots = [name for name in children.files if name.lower().endswith(ROBOT_ENDINGS)]
     several = len(children.folders) + sum(1 for name in children.files if ending_of(name))
     return teams.is_package(children) or several == 0 or (len(robots) == 1 and several == 1)
 

@@ -12,7 +12,7 @@ from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_class_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
-from grader.files.opening import ARCHIVES
+from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
