@@ -152,7 +152,7 @@ def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource
     from grader.xacro.expansion import ExpandedSource, expand
 
     packages = submission.packages or submission.neighbours
-    around = Surroundings(
+    surroundings = Surroundings(
         submission.whole_tree,
         submission.package,
         packages,
@@ -160,7 +160,7 @@ def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource
         budget=submission.budget,
         is_single=submission.is_single,
     )
-    expansion = expand(data, path, around.workspace(), submission.opening.arguments)
+    expansion = expand(data, path, surroundings.workspace(), submission.opening.arguments)
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source
     for found in expansion.undetermined:

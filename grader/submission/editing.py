@@ -58,11 +58,11 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
     whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
     packages = submission.packages or submission.neighbours
-    around = Surroundings(
+    surroundings = Surroundings(
         whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
     )
-    read = read_as_ros(files.get(path) or urdf.data, path, around)
-    return replace(submission, urdf=read, whole_tree=whole_tree, budget=around.budget)
+    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
+    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
 
 
 def with_files(submission: Submission, files: Files) -> Submission:

@@ -51,8 +51,8 @@ def _expanded(submission: Submission, tree: Tree, path: str, alone: Surroundings
     recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
     packages = read_packages(recorded, Lab(""))
     data = tree.files[path].read(tree.files[path].size)
-    around = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
-    urdf = read_as_ros(data, path, around)
+    surroundings = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
+    urdf = read_as_ros(data, path, surroundings)
     besides = tuple(sorted(known.keys() - {path}))
     note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
     return replace(
@@ -60,7 +60,7 @@ def _expanded(submission: Submission, tree: Tree, path: str, alone: Surroundings
         urdf=urdf,
         whole_tree=overlaid(tree, known),
         notes=(note,) if besides else (),
-        budget=around.budget,
+        budget=surroundings.budget,
         neighbours=packages,
         besides=besides,
     )

@@ -25,8 +25,8 @@ def read_submission(data: bytes, *, identity: str, path: str, opening: Opening =
         return Submission(identity, read_as_ros(data, path))
     from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
 
-    around = Surroundings(arguments=opening.arguments)
-    return Submission(identity, read_as_ros(data, path, around), opening=opening, budget=around.budget)
+    surroundings = Surroundings(arguments=opening.arguments)
+    return Submission(identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget)
 
 
 def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_neighbours: bool = False) -> Submission:
@@ -76,10 +76,10 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
 
     chosen = select(tree, lab, opening.max_size)
     urdf: Urdf = Absent()
-    around = Surroundings(tree, chosen.package, chosen.packages, opening.arguments)
+    surroundings = Surroundings(tree, chosen.package, chosen.packages, opening.arguments)
     if chosen.urdf is not None:
         try:
-            urdf = read_as_ros(tree.files[chosen.urdf].read(opening.max_size), chosen.urdf, around)
+            urdf = read_as_ros(tree.files[chosen.urdf].read(opening.max_size), chosen.urdf, surroundings)
         except InputError as error:  # the rest of the submission is graded
             urdf = Unreadable(chosen.urdf, str(error))
     return Submission(
@@ -96,6 +96,6 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
         is_single=False,
         other_lab=chosen.other_lab,
         opening=opening,
-        budget=around.budget,
+        budget=surroundings.budget,
         reopen=partial(submission_of, identity=identity, lab=lab, opening=opening),
     )

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
+# Files that stay until a report replaces them.
 _KEPT = (
     *ROBOT_ENDINGS,
     ".toml",

@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from decimal import Decimal
 from math import isfinite
 from typing import Literal, NamedTuple
@@ -59,13 +59,18 @@ class GradingResult(NamedTuple):
         """Return the result with the points and outcomes of a report, which is compressed with a dictionary."""
         graded = {result.criterion.part for result in report.results}
         return self._replace(
-            parts=" ".join(part.id for part in report.rubric.parts if part.id in graded),
+            parts=parts_text(report.rubric, graded),
             score=units_of(report.score),
             out_of=units_of(report.max_score),
             pending=units_of(report.pending),
             outcomes=_outcomes(report),
             record=compressed(to_record(report).encode(), dictionary),
         )
+
+
+def parts_text(rubric: Rubric, ids: Container[str]) -> str:
+    """Return the ids of parts as the gradebook stores them: between spaces, in the order of the rubric."""
+    return " ".join(part.id for part in rubric.parts if part.id in ids)
 
 
 def storable(text: str) -> str:

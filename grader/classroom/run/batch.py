@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult, storable
+from grader.classroom.gradebook.result import GradingResult, parts_text, storable
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.fingerprint import fingerprint
@@ -65,8 +65,7 @@ class Batch:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256  # which is computed
         used = {criterion.part for criterion in rubric.criteria}
-        wanted = settings.parts or used
-        self._parts = " ".join(part.id for part in rubric.parts if part.id in wanted and part.id in used)
+        self._parts = parts_text(rubric, used.intersection(settings.parts or used))
         self._executor = executor
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self.has_begun = False  # whether the run is in the gradebook
