@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
 
-from grader.classroom.matching import NUMBERS, Clue, People, claims_of, clues_of, plain_name
+from grader.classroom.matching import LMS_IDS, Clue, People, claims_of, clues_of, plain_name
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
@@ -19,7 +19,7 @@ from grader.names import did_you_mean
 from grader.text import format_points, printable
 
 _FINEST = Decimal("0.0001")  # points, as the gradebook stores them
-_TYPED = (*NUMBERS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
+_TYPED = (*LMS_IDS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
 _MAX_LISTED = 10
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
 _WORD = re.compile(r"[^\s\-]+")  # of a name: Ash-Birch is two

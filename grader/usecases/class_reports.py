@@ -38,7 +38,7 @@ class ReportRun:
     book: Path
     folder: Path
     formats: tuple[Format, ...]
-    due: datetime | None = None
+    deadline: datetime | None = None
     feedback: bool = False
 
 
@@ -94,7 +94,7 @@ def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable
     lost = render_reports(executor, run, names, show)
     if Format.HTML in run.formats:
         there = {key: names[key] for key in names if key not in lost}
-        write_class_page(executor, run.book, run.folder, there, run.due)
+        write_class_page(executor, run.book, run.folder, there, run.deadline)
     shown = printable_path(run.folder)
     warn(f"{counted(len(names) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
@@ -134,7 +134,7 @@ def _write_some(run: ReportRun, named: Sequence[tuple[str, str]]) -> list[tuple[
     """Write the reports of students, given with their file names in the order of the keys; return the students."""
     names = dict(named)
     with Gradebook(run.book) as opened:
-        grades = Grades(opened, run.due)
+        grades = Grades(opened, run.deadline)
         for grade in list(grades.between(min(names), max(names))):
             name = names.get(grade.student.key)
             if name is not None:

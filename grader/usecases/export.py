@@ -110,12 +110,12 @@ def _options(request: ExportRequest, file: Path, grades: Grades) -> FillOptions:
     )
 
 
-def _feedback(request: ExportRequest, grades: Grades, due: datetime | None, terminal: Terminal) -> bytes:
+def _feedback(request: ExportRequest, grades: Grades, deadline: datetime | None, terminal: Terminal) -> bytes:
     into = request.into if request.target == "moodle" else None
     worksheet = (
         (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
     )
-    asked = FeedbackRequest(request.target, Format(request.feedback_format), due, worksheet)
+    asked = FeedbackRequest(request.target, Format(request.feedback_format), deadline, worksheet)
     return feedback_zip(grades, asked, terminal)
 
 

@@ -46,7 +46,7 @@ class FeedbackRequest(NamedTuple):
 
     lms: str
     kind: Format
-    due: datetime | None
+    deadline: datetime | None
     worksheet: tuple[bytes, FillOptions] | None
 
 
@@ -76,7 +76,7 @@ def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> F
         Processes(processors(), REPORT_SECONDS) as executor,
         terminal.show_class("writing reports") as show,
     ):
-        run = ReportRun(grades.book.path, Path(folder), (kind,), request.due, feedback=True)
+        run = ReportRun(grades.book.path, Path(folder), (kind,), request.deadline, feedback=True)
         without = render_reports(executor, run, names, show)
         written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
         reports = {key: path.read_bytes() for key, path in written.items()}

@@ -143,8 +143,8 @@ def test_only_unique_pairs_match(rows: list[str], keys: list[str]) -> None:
 def test_empty_identifiers_match_nothing() -> None:
     """An empty field is no identifier: two students without a number are not the same."""
     people = People([clues_of(Student("a")), clues_of(Student("b"))])
-    assert set(people.clues[0]) == {Clue.WORD, Clue.ANY_CASE}
-    assert people.find({Clue.WORD: ("",)}, (Clue.WORD,)).people == ()
+    assert set(people.clues[0]) == {Clue.EXACT_ID, Clue.ANY_CASE}
+    assert people.find({Clue.EXACT_ID: ("",)}, (Clue.EXACT_ID,)).people == ()
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from decimal import Decimal
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
 from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
-from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
+from grader.classroom.matching import OF_RECORDS, People, clues_of, lms_ids_of
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
@@ -149,7 +149,7 @@ def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], prefl
     A submission that is not on the roster is matched by LMS ids only: its name was written by a student.
     """
     rows = People(clues_of(student.student, student.aliases) for student in students)
-    ours = People(clues_of(grade.student) if grade.is_on_roster else numbers_of(grade.student) for grade in grades)
+    ours = People(clues_of(grade.student) if grade.is_on_roster else lms_ids_of(grade.student) for grade in grades)
     row_of = [rows.find(clues, OF_RECORDS) for clues in ours.clues]
     found: dict[int, LmsGrade] = {}
     left = set(range(len(grades)))
