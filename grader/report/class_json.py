@@ -69,7 +69,7 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "carried": carried,
         "manual_marks": grade.marks,
         "paths": list(grade.files.paths),
-        **fields(grade, "attempt earlier"),
+        **fields(grade.files, "attempt earlier"),
     }
 
 

@@ -1,6 +1,5 @@
 """The current grades in a gradebook: look up students, list those that need attention, build their reports."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import datetime
@@ -13,7 +12,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
-from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.gradebook.student_grade import DoubtfulMarks, StudentGrade
 from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
@@ -25,11 +24,10 @@ from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
 from grader.text import shell_quoted
 
-# Columns of the view `grade` that are taken as they are, those of criteria between spaces, points, and truth values.
+# Columns of the view `grade` that are taken as they are, points, and truth values.
 _PLAIN = ("id", "run", "result", "faults", "marks", "rubric", "verdict", "reason", "submitted", "section", "marker")
-_NAMES = ("older_marks", "revalued_marks", "over_marks")
 _POINTS = ("score", "out_of", "pending")
-_TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
+_TRUTHS = ("is_gone", "is_excused", "final_is_older")
 
 
 class Grades:
@@ -142,23 +140,24 @@ class Grades:
             yield self._grade(row)
 
     def _grade(self, row: dict[str, Any]) -> StudentGrade:
-        *_, attempt, earlier = json.loads(row["files"])
         values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}
-        values |= {name: self._in_order(row["rubric"], row[name]) for name in _NAMES}
         values |= {name: points_from_units(row[name] or 0) for name in _POINTS}
         final = None if row["final"] is None else points_from_units(row["final"])
         is_outdated = bool(row["rubric"]) and row["rubric"] != self._newest_sha256
         is_current = bool(row["rubric"]) and not is_outdated
         return StudentGrade(
             **values,
-            removed_marks=tuple(sorted(row["removed_marks"].split())),
+            doubtful=DoubtfulMarks(
+                older=self._in_order(row["rubric"], row["older_marks"]),
+                revalued=self._in_order(row["rubric"], row["revalued_marks"]),
+                over=self._in_order(row["rubric"], row["over_marks"]),
+                removed=tuple(sorted(row["removed_marks"].split())),
+            ),
             student=Student(*(row[name] for name in STUDENT_COLUMNS)),
             is_on_roster=None if row["is_on_roster"] is None else bool(row["is_on_roster"]),
             is_outdated=is_outdated,
             has_other_parts=is_current and tuple(row["parts"].split()) != self.parts,
             files=SubmissionFiles.of(row),
-            attempt=attempt,
-            earlier=tuple(earlier),
             late=self._lateness(row, values["score"]),
             final=final,
         )

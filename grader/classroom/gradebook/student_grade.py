@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
+from typing import NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.gradebook.submission_files import SubmissionFiles
@@ -28,14 +29,25 @@ class Reason(StrEnum):
     MARKED = "could not be graded, and was marked manually"
 
 
+class DoubtfulMarks(NamedTuple):
+    """The criteria whose manual mark may have to change.
+
+    It was given for an `older` submission, or when the criterion had other points (`revalued`); it is `over` the
+    current maximum, or the criterion was `removed` from the rubric.
+    """
+
+    older: tuple[str, ...] = ()
+    revalued: tuple[str, ...] = ()
+    over: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class StudentGrade:
     """One student's current grade. Without a submission `verdict` is `missing`, and there are no points.
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed.
-    `older_marks` are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that
-    had other points then, `over_marks` those whose mark exceeds the current maximum, and `removed_marks` those that the
-    rubric no longer has. `is_gone` means that the newest run did not find the submission, `is_outdated` that the rubric
+    `is_gone` means that the newest run did not find the submission, `is_outdated` that the rubric
     has changed since it was graded, `has_other_parts` that the parts have that a submission is graded on. `final` is
     the final mark; None if there is none, or the student is excused. `final_is_older` means that the final mark or
     excuse was given for an earlier submission. `section` and `marker` come from the roster.
@@ -46,10 +58,7 @@ class StudentGrade:
     result: int | None
     faults: int
     marks: int
-    older_marks: tuple[str, ...]
-    revalued_marks: tuple[str, ...]
-    over_marks: tuple[str, ...]
-    removed_marks: tuple[str, ...]
+    doubtful: DoubtfulMarks
     score: Decimal
     out_of: Decimal
     pending: Decimal
@@ -60,12 +69,9 @@ class StudentGrade:
     student: Student
     is_on_roster: bool | None
     is_gone: bool
-    is_late: bool
     is_outdated: bool
     has_other_parts: bool
     files: SubmissionFiles
-    attempt: int
-    earlier: tuple[str, ...]
     late: Lateness
     final: Decimal | None = None
     is_excused: bool = False
@@ -100,7 +106,10 @@ class StudentGrade:
                 "it was graded with an earlier version of the rubric: run `grader batch` again",
             ),
             (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
-            (self.over_marks, f"a manual mark exceeds the maximum of its criterion: {', '.join(self.over_marks)}"),
+            (
+                self.doubtful.over,
+                f"a manual mark exceeds the maximum of its criterion: {', '.join(self.doubtful.over)}",
+            ),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )
         return next((reason for holds, reason in reasons if holds), "")
@@ -123,12 +132,12 @@ class StudentGrade:
             (not self.has_final and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
             (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
-            (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
-            (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
+            (is_current and self.doubtful.removed, Reason.REMOVED, ", ".join(self.doubtful.removed)),
+            (self.doubtful.over, Reason.OVER, ", ".join(self.doubtful.over)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
             (self.final_is_older, Reason.OLDER_FINAL, ""),
-            (self.older_marks, Reason.OLDER_MARKS, ", ".join(self.older_marks)),
-            (self.revalued_marks, Reason.REVALUED_MARKS, ", ".join(self.revalued_marks)),
+            (self.doubtful.older, Reason.OLDER_MARKS, ", ".join(self.doubtful.older)),
+            (self.doubtful.revalued, Reason.REVALUED_MARKS, ", ".join(self.doubtful.revalued)),
         )
         return ((reason, detail) for holds, reason, detail in reasons if holds)
 

@@ -30,12 +30,14 @@ class SubmissionFiles(NamedTuple):
     fingerprint: str
     digest: str = ""
     max_size: int = URDF_LIMIT  # bytes of a URDF
+    attempt: int = 1
+    earlier: tuple[str, ...] = ()  # the paths of earlier attempts
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> "SubmissionFiles":
         """Return the files in a row of the view `grade`."""
-        paths, names, *_ = json.loads(row["files"])
-        known = row["key"], row["fingerprint"], row["digest"], row["max_size"]
+        paths, names, attempt, earlier = json.loads(row["files"])
+        known = row["key"], row["fingerprint"], row["digest"], row["max_size"], attempt, tuple(earlier)
         return cls(row["source"], tuple(paths), tuple(names), *known)
 
     def open(self) -> OpenedSubmission:
