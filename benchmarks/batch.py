@@ -24,8 +24,9 @@ from run import check_urdf, in_turn, once
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.intake.reading import read_class
-from grader.classroom.run.batch import Batch, Progress, RunSettings
+from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.progress import Progress
 from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.rubric import load_rubric
 

@@ -27,7 +27,7 @@ from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.opening import open_submission, read_submission
-from grader.submission.workspace import Surroundings
+from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -101,9 +101,7 @@ def warm_packages(runs: int = 15) -> None:
     rubric = load_rubric("lab6")
 
     def grading(path: Path) -> Callable[[], object]:
-        return lambda: grade(
-            rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-        )
+        return lambda: grade(rubric, open_submission(str(path), rubric.lab))
 
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)

@@ -79,7 +79,7 @@ def keys() -> Iterator[str]:
 def sample_report() -> Report:
     """Return the report on a sample submission."""
     rubric = load_rubric("lab6")
-    submission = open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+    submission = open_submission(str(SAMPLE), rubric.lab)
     return hinted(grade(rubric, submission), submission, rubric.hints).report
 
 

@@ -54,7 +54,7 @@ def _report(sample: Sample) -> Report:
 
 def opened(path: Path | str, rubric: Rubric = LAB6) -> Submission:
     """Return the submission at a path relative to the project's root, opened as the command line does."""
-    return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+    return open_submission(str(ROOT / path), rubric.lab)
 
 
 def reference(rubric: Rubric = LAB6) -> Submission:

@@ -159,7 +159,7 @@ def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
 def _lost(graded: GradingResult) -> set[str]:
     """Return the criteria of the URDF that failed or were skipped."""
     not_passed = {LAB6.criteria[position].id: status for position, status, *_ in graded.outcomes}
-    lost = {name for name, status in not_passed.items() if status in ("failed", "skipped", "settled")}
+    lost = {name for name, status in not_passed.items() if status in ("failed", "skipped", "carried", "adjusted")}
     return lost & set(made_up.criteria())
 
 

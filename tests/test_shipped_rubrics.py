@@ -7,7 +7,7 @@ from decimal import Decimal
 import pytest
 
 from grader.grading.rubric import Rubric, shipped_rubrics
-from grader.usecases import DEFAULT_RUBRIC
+from grader.usecases.rubrics import DEFAULT_RUBRIC
 from tests.command_line import run
 from tests.samples import ROOT, RUBRICS, SAMPLES
 from tests.test_architecture import MODULES

@@ -58,7 +58,7 @@ def test_a_reference_gets_full_marks(name: str) -> None:
     """The reference solution of every shipped rubric passes all criteria that need no manual grading."""
     rubric = load_rubric(name)
     path = str(rubric.path.parent / rubric.reference)
-    report = grade(rubric, open_submission(path, wanted=rubric.urdf, package=rubric.package, folders=rubric.folders))
+    report = grade(rubric, open_submission(path, rubric.lab))
     assert report.max_score == rubric.points
     assert report.score + report.pending == rubric.points
     assert report.problems == ()

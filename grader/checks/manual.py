@@ -7,7 +7,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import EvidenceFile
+    from grader.documents.evidence_files import EvidenceFile
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAX_LISTED = 6  # files in one message
@@ -30,9 +30,9 @@ def answered(
     del answer  # students read outcomes, so they do not contain it
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
-    if submission.no_documents:
-        message = f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading"
-        return pending(message, problem=f"the documents cannot be read: {submission.no_documents}")
+    if submission.opening.no_documents:
+        message = f"{question} The documents cannot be read: {submission.opening.no_documents}; needs manual grading"
+        return pending(message, problem=f"the documents cannot be read: {submission.opening.no_documents}")
     found = find_answer(submission.documents, files, places, question)
     unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
     passage = found.passage

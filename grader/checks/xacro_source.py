@@ -148,19 +148,19 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 
 def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
-    from grader.submission.workspace import Surroundings
+    from grader.submission.surroundings import Surroundings
     from grader.xacro.expansion import ExpandedSource, expand
 
     packages = submission.packages or submission.neighbours
-    around = Surroundings(
-        submission.everything,
+    surroundings = Surroundings(
+        submission.whole_tree,
         submission.package,
         packages,
-        submission.arguments,
+        submission.opening.arguments,
         budget=submission.budget,
         is_single=submission.is_single,
     )
-    expansion = expand(data, path, around.workspace(), submission.arguments)
+    expansion = expand(data, path, surroundings.workspace(), submission.opening.arguments)
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source
     for found in expansion.undetermined:

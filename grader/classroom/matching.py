@@ -28,7 +28,7 @@ class Clue(IntEnum):
 
     CANVAS = 0  # the user id
     MOODLE = 1  # the participant id
-    WORD = 2  # key, login, SIS id or email address, exactly
+    EXACT_ID = 2  # key, login, SIS id or email address, exactly
     ANY_CASE = 3  # the same in upper or lower case
     LOCAL_PART = 4  # of an email address
     CANVAS_NAME = 5  # a full name as Canvas writes it into file names
@@ -38,12 +38,12 @@ class Clue(IntEnum):
 
 
 Clues = Mapping[Clue, Collection[str]]
-NUMBERS = (Clue.CANVAS, Clue.MOODLE)
+LMS_IDS = (Clue.CANVAS, Clue.MOODLE)
 _NAMES = (Clue.CANVAS_NAME, Clue.NAME, Clue.SURNAME)
-CERTAIN = Clue.WORD  # a match by this kind or a more reliable one is certain
+CERTAIN = Clue.EXACT_ID  # a match by this kind or a more reliable one is certain
 OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # for the name of a submission
 OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
-OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # for two lists of students
+OF_RECORDS = (*LMS_IDS, Clue.EXACT_ID, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # for two lists of students
 
 
 class Match(NamedTuple):
@@ -95,7 +95,7 @@ def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
         {
             Clue.CANVAS: (student.canvas,),
             Clue.MOODLE: (student.moodle,),
-            Clue.WORD: words,
+            Clue.EXACT_ID: words,
             Clue.ANY_CASE: {plain_word(word) for word in words},
             Clue.LOCAL_PART: {plain_word(local_part)} if at else (),
             Clue.CANVAS_NAME: set(canvas_names(student.name)),
@@ -114,7 +114,7 @@ def claims_of(student: Student) -> Clues:
         {
             Clue.CANVAS: (student.canvas, *(number for _, number in student.readings)),
             Clue.MOODLE: (student.moodle,),
-            Clue.WORD: words,
+            Clue.EXACT_ID: words,
             Clue.ANY_CASE: lower,
             Clue.LOCAL_PART: lower,
             Clue.CANVAS_NAME: (canvas_name(in_canvas),),
@@ -124,7 +124,7 @@ def claims_of(student: Student) -> Clues:
     )
 
 
-def numbers_of(student: Student) -> Clues:
+def lms_ids_of(student: Student) -> Clues:
     """Return only the ids that an LMS gives a student."""
     return _present({Clue.CANVAS: (student.canvas,), Clue.MOODLE: (student.moodle,)})
 
@@ -139,8 +139,8 @@ def _composed(word: str) -> str:
 
 def _contradict(left: Clues, right: Clues, *, by_name: bool) -> bool:
     """Return whether two are different people: ids of an LMS differ or, for the same name, are of different LMS."""
-    shared = [set(left[clue]).intersection(right[clue]) for clue in NUMBERS if clue in left and clue in right]
-    has_ids = all(any(clue in one for clue in NUMBERS) for one in (left, right))
+    shared = [set(left[clue]).intersection(right[clue]) for clue in LMS_IDS if clue in left and clue in right]
+    has_ids = all(any(clue in one for clue in LMS_IDS) for one in (left, right))
     return not all(shared) or (by_name and has_ids and not shared)
 
 

@@ -22,9 +22,9 @@ from grader.classroom.gradebook.marks import (
     Mark,
     NewerMarkError,
     add_mark,
-    criterion_of,
     restore_mark,
 )
+from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.rubric import Rubric

@@ -1,20 +1,25 @@
-"""Find the student whom a person types: by id, login, address, number, full name, or some words of a name.
+"""What a grader types: a student, a criterion, points.
 
-It never chooses between several students: a manual mark must not go to the wrong one.
+A student is found by id, login, address, number, full name, or some words of a name. The search never chooses
+between several students: a manual mark must not go to the wrong one.
 """
 
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from decimal import Decimal, InvalidOperation
 
-from grader.classroom.matching import NUMBERS, Clue, People, claims_of, clues_of, plain_name
+from grader.classroom.matching import LMS_IDS, Clue, People, claims_of, clues_of, plain_name
 from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.grading.criterion import Criterion
+from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
-from grader.text import printable
+from grader.text import format_points, printable
 
-_TYPED = (*NUMBERS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
+_FINEST = Decimal("0.0001")  # points, as the gradebook stores them
+_TYPED = (*LMS_IDS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
 _MAX_LISTED = 10
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
 _WORD = re.compile(r"[^\s\-]+")  # of a name: Ash-Birch is two
@@ -84,3 +89,26 @@ def _listed(students: Sequence[Student]) -> str:
     shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students]
     more = len(shown) - _MAX_LISTED
     return f"{', '.join(shown[:_MAX_LISTED])}{f' and {more} more' if more > 0 else ''}"
+
+
+def read_points(text: str, name: str, most: Decimal) -> Decimal:
+    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are for and the range."""
+    text = text.strip()
+    try:
+        points = Decimal("NaN" if "_" in text else text.replace(",", "."))
+    except InvalidOperation:
+        points = Decimal("NaN")
+    if points.is_finite() and not 0 <= points <= most:
+        raise InputError(f"{name} is worth 0 to {format_points(most)} points, not {text}")
+    if not points.is_finite() or points != points.quantize(_FINEST):
+        raise InputError(f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, not {text!r}")
+    return points
+
+
+def criterion_of(rubric: Rubric, name: str) -> Criterion:
+    """Return the criterion with this id; raises InputError."""
+    criteria = {criterion.id: criterion for criterion in rubric.criteria}
+    if name not in criteria:
+        guess = did_you_mean(name, criteria)
+        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` lists them)")
+    return criteria[name]

@@ -15,11 +15,11 @@ import typer
 
 from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
-from grader.cli.output import warn
+from grader.cli.terminal import warn
 from grader.errors import GraderError
 from grader.text import shell_quoted
-from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.writing import write_stdout
 
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.

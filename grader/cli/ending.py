@@ -18,7 +18,10 @@ from typing import Any
 
 from grader.errors import GraderError, OutOfTime
 
-_DELAY = 0.01  # seconds
+_DELAY = 0.01  # seconds until an interrupt is repeated
+_SECONDS = 60  # of processor time, after which the command ends with a message
+_GRACE = 30  # more seconds, after which the process is ended, whatever it does
+_MEMORY = 2 * 1024**3  # bytes more than at the start
 
 
 @contextmanager
@@ -60,11 +63,6 @@ def _interrupt() -> None:
         signal.pthread_kill(main_thread().ident or 0, signal.SIGINT)
     else:  # Windows
         interrupt_main()
-
-
-_SECONDS = 60  # of processor time, after which the command ends with a message
-_GRACE = 30  # more seconds, after which the process is ended, whatever it does
-_MEMORY = 2 * 1024**3  # bytes more than at the start
 
 
 @contextmanager

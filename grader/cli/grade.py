@@ -6,15 +6,14 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
-from grader.cli.output import screen, warn, write_stderr
-from grader.cli.terminal import TERMINAL
+from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.levels import Level
 from grader.report.formats import Format, render
-from grader.usecases import DEFAULT_RUBRIC
 from grader.usecases.github import is_github_job, publish_refusal, publish_report
 from grader.usecases.grade import GradeRequest, grade_and_save
+from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.saves import read_saves, saved_pictures
 from grader.usecases.writing import write_stdout
 
@@ -91,7 +90,7 @@ def grade(
             from grader.usecases.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
-        result = grade_and_save(request, warn, TERMINAL.show_progress)
+        result = grade_and_save(request, warn, TERMINAL.show_file)
         text = render(result.report, output_format, result.base, screen(), verbose=verbose)
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():

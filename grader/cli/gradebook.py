@@ -9,8 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
-from grader.cli.output import screen
-from grader.cli.terminal import TERMINAL
+from grader.cli.terminal import TERMINAL, screen
 from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
 

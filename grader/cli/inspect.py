@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ArgOption, MaxSizeOption
-from grader.cli.output import screen, warn
+from grader.cli.terminal import screen, warn
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat, render_inspection
 from grader.usecases.exit_codes import ExitCode

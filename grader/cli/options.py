@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.report.formats import Format, OutputFormat
-from grader.usecases import DEFAULT_RUBRIC
+from grader.usecases.rubrics import DEFAULT_RUBRIC
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric

@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ByOption, GradebookOption
-from grader.cli.output import warn
-from grader.cli.terminal import TERMINAL
+from grader.cli.terminal import TERMINAL, warn
 from grader.errors import InputError
 from grader.usecases.writing import write_stdout
 

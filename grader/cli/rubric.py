@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import FormatOption, RubricOption, rubric_ids
-from grader.cli.output import screen, warn
-from grader.cli.terminal import class_progress
+from grader.cli.terminal import screen, show_class, warn
 from grader.report.formats import OutputFormat
-from grader.usecases import DEFAULT_RUBRIC, rubrics
+from grader.usecases import rubrics
+from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.writing import write_stdout
 
 _HELP = """List, show, write, check and test rubrics, and list the checks.
@@ -150,7 +150,7 @@ def run_test(
     from grader.usecases.rubric_making import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, screen(), warn, class_progress)
+    text, code = test(request, screen(), warn, show_class)
     write_stdout(text)
     return code
 

@@ -37,12 +37,12 @@ _OTHER = re.compile(
 class DocumentCollection:
     """The documents of a submission. Each is read once; Word and PDF files share one budget of time.
 
-    `show_progress` gets the path of a file that keeps the user waiting, and an empty text when that is read.
+    `show_file` gets the path of a file that keeps the user waiting, and an empty text when that is read.
     """
 
-    def __init__(self, tree: Tree) -> None:
+    def __init__(self, tree: Tree, show_file: Callable[[str], None]) -> None:
         self.tree = tree
-        self.show_progress: Callable[[str], None] = _show_nothing
+        self._show_file = show_file
         self._seconds = MAX_SECONDS
         self._converted = 0
         self._read_files: dict[str, Document | Unread | None] = {}
@@ -59,9 +59,9 @@ class DocumentCollection:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
         unread: list[Unread] = []
-        wanted = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
+        matching = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
         files = self.tree.files.values()
-        chosen = [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
+        chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:
             document = self.document(file)
             if isinstance(document, Unread):
@@ -159,15 +159,11 @@ class DocumentCollection:
                     process.kill()
                     raise
                 finally:
-                    self.show_progress("")
+                    self._show_file("")
                 return process.returncode, out
 
     def _output(self, process: subprocess.Popen[bytes], quiet: float, path: str) -> bytes:
         with suppress(subprocess.TimeoutExpired):
             return process.communicate(timeout=quiet)[0]
-        self.show_progress(path)
+        self._show_file(path)
         return process.communicate(timeout=self._seconds - quiet)[0]
-
-
-def _show_nothing(path: str) -> None:
-    """Show no progress."""

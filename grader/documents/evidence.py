@@ -2,60 +2,20 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document
+from grader.documents.evidence_files import EvidenceFile, LabelledFile, evidence_files
 from grader.documents.headings import Heading
-from grader.documents.image_size import image_size
 from grader.documents.labels import Label, matches, read_label, stem
-from grader.errors import InputError
-from grader.files.tree import File, Tree
+from grader.files.tree import File
 from grader.names import closest
 from grader.text import cut
 
-_PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
-_EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
-_COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
 _PRELAB = re.compile(r"(?<![^\W\d_])pre[\W_]?lab", re.IGNORECASE)  # work before the lab, which has no evidence of it
-_MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
-_MAX_OPENED = 50  # files at once whose dimensions are read
 _MAX_SHOWN = 60  # characters of a heading
-
-
-@dataclass(frozen=True, slots=True)
-class EvidenceFile:
-    """One file of evidence: its size in bytes, and width and height of a picture in pixels, if they are known.
-
-    Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is known.
-    """
-
-    path: str
-    size: int
-    width: int | None = None
-    height: int | None = None
-    heading: str = ""
-    page: int | None = None
-
-    @property
-    def words(self) -> str:
-        """The file with its dimensions and size, or the heading and page in it, for a message."""
-        if self.heading:
-            return f"{self.heading}{f', page {self.page} of' if self.page else ' in'} {self.path}"
-        dimensions = f"{self.width} x {self.height} pixels, " if self.width else ""
-        size = f"{self.size / 1e6:.1f} MB" if self.size >= 1e6 else f"{self.size / 1e3:.0f} kB"
-        return f"{self.path} ({dimensions}{size if self.size >= 1000 else f'{self.size} bytes'})"
-
-
-class LabelledFile(NamedTuple):
-    """A picture, video or PDF, and the task and step that its path names: as it is written, and read loosely."""
-
-    file: File
-    label: Label
-    loose: Label
 
 
 class FoundEvidence(NamedTuple):
@@ -63,11 +23,6 @@ class FoundEvidence(NamedTuple):
 
     files: tuple[EvidenceFile, ...]
     possible: tuple[EvidenceFile, ...] = ()
-
-
-def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
-    """Return every picture, video and PDF of a submission, with its labels."""
-    return tuple(_labelled(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
 def find_evidence(
@@ -82,16 +37,16 @@ def find_evidence(
     wanted = [read_label(name) for name in names]
     exact = [labelled for labelled in files if _is_labelled(labelled, wanted)]
     if exact:
-        return FoundEvidence(describe(exact))
+        return FoundEvidence(evidence_files(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
     meant = [labelled for labelled in others if _is_misspelt(labelled, wanted)]
     perhaps = [labelled for labelled in others if labelled not in meant and _may_be_meant(labelled, wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
-        return FoundEvidence((*describe(meant), *certain))
+        return FoundEvidence((*evidence_files(meant), *certain))
     whole = _described(_whole_documents(documents), {labelled.file.path for labelled in perhaps})
-    return FoundEvidence((), (*describe(perhaps), *(it for it, _ in inside), *whole))
+    return FoundEvidence((), (*evidence_files(perhaps), *(it for it, _ in inside), *whole))
 
 
 def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[EvidenceFile]:
@@ -126,7 +81,7 @@ def find_all_evidence(
     for labelled in files:
         near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *describe([labelled])))
+            found[near] = FoundEvidence((), (*found[near].possible, *evidence_files([labelled])))
     return found
 
 
@@ -136,17 +91,6 @@ def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
         return None
     distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
     return min(distances)[1] if distances else None
-
-
-def describe(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
-    """Describe files of evidence; of many files, only the first with their dimensions."""
-    return tuple(_evidence_file(labelled.file, is_opened=index < _MAX_OPENED) for index, labelled in enumerate(files))
-
-
-def _labelled(file: File) -> LabelledFile:
-    name = _COPY.sub("", stem(file.path))
-    label = read_label(name)
-    return LabelledFile(file, label, label if label.is_complete else read_label(name, loosely=True))
 
 
 def _may_be_meant(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
@@ -221,11 +165,3 @@ def _below(document: Document, head: Heading) -> EvidenceFile:
     shown = cut(text, _MAX_SHOWN)
     file = document.file
     return EvidenceFile(file.path, file.size, heading=shown, page=document.page(head.start))
-
-
-def _evidence_file(file: File, *, is_opened: bool) -> EvidenceFile:
-    size = None
-    if is_opened and file.suffix in _PICTURES:
-        with suppress(InputError):
-            size = image_size(file.read(_MAX_HEADER, first=True))
-    return EvidenceFile(file.path, file.size, *(size or (None, None)))

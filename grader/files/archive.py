@@ -15,8 +15,8 @@ from typing import IO
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.limits import ignored_part, is_generated
 from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path, zip_members
+from grader.files.names import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
 from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
 from grader.files.tree import File, IgnoredFile, Tree, folders_above, make_tree, parents
@@ -39,7 +39,7 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowa
             size = file.seek(0, io.SEEK_END)
             file.seek(0)
             if size > limits.MAX_ARCHIVE_SIZE:
-                raise limits.too_large(name)
+                raise limits.archive_size_error(name)
             limit = max(limits.HARMLESS_SIZE, limits.MAX_RATIO * size)
             if kind in COMPRESSED_KINDS:
                 stored = opened.enter_context(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))
@@ -110,9 +110,9 @@ def _bounded(members: Iterable[ArchiveMember], name: str, limit: int) -> list[Ar
         listed.append(member)
         total += member.size if member.size <= limits.MAX_FILE_SIZE else 0
         if len(listed) > limits.MAX_FILES:
-            raise limits.too_many(name)
+            raise limits.files_limit_error(name)
         if total > limit:
-            raise limits.too_much(name, limit)
+            raise limits.unpacked_limit_error(name, limit)
     return listed
 
 
@@ -147,7 +147,7 @@ class _Links:
             first, end = bisect_left(self._paths, f"{real}/"), bisect_left(self._paths, f"{real}0")  # 0 comes after /
             self.files |= {path + file.removeprefix(real): file for file in self._paths[first:end]}
             if len(self.files) > limits.MAX_FILES:
-                raise limits.too_many(self._name)
+                raise limits.files_limit_error(self._name)
         return True
 
     def _resolve(self, path: str) -> str | None:

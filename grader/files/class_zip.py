@@ -12,7 +12,8 @@ from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.archive import read_archive, tree_of
 from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path, zip_members
-from grader.files.opening import ARCHIVES, NOT_AN_ARCHIVE, archive_kind
+from grader.files.names import ARCHIVES
+from grader.files.opening import NOT_AN_ARCHIVE, archive_kind
 from grader.files.tree import Tree
 from grader.text import printable_path
 
@@ -74,7 +75,7 @@ class ClassZip:
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)
         if member.size > limits.MAX_ARCHIVE_SIZE:
-            raise limits.too_large(name)
+            raise limits.archive_size_error(name)
         kind = None
         stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
         try:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.limits import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
+from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
@@ -60,7 +60,7 @@ class _Walk:
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > limits.MAX_FILES:
-                    raise limits.too_many(self._shown)
+                    raise limits.files_limit_error(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
                 if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)

@@ -2,28 +2,6 @@
 
 from grader.errors import FileError, InputError
 
-BUILD_FOLDERS = frozenset({"build", "install", "log"})
-# And those with a pyvenv.cfg.
-IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
-# The ends of the names of files that a build copies, and that a submission may lack.
-_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
-_LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
-
-
-def ignored_part(path: str) -> str | None:
-    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
-    *folders, name = path.split("/")
-    for index, folder in enumerate(folders):
-        if folder in IGNORED_FOLDERS or folder.startswith("."):
-            return "/".join(folders[: index + 1])
-    return path if name.startswith(".") or name in _LITTER else None
-
-
-def is_generated(path: str) -> bool:
-    """Return whether a path is that of a file of a package which a build has copied."""
-    return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
-
-
 MAX_FILES = 50_000  # and as many folders, in a submission
 MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
@@ -50,22 +28,22 @@ class Allowance:
         self.unpacked -= unpacked
         self.streamed -= streamed
         if self.unpacked < 0:
-            raise too_much(name, MAX_UNPACKED_SIZE)
+            raise unpacked_limit_error(name, MAX_UNPACKED_SIZE)
         if self.streamed < 0:
-            raise too_much(name, MAX_ARCHIVE_SIZE)
+            raise unpacked_limit_error(name, MAX_ARCHIVE_SIZE)
 
 
-def too_many(name: str) -> InputError:
+def files_limit_error(name: str) -> InputError:
     """Return the error for a submission with more files than any student submits."""
     return FileError(name, f"contains more than {MAX_FILES} files: name the package or the URDF")
 
 
-def too_large(name: str) -> FileError:
+def archive_size_error(name: str) -> FileError:
     """Return the error for an archive of more than `MAX_ARCHIVE_SIZE` bytes."""
     return FileError(name, f"is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
 
 
-def too_much(name: str, limit: int) -> FileError:
+def unpacked_limit_error(name: str, limit: int) -> FileError:
     """Return the error for an archive that would unpack to more than a limit."""
     ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
     reason = f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"

@@ -9,11 +9,11 @@ from pathlib import Path, PurePosixPath
 
 from grader.errors import FileError, InputError
 from grader.files import limits
+from grader.files.names import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
 from grader.files.reading import not_there, open_regular, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
-ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
 NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
 _SIGNATURES = {
     b"PK\x03\x04": "zip",
@@ -32,13 +32,13 @@ def archive_kind(start: bytes) -> str | None:
     return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
 
 
-def open_tree(path: Path, is_wanted: Callable[[str], bool] = lambda _: False) -> Tree | None:
+def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) -> Tree | None:
     """Return the files at a path, including those in its archives; None for a single file that is not an archive.
 
-    `is_wanted` is that of `with_inner`.
+    `is_opened` is that of `with_inner`.
     """
     tree = outer_tree(path)
-    return with_inner(tree, is_wanted) if tree is not None else None
+    return with_inner(tree, is_opened) if tree is not None else None
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
@@ -58,7 +58,7 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
         from grader.files.folder import read_folder  # late: a single URDF does not need it
 
         return read_folder(path, top)
-    if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
+    if path.name.lower().endswith((*ROBOT_ENDINGS, ".xml")):
         return None
     kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
@@ -80,12 +80,12 @@ def tree_name(path: Path) -> str:
 
 def with_inner(
     tree: Tree,
-    is_wanted: Callable[[str], bool] = lambda _: False,
+    is_opened: Callable[[str], bool] = lambda _: False,
     allowance: limits.Allowance | None = None,
     depth: int = 0,
 ) -> Tree:
-    """Return the tree with what is in its archives; beside a package and a URDF, only in those with wanted names."""
-    archives = _archives(tree, is_wanted)
+    """Return the tree with what is in its archives; beside a package and a URDF, only in those that are."""
+    archives = _archives(tree, is_opened)
     if not archives:
         return tree
     allowance = allowance or limits.Allowance()
@@ -96,7 +96,7 @@ def with_inner(
         try:
             inner = _inner(archive, allowance, depth)
             if count + len(inner.files) > limits.MAX_FILES:
-                raise limits.too_many(archive.path)
+                raise limits.files_limit_error(archive.path)
         except InputError as error:
             reason = error.reason if isinstance(error, FileError) else f"cannot be opened: {error}"
             unopened.append(IgnoredFile(archive.path, reason, is_archive=True))
@@ -106,13 +106,13 @@ def with_inner(
     return _combined(tree.name, parts, unopened)
 
 
-def _archives(tree: Tree, is_wanted: Callable[[str], bool]) -> list[File]:
+def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     """Return the archives that are opened."""
     files = tree.files.values()
     archives = [file for file in files if file.suffix in ARCHIVES]
-    has_package = any(file.name in ("package.xml", "setup.py") for file in files)
+    has_package = any(file.name in PACKAGE_FILES for file in files)
     if has_package and any(file.suffix == ".urdf" for file in files):
-        return [file for file in archives if is_wanted(file.name)]
+        return [file for file in archives if is_opened(file.name)]
     return archives
 
 

@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
+from grader.files.names import ROBOT_ENDINGS
 from grader.text import printable_path
 
 URDF_LIMIT = 1024 * 1024  # bytes
@@ -142,7 +143,7 @@ def not_there(path: Path) -> InputError:
 
 def advice_for(path: str) -> str:
     """Return the advice about a file that is too large: the limit of a URDF can be raised."""
-    return _ADVICE if path.lower().endswith((".urdf", ".xacro")) else ""
+    return _ADVICE if path.lower().endswith(ROBOT_ENDINGS) else ""
 
 
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:

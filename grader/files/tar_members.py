@@ -38,7 +38,7 @@ def compressed_members(
             if member.kind == "file" and member.size <= limits.MAX_FILE_SIZE:
                 total += member.size
                 if total > limits.MAX_UNPACKED_SIZE:  # a sparse file is larger than its decompressed data
-                    raise limits.too_much(name, limits.MAX_UNPACKED_SIZE)
+                    raise limits.unpacked_limit_error(name, limits.MAX_UNPACKED_SIZE)
                 if info.issparse():
                     with _open(archive, info) as content:
                         shutil.copyfileobj(content, stored, _CHUNK)
@@ -86,7 +86,7 @@ class _Stream:
         self._position += len(data)
         self._allowance.spend(self._name, streamed=len(data))
         if self._position > self._limit:
-            raise limits.too_much(self._name, self._limit)
+            raise limits.unpacked_limit_error(self._name, self._limit)
         return data
 
     def copy(self, size: int, to: IO[bytes] | None = None) -> None:

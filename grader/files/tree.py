@@ -133,7 +133,7 @@ def folders_above(paths: Iterable[str], name: str) -> set[str]:
                 break
             above.add(parent)
         if len(above) > limits.MAX_FILES:
-            raise limits.too_many(name)
+            raise limits.files_limit_error(name)
     return above
 
 

@@ -47,7 +47,7 @@ def another_robot(rubric: Rubric, robot: Robot) -> MissingElement:
 
 def missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and why."""
-    if submission.is_single or not submission.evidence:
+    if submission.is_single or not submission.evidence_files:
         return {}
     found = {}
     robot = robot_of(submission.urdf)
@@ -65,7 +65,7 @@ def missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
 
 def by_evidence(submission: Submission, reason: str) -> Outcome:
     """Return the outcome of a criterion of what a submission lacks, for this reason, where evidence takes its place."""
-    paths = tuple(file.path for file in submission.evidence[:_MAX_PICTURES])
+    paths = tuple(file.path for file in submission.evidence_files[:_MAX_PICTURES])
     message = f"{reason}, but {enumerated(paths, _MAX_LISTED)}; needs manual grading"
     return pending(message, f"{reason}, but evidence")._replace(measured=paths)
 

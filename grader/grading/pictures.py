@@ -59,7 +59,7 @@ def _files(result: Result) -> tuple[str, ...]:
 
 
 def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedPicture | NotShown]:
-    file = submission.everything.files.get(path) or submission.tree.files.get(path)
+    file = submission.whole_tree.files.get(path) or submission.tree.files.get(path)
     if file is None:
         yield NotShown(path, "it is no longer in the submission")
     elif file.suffix not in CONVERTED:

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from grader.checks.outcome import Outcome
-from grader.documents.evidence import EvidenceFile
+from grader.documents.evidence_files import EvidenceFile
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
 from grader.grading.report import EvidenceResult, Report, Result
@@ -46,7 +46,7 @@ def to_record(report: Report) -> str:
         "evidence": [
             {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.evidence
         ],
-        "others": report.others,
+        "others": report.other_pictures,
         "notes": report.notes,
     }
     return _ENCODER.encode(data)

@@ -8,26 +8,26 @@ from grader.files.reading import read_capped
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, find_xacro, read_urdf
 from grader.submission.opening import open_submission
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 
 
 class ReferenceSolution:
     """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
 
-    def __init__(self, path: Path, urdf: str, package: str, folders: tuple[str, ...]) -> None:
-        self._path, self._urdf, self._package, self._folders = path, urdf, package, folders
+    def __init__(self, path: Path, lab: Lab) -> None:
+        self._path, self._lab = path, lab
 
     @cached_property
     def submission(self) -> Submission:
         """The solution as a submission."""
-        return open_submission(str(self._path), wanted=self._urdf, package=self._package, folders=self._folders)
+        return open_submission(str(self._path), self._lab)
 
     @cached_property
     def reading(self) -> Reading:
         """Its URDF; the rest is not read where the URDF is known and is no xacro."""
-        file = self._path / self._urdf
+        file = self._path / self._lab.urdf
         if file.suffix == ".urdf" and file.is_file():
-            reading = read_urdf(read_capped(file), self._urdf)
+            reading = read_urdf(read_capped(file), self._lab.urdf)
             if find_xacro(reading.source.text) is None:
                 return reading
         try:

@@ -15,7 +15,7 @@ from grader.problems import Problem
 from grader.source import Edit, Location
 
 if TYPE_CHECKING:
-    from grader.documents.evidence import EvidenceFile
+    from grader.documents.evidence_files import EvidenceFile
 
 _NOTHING = Decimal(0)
 
@@ -125,8 +125,8 @@ class EvidenceResult(NamedTuple):
 class Report:
     """The points of one submission under one rubric.
 
-    `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece
-    of evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria,
+    `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
+    piece of evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria,
     whatever the `grade` is.
     """
 
@@ -136,7 +136,7 @@ class Report:
     results: tuple[Result, ...]
     problems: tuple[Problem, ...] = ()
     evidence: tuple[EvidenceResult, ...] = ()
-    others: "tuple[EvidenceFile, ...]" = ()
+    other_pictures: "tuple[EvidenceFile, ...]" = ()
     notes: tuple[str, ...] = ()
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score

@@ -20,6 +20,7 @@ from grader.grading.toml_rows import TomlRow
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
 from grader.robot.selectors import is_selector, texts_in
+from grader.submission.submission import Lab
 from grader.text import printable_path, shell_quoted
 
 _URDF = "robot.urdf"
@@ -96,6 +97,11 @@ class Rubric:
     ignored: tuple[Ignored, ...] = ()
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()
+
+    @property
+    def lab(self) -> Lab:
+        """What is searched in a submission."""
+        return Lab(self.urdf, self.package, self.folders)
 
     @property
     def compares_with_reference(self) -> bool:
@@ -213,7 +219,7 @@ def _solution(rubric: TomlRow, path: Path) -> ReferenceSolution | None:
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
-    return ReferenceSolution(place, rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
+    return ReferenceSolution(place, Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ())))
 
 
 def _criterion(

@@ -60,7 +60,7 @@ class Sample:
     def open(self, rubric: Rubric) -> Submission:
         """Return the submission, opened as the command line does. Raises InputError."""
         path = str(self.folder / self.path)
-        return open_submission(path, wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+        return open_submission(path, rubric.lab)
 
     def expected(self, name: str) -> str:
         """Return what must become of a criterion, in words."""

@@ -37,7 +37,7 @@ def names_of(criterion: Criterion) -> set[str]:
 def words_in_files(submission: Submission) -> set[str]:
     """Return the words in the text files around a URDF: launch files, configurations of controllers and of RViz."""
     found: set[str] = set()
-    for path, file in submission.everything.files.items():
+    for path, file in submission.whole_tree.files.items():
         if path.lower().endswith(_TEXTS):
             try:
                 found |= set(_WORD.findall(file.read(URDF_LIMIT).decode("utf-8", "replace")))
@@ -89,7 +89,7 @@ class Trial:
         if not isinstance(self.reference.urdf, Read):
             return ()
         found = [self.reference.urdf.path]
-        others = [path for path in self.reference.everything.files if path.lower().endswith(_OF_ROBOT)]
+        others = [path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)]
         for path in found:  # grows
             text = self.text(path)
             found += [other for other in others if other not in found and other.rpartition("/")[2] in text]
@@ -102,7 +102,7 @@ class Trial:
     def submission(self, mutant: Mutant) -> Submission | None:
         """Return the reference with a mistake; None where nothing of it can be read any more."""
         if mutant.renamed or mutant.is_deleted:
-            file = self.reference.everything.files[mutant.path]
+            file = self.reference.whole_tree.files[mutant.path]
             files = {mutant.path: None, **({mutant.renamed: file.read(file.size)} if mutant.renamed else {})}
         else:
             files = {mutant.path: mutant.applied(self.text(mutant.path)).encode("utf-8", "surrogateescape")}

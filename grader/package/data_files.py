@@ -9,7 +9,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.files.limits import ignored_part
+from grader.files.names import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError

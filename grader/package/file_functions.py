@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePosixPath
 
-from grader.files.limits import ignored_part
+from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.operators import WalkFolders

@@ -43,7 +43,7 @@ class Package:
     generated: tuple[str, ...] = field(
         default=(), repr=False
     )  # files that a build has copied, by their paths in the submission
-    wanted: str = ""  # the name that the lab gives it
+    lab_name: str = ""  # the name that the lab gives it
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -80,7 +80,7 @@ class Package:
     @cached_property
     def share(self) -> str:
         """The folder below the prefix where ros2 looks for its files: by the lab's name if it has it, else its own."""
-        return f"share/{self.wanted if self.wanted in self.names else self.name}/"
+        return f"share/{self.lab_name if self.lab_name in self.names else self.name}/"
 
     @property
     def is_cmake(self) -> bool:

@@ -116,7 +116,7 @@ REPORT = Record(
         "problems": Many(PROBLEM),
         "results": Many(_RESULT),
         "evidence": (Many(_EVIDENCE), "evidence"),
-        "other_pictures": (Many(_EXHIBIT), "others"),
+        "other_pictures": (Many(_EXHIBIT), "other_pictures"),
     },
     GRADE.optional,
 )

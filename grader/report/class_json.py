@@ -3,12 +3,13 @@
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.sections import Comparison
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.gradebook.summary import Agreement, ClassSummary
+from grader.classroom.gradebook.summary import ClassSummary
 from grader.report.as_json import KINDS
 from grader.report.class_schemas import COUNTS
 from grader.report.json_data import EDIT, exact, fields, rounded, to_json
@@ -68,7 +69,7 @@ def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
         "carried": carried,
         "manual_marks": grade.marks,
         "paths": list(grade.files.paths),
-        **fields(grade, "attempt earlier"),
+        **fields(grade.files, "attempt earlier"),
     }
 
 

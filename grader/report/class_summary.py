@@ -6,10 +6,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.agreement import Agreement
+from grader.classroom.gradebook.attention import Attention
+from grader.classroom.gradebook.criterion_statistics import CriterionStatistics
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
-from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure, CriterionStatistics
-from grader.classroom.gradebook.summary import Agreement, Attention, ClassSummary
+from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure
+from grader.classroom.gradebook.summary import ClassSummary
 from grader.report.class_words import (
     ATTENTION_NOTE,
     CRITERIA_NOTE,

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from textwrap import dedent
 
-from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.summary import ClassSummary

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from enum import Enum, auto
 from typing import NamedTuple
 
 from rich.console import Console
@@ -30,22 +31,31 @@ _MAX_FIRST = 3  # failures with their source line
 _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 
 
-class Page(NamedTuple):
-    """The report, the console, whether all is printed, the feedback that is printed already, and how roomy it is.
+class Room(Enum):
+    """What a page of 24 rows has room for."""
 
-    A page of 24 rows is filled: the `room` is 2 as long as everything fits, then 1 without titles and groups, then 0
-    without empty rows.
-    """
+    EVERYTHING = auto()
+    NO_TITLES = auto()  # of what failed, and no groups that passed
+    NO_EMPTY_ROWS = auto()  # as well
+
+
+class Page(NamedTuple):
+    """The report, the console, whether all is printed, the feedback that is printed already, and how roomy it is."""
 
     report: Report
     console: Console
     is_verbose: bool
     printed: set[str]
-    room: int
+    room: Room
+
+    @property
+    def is_tight(self) -> bool:
+        """Return whether there are no empty rows."""
+        return self.room is Room.NO_EMPTY_ROWS
 
     def leave_row(self) -> None:
         """Print an empty row if there is room for it."""
-        if self.room:
+        if not self.is_tight:
             self.console.print()
 
     def title(self, text: str, style: str = "bold") -> None:
@@ -77,7 +87,7 @@ def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:
     console, details = page.console, result_details(failure.result, page.report)
     is_first = page.is_verbose or number < _MAX_FIRST
     head, message = _head(failure, details, page), _message(details, failure.result)
-    if page.room:
+    if not page.is_tight:
         texts = [block(console, head, INDENT, Text()), block(console, message, INDENT)]
     else:
         most = _MAX_ROWS if is_first else _MAX_REASON
@@ -85,10 +95,10 @@ def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:
     texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
     texts += _hints(failure, details, page)
-    reasons = [*_reasons(details, failure.result, page)] if page.room or is_first else []
+    reasons = [*_reasons(details, failure.result, page)] if not page.is_tight or is_first else []
     page.printed.update(text.plain for text in reasons)
-    reasons += _consequence(failure) if page.room else ()
-    most_reasons = None if page.room else _MAX_REASON - (number > 0)
+    reasons += () if page.is_tight else _consequence(failure)
+    most_reasons = _MAX_REASON - (number > 0) if page.is_tight else None
     texts += [block(console, text, INDENT, most=most_reasons) for text in reasons]
     page.leave_row()
     put(console, Text("\n").join(texts))
@@ -98,10 +108,10 @@ def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
     status = status_of(failure.result)
     text = Text.assemble(page.mark(status), " ", (printable(failure.id), "bold"))
     text.append(f"  {failure.cost}", STYLES[status])
-    if failure.skipped and not page.room:
+    if failure.skipped and page.is_tight:
         text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
-        where = details.location if page.room else replace(details.location, calls=())
+        where = replace(details.location, calls=()) if page.is_tight else details.location
         text.append(f"  {location_text(where)}", "dim")
     return text
 
@@ -118,7 +128,7 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
     where = details.location
     source = page.report.submission.source(where.path) if where is not None else None
     if where is not None and source is not None and source.line(where.line).strip():
-        yield excerpt_block(page.console, source, where, INDENT, is_underlined=bool(page.room))
+        yield excerpt_block(page.console, source, where, INDENT, is_underlined=not page.is_tight)
 
 
 def _hints(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Text]:
@@ -141,8 +151,8 @@ def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
     """
     if details.feedback and details.feedback not in page.printed and (page.is_verbose or not details.hints):
         yield Text(details.feedback, "italic")
-    is_clear = result.outcome.expected is not None or (not page.room and bool(details.advice))
-    if details.expected and (page.room > 1 or not is_clear):
+    is_clear = result.outcome.expected is not None or (page.is_tight and bool(details.advice))
+    if details.expected and (page.room is Room.EVERYTHING or not is_clear):
         yield Text(details.expected, "dim")
 
 

@@ -18,7 +18,7 @@ from grader.report.locations import (
     in_repository,
     location_text,
 )
-from grader.report.order import FailedCriterion, earned_text, failures, is_failure, points_of, undecided_results
+from grader.report.order import FailedCriterion, earned_text, failures, is_failure, pending_automatic, points_of
 from grader.source import Location
 from grader.text import counted_points, printable
 
@@ -89,7 +89,7 @@ def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf,
 
 def _undecided_finding(report: Report, base: Base) -> Iterator[Finding]:
     """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
-    results = undecided_results(report)
+    results = pending_automatic(report)
     if results:
         reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
         names = ", ".join(result.criterion.id for result in results)

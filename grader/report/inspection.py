@@ -124,7 +124,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
     for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
         put(console, Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
-    _print_rest(console, len(robot.roots) + len(robot.holding))
+    _print_rest(console, len(robot.roots) + len(robot.parent_joints))
     frame = printable(inspection.relative_to or "")
     _print_title(console, f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)")
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
@@ -145,7 +145,7 @@ def _print_rest(console: Console, count: int) -> None:
 
 def effect(reading: Reading) -> str:
     """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[reading.verdict] if reading.is_decided else _UNDECIDED
+    return _EFFECTS[reading.verdict] if reading.is_certain else _UNDECIDED
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:

@@ -42,7 +42,7 @@ def is_manual(result: Result) -> bool:
     return result.criterion.check.function in MANUAL_CHECKS
 
 
-def undecided_results(report: Report) -> list[Result]:
+def pending_automatic(report: Report) -> list[Result]:
     """Return the automatic criteria that need manual grading here, because their subject could not be read."""
     return [result for result in report.results if result.is_open and not is_manual(result)]
 

@@ -13,7 +13,7 @@ from grader.problems import Problem
 from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped
 from grader.report.details import carried_text, pending_reason, remarks_on, result_details, skipped_text
-from grader.report.entries import INDENT, Page, show_answer, show_criteria, show_failure
+from grader.report.entries import INDENT, Page, Room, show_answer, show_criteria, show_failure
 from grader.report.order import Order, alike, earned_text, groups, in_order, is_manual, status_of
 from grader.text import counted, enumerated, first_lines, printable
 
@@ -27,7 +27,7 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
     Text of the submission is never interpreted as markup or control codes.
     """
     order = in_order(report)
-    pages = [Page(report, console, verbose, set(), room) for room in (2, 1, 0)]
+    pages = [Page(report, console, verbose, set(), room) for room in Room]
     _show(pages[0] if verbose else next((page for page in pages[:-1] if _fits(page, order)), pages[-1]), order)
 
 
@@ -51,7 +51,7 @@ def _show(page: Page, order: Order) -> None:
         _show_evidence(page)
     else:
         _show_groups(page)
-        if page.room and (line := content.evidence_line(page.report)):
+        if not page.is_tight and (line := content.evidence_line(page.report)):
             page.line(line, "dim")
     _show_other_problems(page)
     _show_notes(page)
@@ -111,7 +111,9 @@ def _show_remarks(order: Order, page: Page) -> None:
 def _show_groups(page: Page) -> None:
     """Print the points of each group, except those of which nothing is known yet: they are listed elsewhere."""
     known = [group for group in groups(page.report) if not all(result.is_open for result in group.results)]
-    kinds = [kind for kind in alike(known, lambda group: group.status) if page.room > 1 or kind[0] != "passed"]
+    kinds = [
+        kind for kind in alike(known, lambda group: group.status) if page.room is Room.EVERYTHING or kind[0] != "passed"
+    ]
     if kinds:
         page.leave_row()
     for status, some in sorted(kinds, key=lambda kind: kind[0] == "passed"):
@@ -154,7 +156,7 @@ def _show_other_problems(page: Page) -> None:
             show_problems(page.console, tuple(problems), submission.source, submission.path)
         return
     listed = [found for found in problems if found.severity != "note"]
-    if not page.room:
+    if page.is_tight:
         problems = listed = [found for found in listed if not found.kind.is_consequence]
     if listed:
         page.leave_row()
@@ -174,7 +176,7 @@ def _kind_block(problems: Sequence[Problem], page: Page) -> Text:
     where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
     text = Text.assemble((f"{first.code} {first.severity} ", SEVERITY_STYLES[first.severity]), (where, "dim"))
     text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
-    return block(page.console, text, INDENT, Text(), most=2 if page.room else 1)
+    return block(page.console, text, INDENT, Text(), most=1 if page.is_tight else 2)
 
 
 def _show_notes(page: Page) -> None:
@@ -200,7 +202,7 @@ def _show_end(page: Page) -> None:
     score = (content.headline(report), "bold green" if is_full else "bold")
     command = content.next_command(report)
     following = f"Next: {command}" if command else content.what_is_left(report)
-    lines = (verdict, following) if page.room else (f"{verdict}. {following}",)
+    lines = (f"{verdict}. {following}",) if page.is_tight else (verdict, following)
     for line in filter(None, (*lines, content.bonus_line(report), content.grade_line(report))):
         page.line(line)
     wrapped(page.console, Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), 0)

@@ -47,7 +47,7 @@ class Reading:
         return self.root if self.root is not None else self.recovered
 
     @property
-    def is_decided(self) -> bool:
+    def is_certain(self) -> bool:
         """Return whether the verdict is certain, although a part of the file may be unknown."""
         return not self.undetermined or any(problem.kind.effect == "rejects" for problem in self.problems)
 

@@ -9,8 +9,8 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree, make_tree
 from grader.source import Edit
 from grader.submission.submission import Submission
+from grader.submission.surroundings import Surroundings
 from grader.submission.urdf import Read, read_as_ros
-from grader.submission.workspace import Surroundings
 
 Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
 
@@ -38,7 +38,7 @@ def content(submission: Submission, path: str) -> bytes | None:
     """Return the bytes of a file of a submission; None where it has none that can be read."""
     if isinstance(submission.urdf, Read) and path == submission.urdf.path:
         return submission.urdf.data
-    file = submission.everything.files.get(path)
+    file = submission.whole_tree.files.get(path)
     try:
         return file.read(URDF_LIMIT) if file is not None else None
     except InputError:
@@ -47,7 +47,7 @@ def content(submission: Submission, path: str) -> bytes | None:
 
 def creates(submission: Submission, edit: Edit) -> bool:
     """Return whether an edit creates a file, which may be empty."""
-    return edit.path != submission.path and edit.path not in submission.everything.files
+    return edit.path != submission.path and edit.path not in submission.whole_tree.files
 
 
 def with_urdf(submission: Submission, files: Files) -> Submission:
@@ -56,20 +56,20 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     assert isinstance(urdf, Read)
     is_renamed = files.get(urdf.path, b"") is None
     path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
-    everything = overlaid(submission.everything, files) if submission.everything.files else submission.everything
+    whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
     packages = submission.packages or submission.neighbours
-    around = Surroundings(
-        everything, submission.package, packages, submission.arguments, is_single=submission.is_single
+    surroundings = Surroundings(
+        whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
     )
-    read = read_as_ros(files.get(path) or urdf.data, path, around)
-    return replace(submission, urdf=read, everything=everything, budget=around.budget)
+    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
+    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
 
 
 def with_files(submission: Submission, files: Files) -> Submission:
     """Return a submission that is read again from scratch with other files. Raises InputError."""
     if submission.reopen is None:
         return with_urdf(submission, files)
-    return submission.reopen(overlaid(submission.everything, files))
+    return submission.reopen(overlaid(submission.whole_tree, files))
 
 
 def overlaid(tree: Tree, files: Files) -> Tree:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from enum import IntEnum
 
-from grader.files.opening import ARCHIVES
+from grader.files.names import ARCHIVES, PACKAGE_FILES
 from grader.files.tree import parents
 
 MAX_WRAPPERS = 3  # folders around a download
@@ -18,7 +18,6 @@ _NUMBER_WORDS = {
     )
 }
 _FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
-_PACKAGE_FILES = frozenset({"package.xml", "setup.py"})
 
 
 class Belonging(IntEnum):
@@ -46,7 +45,7 @@ class LabFolders:
         for path in paths if self._own else ():
             folder, _, name = path.rpartition("/")
             names_of_folders.update(folder.split("/"))
-            if name in _PACKAGE_FILES:
+            if name in PACKAGE_FILES:
                 self._packages.add(folder)
         self._has_exact = any(map(self.is_lab, names_of_folders))
 

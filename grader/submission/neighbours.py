@@ -1,6 +1,5 @@
 """A xacro file on its own, with the files that it includes from the package around it."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,22 +11,22 @@ from grader.package.package import MANIFEST
 from grader.static_python.closed_values import Budget
 from grader.submission.editing import overlaid
 from grader.submission.packages import read_packages
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Opening, Submission
+from grader.submission.surroundings import Surroundings
 from grader.submission.urdf import read_as_ros
-from grader.submission.workspace import Surroundings
 from grader.text import enumerated, printable, printable_path
 
 _MAX_NAMED = 6
 
 
-def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Mapping[str, str]) -> Submission:
+def read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:
     """Return the submission that is one file of xacro, and what it reads from the package around it.
 
     If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
     """
-    alone = Surroundings(arguments=arguments)
+    alone = Surroundings(arguments=opening.arguments)
     submission = Submission(
-        identity, read_as_ros(data, printable_path(place.name), alone), arguments=arguments, budget=alone.budget
+        identity, read_as_ros(data, printable_path(place.name), alone), opening=opening, budget=alone.budget
     )
     if not alone.asked:
         return submission
@@ -38,11 +37,11 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, arguments: Map
         tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
     except (OSError, InputError):
         tree = None
-    return _expanded(tree, path, identity, alone) if tree is not None else submission
+    return _expanded(submission, tree, path, alone) if tree is not None else submission
 
 
-def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Submission:
-    """Return a file of a tree as a submission, with what is read for it; `alone`: its surroundings without a tree."""
+def _expanded(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:
+    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a tree."""
     known: dict[str, bytes] = {}
 
     def read(file: File, limit: int, *, first: bool = False) -> bytes:
@@ -50,19 +49,18 @@ def _expanded(tree: Tree, path: str, identity: str, alone: Surroundings) -> Subm
         return data if first else known.setdefault(file.path, data)
 
     recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
-    packages = read_packages(recorded, "")
+    packages = read_packages(recorded, Lab(""))
     data = tree.files[path].read(tree.files[path].size)
-    around = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
-    urdf = read_as_ros(data, path, around)
+    surroundings = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
+    urdf = read_as_ros(data, path, surroundings)
     besides = tuple(sorted(known.keys() - {path}))
     note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
-    return Submission(
-        identity,
-        urdf,
-        everything=overlaid(tree, known),
+    return replace(
+        submission,
+        urdf=urdf,
+        whole_tree=overlaid(tree, known),
         notes=(note,) if besides else (),
-        arguments=alone.arguments,
-        budget=around.budget,
+        budget=surroundings.budget,
         neighbours=packages,
         besides=besides,
     )

@@ -8,10 +8,16 @@ from grader.names import closest, folded
 from grader.package.manifest import Manifest, read_manifest
 from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
 from grader.source import Location, Source
+from grader.submission.submission import Lab
 from grader.text import enumerated, quoted
 
+_MAX_PACKAGES = 40
+_MAX_NAMED = 5  # packages in a message
+_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
+_NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)
+DEEPER = "it matches equally well, but is deeper in the folders"
+LATER = "it matches equally well, but comes later in alphabetical order"
 BACKUP = "it is named like a backup"
-
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"[^\W\d_]+")
 _WORDS = frozenset(
@@ -27,46 +33,38 @@ def is_backup(path: str) -> bool:
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
-_MAX_PACKAGES = 40
-_MAX_NAMED = 5  # packages in a message
-_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
-_NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)
-DEEPER = "it matches equally well, but is deeper in the folders"
-LATER = "it matches equally well, but comes later in alphabetical order"
-
-
-def find_packages(tree: Tree, wanted: str) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of the wanted name with only a setup.py."""
+def find_packages(tree: Tree, name: str) -> list[str]:
+    """Return the folders of packages: those with a package.xml, and those of this name with only a setup.py."""
     with_manifest, with_setup = (
-        [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == name]
-        for name in (MANIFEST, SETUP)
+        [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == file]
+        for file in (MANIFEST, SETUP)
     )
-    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] == wanted]
+    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] == name]
     if not with_manifest and not named:
         named = with_setup
     return sorted([*with_manifest, *named], key=_depth)[:_MAX_PACKAGES]
 
 
-def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
-    """Return the packages of a submission, the one that matches best first: that of the wanted name.
+def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
+    """Return the packages of a submission, the one that matches best first: that of the name that the lab gives.
 
     Among packages of one name it is one that is no backup, then the one with most of the files that a lab asks for,
     above all the URDF at its path; then the least deep, then the first in alphabetical order.
     """
     known: dict[str, Package] = {}
-    found = [_read_package(tree, folder, known, wanted) for folder in find_packages(tree, wanted)]
-    found.sort(
-        key=lambda it: (_distance(it, wanted), is_backup(it.folder), _missing(it, urdf), _depth(it.folder)),
+    packages = [_read_package(tree, folder, known, lab.package) for folder in find_packages(tree, lab.package)]
+    packages.sort(
+        key=lambda it: (_distance(it, lab.package), is_backup(it.folder), _missing(it, lab.urdf), _depth(it.folder)),
     )
-    for package in found:
+    for package in packages:
         known.setdefault(package.name, package)
-    return tuple(found)
+    return tuple(packages)
 
 
-def best_named(packages: tuple[Package, ...], wanted: str) -> Package | None:
-    """Return the package that has the wanted name, or is in a folder of that name; any if no name is wanted."""
+def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
+    """Return the package that has this name, or is in a folder of this name; any if the name is empty."""
     for package in packages[:1]:
-        return package if not wanted or _distance(package, wanted) <= _IN_NAMED_FOLDER else None
+        return package if not name or _distance(package, name) <= _IN_NAMED_FOLDER else None
     return None
 
 
@@ -76,12 +74,12 @@ def package_around(packages: tuple[Package, ...], path: str | None) -> Package |
     return max(around, key=lambda package: len(package.folder), default=None)
 
 
-def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], wanted: str) -> tuple[str, str]:
-    """Return why none of these packages is graded, nor one `elsewhere`, outside of the lab; and which there are."""
+def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str) -> tuple[str, str]:
+    """Return why none of these packages has this name, nor one `elsewhere`, outside of the lab; and which there are."""
     names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages or elsewhere]
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
     if packages:
-        return f"no package is named {wanted!r}, and none contains the graded URDF", there
+        return f"no package is named {name!r}, and none contains the graded URDF", there
     return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
 
 
@@ -103,23 +101,23 @@ def _depth(folder: str) -> tuple[int, str]:
 
 
 def _missing(package: Package, urdf: str) -> tuple[int, bool]:
-    """Return how many of its usual files a package lacks, and whether it lacks the wanted URDF."""
+    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its path."""
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0
     usual = (has_urdf, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
     return sum(not present for present in usual), not has_urdf
 
 
-def _distance(package: Package, wanted: str) -> int:
-    if package.manifest is not None and package.manifest.name == wanted:
+def _distance(package: Package, name: str) -> int:
+    if package.manifest is not None and package.manifest.name == name:
         return _NAMED
     own = package.manifest.name if package.manifest is not None else package.name
-    if package.folder.rpartition("/")[2] == wanted or (own is not None and folded(own) == folded(wanted)):
+    if package.folder.rpartition("/")[2] == name or (own is not None and folded(own) == folded(name)):
         return _IN_NAMED_FOLDER
-    return _SIMILAR if package.manifest is not None and closest(package.name, [wanted]) else _OTHER
+    return _SIMILAR if package.manifest is not None and closest(package.name, [name]) else _OTHER
 
 
-def _read_package(tree: Tree, folder: str, known: dict[str, Package], wanted: str) -> Package:
+def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab_name: str) -> Package:
     own = tree.below(folder)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     start = Location(path, 1, 1)
@@ -129,4 +127,4 @@ def _read_package(tree: Tree, folder: str, known: dict[str, Package], wanted: st
             manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
-    return Package(folder, own, manifest, known, tree.generated, wanted)
+    return Package(folder, own, manifest, known, tree.generated, lab_name)

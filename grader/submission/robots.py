@@ -65,10 +65,10 @@ class RobotFile(NamedTuple):
         return self.path.rpartition("/")[2]
 
 
-def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[RobotFile, ...]:
-    """Return the files of a tree that may be the URDF; `wanted` is the name of a file that is one whatever it contains.
+def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> tuple[RobotFile, ...]:
+    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it contains.
 
-    Of other files only those of at most `limit` bytes are read, and of these the first bytes.
+    Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
     found: list[RobotFile] = []
     by_content = read = 0
@@ -76,9 +76,9 @@ def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[
     for file in (
         files if len(files) <= _MAX_READ else sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
     ):
-        is_urdf = file.suffix == ".urdf" or file.name == wanted
+        is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
-        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= limit):
+        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
             continue
         read += 1
         start = _robot_start(file) if is_read else None

@@ -71,40 +71,45 @@ class StudentWork(NamedTuple):
     """A robot or package, the folder it is in, and whether it surely is what the lab asks for."""
 
     folder: str
-    is_wanted: bool
+    is_of_lab: bool
 
 
 def students_in(
-    works: Collection[StudentWork], packages: Mapping[str, str], lab: Collection[str], wanted: str
+    works: Collection[StudentWork], packages: Mapping[str, str], lab: Collection[str], package_name: str
 ) -> tuple[str, ...]:
     """Return the folders of students, in order, if the works are those of several students; else none.
 
-    `packages` has the names of packages by their folders, `lab` the words that name the lab, and `wanted` is the name
-    of the package that the lab asks for.
+    `packages` has the names of packages by their folders, `lab` the words that name the lab, and `package_name` is
+    the name that the lab gives the package.
+
+    Of ash/lab6, bo/lab6 and ash2/lab6, the students are in ash and bo: ash2 is a version of ash. Of team/ash/pkg and
+    team/bo/pkg they are in team/ash and team/bo. Of ash/lab6 and old/lab6 there is one student.
     """
-    owners = {work: tuple(_owners(work.folder, packages, lab, wanted)) for work in works}
+    owners = {work: tuple(_owners(work.folder, packages, lab, package_name)) for work in works}
     shared = _shared(owners.values())
-    found: dict[str, list[tuple[str, bool]]] = {}
-    free = [work.is_wanted for work, own in owners.items() if len(own) == shared]
+    by_person: dict[str, list[tuple[str, bool]]] = {}
+    free = [work for work, own in owners.items() if len(own) == shared]
     for work, own in owners.items():
         if len(own) > shared:
-            key, folder = own[shared]
-            found.setdefault(key, []).append((folder, work.is_wanted))
-    for key in [key for key in found if (base := key.rstrip("0123456789")) != key and base in found]:
-        found[key.rstrip("0123456789")] += found.pop(key)  # ash2 is a version of ash
-    sure = [entries for entries in found.values() if any(is_wanted for _, is_wanted in entries)]
-    chosen = sure if sure or free else list(found.values())
+            person, folder = own[shared]
+            by_person.setdefault(person, []).append((folder, work.is_of_lab))
+    for person in list(by_person):
+        first_version = person.rstrip("0123456789")
+        if first_version != person and first_version in by_person:
+            by_person[first_version] += by_person.pop(person)
+    sure = [entries for entries in by_person.values() if any(is_of_lab for _, is_of_lab in entries)]
+    chosen = sure if sure or free else list(by_person.values())
     return tuple(sorted(min(entries)[0] for entries in chosen)) if len(chosen) > 1 else ()
 
 
 def students_beside(
-    folder: str, folders: Collection[str], packages: Mapping[str, str], lab: Collection[str], wanted: str
+    folder: str, folders: Collection[str], packages: Mapping[str, str], lab: Collection[str], package_name: str
 ) -> tuple[str, tuple[str, ...]]:
     """Return the folder of the student whose work is in a folder, and those beside it that may be others'; or none.
 
     `folders` are all of the submission; the other arguments are those of `students_in`.
     """
-    for person, own in _owners(folder, packages, lab, wanted):
+    for person, own in _owners(folder, packages, lab, package_name):
         parent = own.rpartition("/")[0]
         names = [path.rpartition("/")[2] for path in folders if path != own and path.rpartition("/")[0] == parent]
         known = {name: person_in(name, lab).rstrip("0123456789") for name in names}
@@ -146,12 +151,14 @@ def _words(name: str) -> list[str]:
     return _WORD.findall(_CAMEL.sub(" ", _DATE.sub(" ", plain)).casefold())
 
 
-def _owners(folder: str, packages: Mapping[str, str], lab: Collection[str], wanted: str) -> Iterator[tuple[str, str]]:
+def _owners(
+    folder: str, packages: Mapping[str, str], lab: Collection[str], package_name: str
+) -> Iterator[tuple[str, str]]:
     """Yield whose a folder is, with the folder on its path that tells it: a package's only if it is renamed."""
     for path in accumulate(folder.split("/") if folder else (), "{}/{}".format):
         name = path.rpartition("/")[2]
         package = packages.get(path)
-        person = person_in(name, lab) if package is None or (package == wanted and name != wanted) else ""
+        person = person_in(name, lab) if package is None or (package == package_name and name != package_name) else ""
         if person:
             yield person, path
         if package is not None:

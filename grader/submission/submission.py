@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.limits import MAX_FILE_SIZE
+from grader.files.names import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
@@ -20,18 +21,47 @@ from grader.text import was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
-    from grader.documents.evidence import LabelledFile
+    from grader.documents.evidence_files import LabelledFile
 
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
 _NO_FILES = make_tree("", (), ())
+_NO_ARGUMENTS: Mapping[str, str] = {}
+
+
+class Lab(NamedTuple):
+    """What a rubric asks for: the URDF's path in its package, the package's name, and names of the lab's folder."""
+
+    urdf: str
+    package: str = ""
+    folders: tuple[str, ...] = ()
+
+
+def _show_nothing(path: str) -> None:
+    """Show no progress."""
+
+
+class Opening(NamedTuple):
+    """How a submission is opened: the largest size of a URDF in bytes, and the arguments of xacro.
+
+    `no_documents` says why no document is read, where grading ran out of memory with them. `show_file` gets the path of
+    a document that keeps the user waiting, and an empty text when that is read.
+    """
+
+    max_size: int = URDF_LIMIT
+    arguments: Mapping[str, str] = _NO_ARGUMENTS
+    no_documents: str = ""
+    show_file: Callable[[str], None] = _show_nothing
+
+
+DEFAULTS = Opening()
 
 
 @dataclass(frozen=True)
 class Submission:
     """The work that a student submitted. `package` is the graded one; `no_package` says why none is, and which exist.
 
-    `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several
+    `tree` has the files of the lab, and `whole_tree` those around it as well. `students` are the folders of several
     students whose work it holds, and `notes` say how it was read.
     """
 
@@ -42,13 +72,12 @@ class Submission:
     packages: tuple[Package, ...] = field(default=(), repr=False)
     package: Package | None = field(default=None, repr=False)
     no_package: tuple[str, str] = (NO_PACKAGE, "")
-    everything: Tree = field(default=_NO_FILES, repr=False)
+    whole_tree: Tree = field(default=_NO_FILES, repr=False)
     students: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded
-    no_documents: str = ""  # why no document is read, where grading ran out of memory with them
-    arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
+    opening: Opening = DEFAULTS
     budget: Budget = field(default_factory=Budget, repr=False, compare=False)  # of the work to read it
     neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
@@ -59,22 +88,22 @@ class Submission:
         """The documents in it, each of which is read once."""
         from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
-        return DocumentCollection(self.tree)
+        return DocumentCollection(self.tree, self.opening.show_file)
 
     @property
     def readable_documents(self) -> DocumentCollection | None:
         """The documents in it; None where they must not be read."""
-        return None if self.no_documents else self.documents
+        return None if self.opening.no_documents else self.documents
 
     @cached_property
     def labelled_files(self) -> tuple[LabelledFile, ...]:
         """The pictures, films and PDF files in it."""
-        from grader.documents.evidence import read_labelled_files
+        from grader.documents.evidence_files import read_labelled_files
 
         return read_labelled_files(self.tree)
 
     @property
-    def evidence(self) -> tuple[File, ...]:
+    def evidence_files(self) -> tuple[File, ...]:
         """The files that may show the work: pictures, films, PDF and Word files."""
         named = {labelled.file.path for labelled in self.labelled_files}
         return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
@@ -90,7 +119,7 @@ class Submission:
         own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
         if own is None or not self.besides:
             return own
-        hashes = [sha256_of(self.everything.files[path].read(MAX_FILE_SIZE)) for path in self.besides]
+        hashes = [sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides]
         lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
         return sha256_of("".join([f"{own}\n", *lines]).encode())
 
@@ -98,7 +127,7 @@ class Submission:
     def cost(self) -> int:
         """How much longer reading it takes than reading a short URDF."""
         of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
-        return of_urdf + len(self.everything.files) // _FILES_OF_READING
+        return of_urdf + len(self.whole_tree.files) // _FILES_OF_READING
 
     @property
     def is_costly(self) -> bool:
@@ -118,7 +147,7 @@ class Submission:
     @property
     def verdict(self) -> Verdict | None:
         """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
-        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_decided else None
+        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_certain else None
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -146,22 +175,22 @@ class Submission:
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
-        built = next((path for path in self.tree.generated if path.lower().endswith((".urdf", ".xacro"))), "")
+        built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
         raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
 
-    def _refuse_unopened(self, wanted: str) -> None:
+    def _refuse_unopened(self, missing: str) -> None:
         if self.tree.unopened:
             archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
             raise NotDecided(
-                f"no {wanted} was found, but {archives} could not be opened", "an archive could not be opened"
+                f"no {missing} was found, but {archives} could not be opened", "an archive could not be opened"
             )
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
         if isinstance(self.urdf, Read) and path == self.urdf.path:
             return self.urdf.source
-        file = self.everything.files.get(path)
+        file = self.whole_tree.files.get(path)
         try:
             return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
         except InputError:

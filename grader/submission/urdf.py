@@ -12,7 +12,7 @@ from grader.source import Source
 from grader.xml.catalogue import NOT_WELL_FORMED
 
 if TYPE_CHECKING:
-    from grader.submission.workspace import Surroundings
+    from grader.submission.surroundings import Surroundings
 
 
 class OtherCandidate(NamedTuple):
@@ -41,8 +41,8 @@ class Unreadable(NamedTuple):
 class Read(NamedTuple):
     """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro.
 
-    `as_it_stands` is set for xacro that is loaded without xacro: what ROS 2 makes of the text, while everything else is
-    graded on the expanded text.
+    Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether it loads, and the
+    verdict. The robot is that of `reading`, so that everything else is graded as if it had been expanded.
     """
 
     path: str
@@ -73,10 +73,10 @@ class Read(NamedTuple):
 Urdf = Absent | Unreadable | Read
 
 
-def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) -> Read:
+def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = None) -> Read:
     """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
 
-    `around` is what is around it in the submission. Other xacro is loaded as it stands; unless that makes no
+    Other xacro is loaded as it stands; unless that makes no
     difference, everything but that is graded on its expansion.
     """
     if not _needs_xacro(data):
@@ -84,19 +84,19 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
         if not any(problem.kind is NOT_WELL_FORMED for problem in reading.problems):
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
-    if around is None:
-        from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
+    if surroundings is None:
+        from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
 
-        around = Surroundings()
-    launched = around.robot_references(path)
+        surroundings = Surroundings()
+    launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
         given = dict(launched[0].arguments) if launched else {}
-        return Read(path, data, _expanded(data, path, around, given), is_expanded=True)
+        return Read(path, data, _expanded(data, path, surroundings, given), is_expanded=True)
     reading = read_urdf(data, path)
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading)
-    expanded = _expanded(data, path, around, {})
+    expanded = _expanded(data, path, surroundings, {})
     if expanded.robot is None:
         return Read(path, data, reading)
     if reading.verdict == "clean":
@@ -125,7 +125,7 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
 
 
-def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
+def _expanded(data: bytes, path: str, surroundings: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in xacro. A file that the
@@ -135,7 +135,7 @@ def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[
     from grader.xacro.expansion import expand
     from grader.xacro.texts import INSTALLED
 
-    workspace, given = around.workspace(), dict(launched)
+    workspace, given = surroundings.workspace(), dict(launched)
     for name, text in launched.items():
         shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
         if shared is None:
@@ -143,7 +143,7 @@ def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[
         package, inside = shared.groups()
         if not inside or workspace.package(package) is None or workspace.installed(package, inside) is not None:
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
-    expansion = expand(data, path, workspace, {**given, **around.arguments})
+    expansion = expand(data, path, workspace, {**given, **surroundings.arguments})
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]

@@ -7,20 +7,18 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_old_hints, rubrics_of
-from grader.classroom.run.batch import Progress
-from grader.classroom.run.hint_search import HintSearch
+from grader.classroom.run.hint_search import ClassHintSearch
 from grader.classroom.run.pool import Processes, processors
-from grader.files.reading import URDF_LIMIT
+from grader.classroom.run.progress import Progress
 from grader.text import counted
-from grader.usecases import Terminal
+from grader.usecases.terminal import Terminal
 
 
 class HintOptions(NamedTuple):
-    """How hints are searched: the number of workers, the seconds for a submission, and the bytes of a URDF."""
+    """How hints are searched: the number of workers, and the seconds for a submission."""
 
     jobs: int | None = None
     timeout: float = 60.0
-    max_size: int = URDF_LIMIT
 
 
 def search_class_hints(
@@ -32,10 +30,10 @@ def search_class_hints(
     robot.
     """
     searched = [rubric for rubric in rubrics_of(book) if rubric.hints != "none"] if reports else []
-    searches = [HintSearch(book, rubric, attrgetter("content"), options.max_size) for rubric in searched]
+    searches = [ClassHintSearch(book, rubric, attrgetter("content")) for rubric in searched]
     newest = Grades(book).newest_rubric()
     if statistics and newest.sha256 not in {rubric.sha256 for rubric in searched}:
-        searches.append(HintSearch(book, newest, attrgetter("robot"), options.max_size))
+        searches.append(ClassHintSearch(book, newest, attrgetter("robot")))
     total = sum(len(search.wanted) for search in searches)
     if total and book.read_only:
         terminal.warn(f"no hints for {counted(total, 'submission')}: {book.read_only}")
@@ -52,9 +50,9 @@ def search_class_hints(
         )
 
 
-def _run(searches: Iterable[HintSearch], total: int, options: HintOptions, terminal: Terminal) -> None:
+def _run(searches: Iterable[ClassHintSearch], total: int, options: HintOptions, terminal: Terminal) -> None:
     workers = options.jobs or processors()
-    with Processes(workers, options.timeout) as executor, terminal.class_progress("searching hints") as show:
+    with Processes(workers, options.timeout) as executor, terminal.show_class("searching hints") as show:
         done = Progress(total)
         show(done)
         for search in searches:

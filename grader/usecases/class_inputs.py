@@ -13,7 +13,8 @@ from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
 from grader.text import counted, enumerated, printable_path, shell_quoted
-from grader.usecases import DEFAULT_RUBRIC, Warn
+from grader.usecases.rubrics import DEFAULT_RUBRIC
+from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 5
 
@@ -21,9 +22,7 @@ _MAX_NAMED = 5
 def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     """Yield the hashes of the robots that the course handed out. Raises InputError for a file without a robot."""
     for path in files:
-        hashes = robot_hashes(
-            open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
-        )
+        hashes = robot_hashes(open_submission(str(path), rubric.lab))
         if not any(hashes):
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from filter(None, hashes)

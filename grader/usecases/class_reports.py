@@ -1,33 +1,34 @@
 """Write a report for each student of a class, from the gradebook, and the class's page beside reports in HTML."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from concurrent.futures import Executor, Future
-from contextlib import suppress
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import datetime
-from itertools import islice
+from functools import partial
 from pathlib import Path
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook.fixes import CommonFix
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.remarks import remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.gradebook.summary import summary_of
-from grader.classroom.run.batch import Progress
-from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.pool import WorkerError, processors
+from grader.classroom.run.progress import Progress
+from grader.classroom.run.queue import Queue
 from grader.errors import InputError, RubricError
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Grade, Report, Result
 from grader.report.formats import Format, render
-from grader.text import counted, enumerated, format_points, printable, printable_path, without_commands
-from grader.usecases import Warn
+from grader.text import counted, enumerated, format_points, printable, printable_path
+from grader.usecases.class_page import write_class_page
 from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
 from grader.usecases.saves import address
+from grader.usecases.terminal import Warn
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
-_MAX_TRIED = 3  # students whose submissions may have changed since they were graded
+_TASK_SIZE = 50  # reports
+_MAX_NAMED = 3
+REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,58 +38,34 @@ class ReportRun:
     book: Path
     folder: Path
     formats: tuple[Format, ...]
-    due: datetime | None = None
+    deadline: datetime | None = None
     feedback: bool = False
 
 
-def write_class_page(executor: Executor, run: ReportRun, names: dict[str, str]) -> None:
-    """Write the page into the folder of the students' pages. Students whose submissions were removed have no link."""
-    from grader.report.pages.class_page import MAX_DRAWINGS, render_class_page  # late: they import jinja2
+def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
+    """Return the report on a student's newest submission, with the grade and notes.
 
-    with Gradebook(run.book) as opened:
-        grades = Grades(opened, run.due)
-        summary = summary_of(grades, with_fixes=True)
-        there = {grade.student.key: grade for grade in grades.all() if grade.student.key in names and not grade.is_gone}
-        links = {key: address(f"{names[key]}.{Format.HTML.ending}") for key in there}
-        examples = {
-            fix: sorted((key for key in fix.students if key in there), key=lambda key: -there[key].score)[:_MAX_TRIED]
-            for fix in summary.fixes[:MAX_DRAWINGS]
-        }
-        drawings = _drawings(executor, run.book, examples)
-        page = render_class_page(summary, grades, links, drawings)
-    save(run.folder / CLASS_PAGE, without_commands(page))
-
-
-def _drawings(executor: Executor, book: Path, examples: Mapping[CommonFix, Sequence[str]]) -> dict[str, str]:
-    """Return a picture of a robot that needs each edit, as SVG, by action; none if no robot can be read any more.
-
-    `examples` are students who need the edit, the highest score first.
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
+    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. Without a
+    submission, it has notes, but no points.
     """
-    tasks = {fix.action: executor.submit(_draw, str(book), keys, fix.criteria) for fix, keys in examples.items()}
-    found = {}
-    for action, task in tasks.items():
-        with suppress(Exception):  # a crash affects only this picture
-            found[action] = task.result()
-    return found
+    report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
+    note = grade.late.reason
+    if grade.late.points:
+        penalty = format_points(-grade.late.points)
+        note += f": the late penalty is {penalty} points, the total is {format_points(grade.total)}"
+    remarks = remarks_of(grades, grade)
+    graded = remarks.graded if feedback or remarks.graders.is_manual else []
+    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
+    notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
+    return replace(report, notes=notes, grade=counting if is_changed else None)
 
 
-def _draw(book: str, keys: Collection[str], criteria: Collection[str]) -> str:
-    """Return a picture of the first student's robot that can be read; empty if there is none."""
-    from grader.report.pages.class_page import thumbnail
-
-    with Gradebook(Path(book)) as opened:
-        grades = Grades(opened)
-        for key in keys:
-            with suppress(Exception):  # a robot that cannot be drawn: the next one may be
-                if drawn := thumbnail(grades.report(grades.find(key)), criteria):
-                    return drawn
-    return ""
-
-
-_TASK_SIZE = 50  # reports
-_MAX_NAMED = 3
-REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
-_Write = Callable[[dict[str, str]], "Future[None]"]
+def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:
+    outcome = Outcome("skipped", "not graded, because nothing was submitted")
+    results = tuple(Result(criterion, outcome) for criterion in grades.criteria)
+    return Report(GradedSubmission(grade.student.key), grades.newest_rubric(), grades.parts, results)
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
@@ -116,7 +93,8 @@ def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable
     earlier = update_index(run.folder, names)
     lost = render_reports(executor, run, names, show)
     if Format.HTML in run.formats:
-        write_class_page(executor, run, {key: names[key] for key in names if key not in lost})
+        there = {key: names[key] for key in names if key not in lost}
+        write_class_page(executor, run.book, run.folder, there, run.deadline)
     shown = printable_path(run.folder)
     warn(f"{counted(len(names) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
@@ -129,43 +107,34 @@ def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable
 def render_reports(
     executor: Executor, run: ReportRun, names: dict[str, str], show: Callable[[Progress], None]
 ) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why."""
-
-    def write(some: dict[str, str]) -> "Future[None]":
-        return executor.submit(_write_some, run, some)
-
-    chunks = [dict(islice(names.items(), start, start + _TASK_SIZE)) for start in range(0, len(names), _TASK_SIZE)]
-    show(Progress(len(names)))
-    lost: dict[str, str] = {}
-    done = 0
-    for some, task in [(some, write(some)) for some in chunks]:
-        lost |= _lost(write, some, task)
-        done += len(some)
-        show(Progress(len(names), done))
-    return lost
-
-
-def _lost(write: _Write, names: dict[str, str], task: "Future[None]") -> dict[str, str]:
-    """Wait for reports; return the students without one, and why. If they fail together, each is retried alone.
+    """Write the reports of students, by their file names; return who has none, and why.
 
     Raises InputError and RubricError, which concern all reports.
     """
-    try:
-        task.result()
-    except (InputError, RubricError):
-        raise
-    except Exception as error:  # noqa: BLE001  a fault of the grader affects only this report
-        if len(names) == 1:
-            fault = f"the grader itself failed: {type(error).__name__}: {error}"
-            return dict.fromkeys(names, str(error) if isinstance(error, WorkerError) else fault)
-        alone = [{key: name} for key, name in names.items()]
-        return {key: why for one in alone for key, why in _lost(write, one, write(one)).items()}
-    return {}
+    progress = Progress(len(names))
+    show(progress)
+    lost: dict[str, str] = {}
+    queue = Queue(executor, processors(), partial(_write_some, run), _lost, _TASK_SIZE)
+    for results in queue.all(names.items()):
+        lost |= {key: why for key, why in results if why}
+        progress = replace(progress, graded=progress.graded + len(results))
+        show(progress)
+    return {key: lost[key] for key in names if key in lost}
 
 
-def _write_some(run: ReportRun, names: dict[str, str]) -> None:
+def _lost(named: tuple[str, str], error: Exception) -> tuple[str, str]:
+    """Return the student without a report, and why."""
+    if isinstance(error, InputError | RubricError):
+        raise error
+    fault = f"the grader itself failed: {type(error).__name__}: {error}"
+    return named[0], str(error) if isinstance(error, WorkerError) else fault
+
+
+def _write_some(run: ReportRun, named: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Write the reports of students, given with their file names in the order of the keys; return the students."""
+    names = dict(named)
     with Gradebook(run.book) as opened:
-        grades = Grades(opened, run.due)
+        grades = Grades(opened, run.deadline)
         for grade in list(grades.between(min(names), max(names))):
             name = names.get(grade.student.key)
             if name is not None:
@@ -173,29 +142,4 @@ def _write_some(run: ReportRun, names: dict[str, str]) -> None:
                 picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
                 for kind in run.formats:
                     save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
-
-
-def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
-    """Return the report on a student's newest submission, with the grade and notes.
-
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
-    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. Without a
-    submission, it has notes, but no points.
-    """
-    report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
-    note = grade.late.reason
-    if grade.late.points:
-        penalty = format_points(-grade.late.points)
-        note += f": the late penalty is {penalty} points, the total is {format_points(grade.total)}"
-    remarks = remarks_of(grades, grade)
-    graded = remarks.graded if feedback or remarks.graders.is_manual else []
-    is_changed = grade.is_decided or grade.late.points or any(result.manual_mark for result in report.results)
-    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
-    notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
-    return replace(report, notes=notes, grade=counting if is_changed else None)
-
-
-def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:
-    outcome = Outcome("skipped", "not graded, because nothing was submitted")
-    results = tuple(Result(criterion, outcome) for criterion in grades.criteria)
-    return Report(GradedSubmission(grade.student.key), grades.newest_rubric(), grades.parts, results)
+    return [(key, "") for key in names]

@@ -13,11 +13,11 @@ from grader.classroom.gradebook.sections import Grouping, compare
 from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
-from grader.usecases import Terminal, Warn
 from grader.usecases.class_hints import HintOptions, search_class_hints
+from grader.usecases.terminal import Terminal, Warn
 
 if TYPE_CHECKING:
-    from grader.classroom.run.batch import Progress
+    from grader.classroom.run.progress import Progress
     from grader.grading.rubric import Rubric
 
 

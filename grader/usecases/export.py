@@ -15,13 +15,13 @@ from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, OutputFormat
 from grader.text import enumerated, printable_path
-from grader.usecases import Terminal, Warn
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
 from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.feedback_zip import FeedbackRequest, feedback_zip
 from grader.usecases.grade_files import FILLERS, fill_lms_file, grades_csv, preflight_lines
+from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
@@ -110,12 +110,12 @@ def _options(request: ExportRequest, file: Path, grades: Grades) -> FillOptions:
     )
 
 
-def _feedback(request: ExportRequest, grades: Grades, due: datetime | None, terminal: Terminal) -> bytes:
+def _feedback(request: ExportRequest, grades: Grades, deadline: datetime | None, terminal: Terminal) -> bytes:
     into = request.into if request.target == "moodle" else None
     worksheet = (
         (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
     )
-    asked = FeedbackRequest(request.target, Format(request.feedback_format), due, worksheet)
+    asked = FeedbackRequest(request.target, Format(request.feedback_format), deadline, worksheet)
     return feedback_zip(grades, asked, terminal)
 
 
@@ -168,5 +168,5 @@ def _export_pages(request: ExportRequest, terminal: Terminal) -> None:
             warn_of_due(request.due, Grades(book).newest_rubric(), terminal.warn)
         search_class_hints(book, HintOptions(), terminal, reports=True, statistics=True)
     run = ReportRun(request.gradebook, folder, (Format.HTML,), deadline)
-    with Processes(processors(), REPORT_SECONDS) as executor, terminal.class_progress("writing pages") as show:
+    with Processes(processors(), REPORT_SECONDS) as executor, terminal.show_class("writing pages") as show:
         write_reports(executor, run, terminal.warn, show)

@@ -11,18 +11,19 @@ from typing import NamedTuple
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.feedback_names import ARCHIVES, canvas_name, moodle_folder
-from grader.classroom.lms.filling import FillOptions, Preflight, match_rows
+from grader.classroom.lms.filling import FillOptions, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
+from grader.classroom.lms.preflight import Preflight
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.report.formats import Format
 from grader.text import counted, first_lines, printable
-from grader.usecases import Terminal
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_reports
 from grader.usecases.report_names import file_names, report_names
+from grader.usecases.terminal import Terminal
 
 _MAX_LISTED = 50  # students without a file
 
@@ -45,7 +46,7 @@ class FeedbackRequest(NamedTuple):
 
     lms: str
     kind: Format
-    due: datetime | None
+    deadline: datetime | None
     worksheet: tuple[bytes, FillOptions] | None
 
 
@@ -73,9 +74,9 @@ def _feedback(grades: Grades, request: FeedbackRequest, terminal: Terminal) -> F
     with (
         tempfile.TemporaryDirectory() as folder,
         Processes(processors(), REPORT_SECONDS) as executor,
-        terminal.class_progress("writing reports") as show,
+        terminal.show_class("writing reports") as show,
     ):
-        run = ReportRun(grades.book.path, Path(folder), (kind,), request.due, feedback=True)
+        run = ReportRun(grades.book.path, Path(folder), (kind,), request.deadline, feedback=True)
         without = render_reports(executor, run, names, show)
         written = {key: Path(folder, f"{names[key]}.{kind.ending}") for key in names.keys() - without.keys()}
         reports = {key: path.read_bytes() for key, path in written.items()}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.text import printable
-from grader.usecases import Warn
+from grader.usecases.terminal import Warn
 from grader.usecases.writing import refuse_symlinks
 
 if TYPE_CHECKING:

@@ -3,28 +3,38 @@
 import os
 import re
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
+from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import Level
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
-from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
-from grader.usecases.rubrics import files_of, load
+from grader.usecases.repository import base_of, folder_of
+from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
-from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.usecases.terminal import ShowFile, Warn
+from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.report import Fix, Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
-_KEPT = (*ROBOT_FILES, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that stay until a report replaces them
+# Files that stay until a report replaces them.
+_KEPT = (
+    *ROBOT_ENDINGS,
+    ".toml",
+    ".py",
+    ".yaml",
+    ".yml",
+    ".rviz",
+    ".cfg",
+)  # files that stay until a report replaces them
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
@@ -59,7 +69,7 @@ class GradeRequest:
         return "".join(f" {option} {shell_quoted(value)}" for option, value in words)
 
 
-class GradeResult(NamedTuple):
+class GradeRun(NamedTuple):
     """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
 
     report: "Report"
@@ -71,28 +81,28 @@ class GradeResult(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.order import undecided_results
+        from grader.report.order import pending_automatic
 
-        names = ", ".join(result.criterion.id for result in undecided_results(self.report))
+        names = ", ".join(result.criterion.id for result in pending_automatic(self.report))
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
+def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request.saves, request.rubric, request.path)
-    result = grade_submission(request, warn, show_progress)
-    if request.fix is None or result.fix is None:
-        save_reports(request, result, modes)
-        return result
+    run = grade_submission(request, warn, show_file)
+    if request.fix is None or run.fix is None:
+        save_reports(request, run, modes)
+        return run
     from grader.usecases.hints import files_to_fix, write_fix  # late: few ask for it
 
     others = [*files_of(request.rubric), *(file for _, file in request.saves)]
-    files = files_to_fix(request.fix, request.path, result.report, result.fix, result.besides, others)
-    save_reports(request, result, modes)
-    warn(write_fix(request.fix, request.path, result.report, result.fix, files))
-    return result
+    files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
+    save_reports(request, run, modes)
+    warn(write_fix(request.fix, request.path, run.report, run.fix, files))
+    return run
 
 
 def _arguments(request: GradeRequest) -> dict[str, str]:
@@ -103,46 +113,42 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn, show_progress: Progress) -> GradeResult:
+def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
     from grader.submission.opening import open_submission
+    from grader.submission.submission import Opening
 
     rubric = requested_rubric(request, warn)
-    if not request.path.lower().endswith(ROBOT_FILES):
+    if not request.path.lower().endswith(ROBOT_ENDINGS):
         from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
 
         refuse_class(request.path, rubric, request.choice)
     submission = open_submission(
         request.path,
-        wanted=rubric.urdf,
-        package=rubric.package,
-        folders=rubric.folders,
-        limit=request.max_size,
-        arguments=_arguments(request),
+        rubric.lab,
+        Opening(request.max_size, _arguments(request), show_file=show_file),
         with_neighbours=True,
     )
     if submission.students:
         from grader.usecases.several_students import refusal  # late: few submissions are several
 
         raise refusal(request.path, submission.students, rubric, request.choice)
-    if not submission.is_single:
-        submission.documents.show_progress = show_progress
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     fix = None
     if report.has_failures or request.fix is not None or request.hints is not None:
-        from grader.usecases.hints import with_hints  # late: many submissions lose nothing
+        from grader.usecases.hints import add_hints  # late: many submissions lose nothing
 
-        report, fix = with_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
-    folder = _folder_of(request.path, submission.path) if submission.is_single else None
+        report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
+    folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeResult(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
@@ -172,15 +178,15 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     return {file: mode for file, mode in modes.items() if mode is not None}
 
 
-def save_reports(request: GradeRequest, result: GradeResult, modes: Mapping[Path, int]) -> None:
+def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]) -> None:
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
-    graded = Path(request.path, result.report.submission.path or "")
+    graded = Path(request.path, run.report.submission.path or "")
     for _, file in request.saves:
         is_source = file.suffix.lower() in _KEPT
-        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *result.besides))
+        refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
     for kind, file in request.saves:
         picture = picture_beside(file, request.saves)
-        text = render(result.report, kind, result.base, verbose=request.verbose, picture=picture)
+        text = render(run.report, kind, run.base, verbose=request.verbose, picture=picture)
         save(file, text, (request.path,), modes.get(file))
 
 
@@ -199,46 +205,3 @@ def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     for name in request.parts:
         rubric.part(name)
     return rubric
-
-
-def _folder_of(path: str, inside: str | None) -> Path:
-    """Return the folder that the paths of a single URDF start in, given the path in it."""
-    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
-
-
-def _base_of(path: str, single: Path | None) -> "Base":
-    """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
-    from grader.report.locations import Base
-
-    if path == "-":
-        return Base(is_outside=True)
-    named = Path(path)
-    is_folder = named.is_dir()
-    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
-    place = named.resolve() if is_folder else named.parent.resolve() / named.name
-    root = _repository(place)
-    if root is None:
-        return Base(is_outside=True)
-    if is_folder or single is not None:
-        start = place if single is None else single
-        if not start.is_relative_to(root):
-            return Base(is_outside=True)
-        folder = start.relative_to(root).as_posix()
-        return Base("" if folder == "." else f"{folder}/")
-    return Base(archive=place.relative_to(root).as_posix())
-
-
-def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the current folder."""
-    around = [place, *place.parents]
-    for name in CHECKOUTS:
-        checkout = Path(os.environ.get(name) or os.sep).resolve()
-        if checkout in around[:-1]:  # the last is the root of the file system
-            return checkout
-    for folder in around:
-        if (folder / ".git").exists():
-            return folder
-    with suppress(OSError):  # the current folder may have been deleted
-        here = Path.cwd()
-        return here if here in around else None
-    return None

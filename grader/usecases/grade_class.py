@@ -13,19 +13,20 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import remove_hints
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.reading import read_class
-from grader.classroom.run.batch import Batch, Progress, RunSettings
+from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.run.class_check import check_roster
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.progress import Progress
 from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
 from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases import Terminal, Warn
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
 from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
+from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
 
 _MAX_LINES = 10
@@ -101,7 +102,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
                 parts=request.part,
                 handed_out=handed_out,
             )
-            with terminal.class_progress("grading") as show:
+            with terminal.show_class("grading") as show:
                 batch = Batch(book, rubric, settings, executor, show)
                 done = _run(batch, intake, warn)
             _warn_lines(batch.notes, warn)
@@ -112,7 +113,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
             run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
             with (
                 _processes(request.jobs, REPORT_SECONDS) as executor,
-                terminal.class_progress("writing reports") as show,
+                terminal.show_class("writing reports") as show,
             ):
                 write_reports(executor, run, warn, show)
         if request.csv is not None:
@@ -125,7 +126,7 @@ def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) ->
     """Search the hints of reports and of the class; return whether all were searched that statistics need."""
     if request.force:
         remove_hints(book)
-    options = HintOptions(request.jobs, request.timeout, request.max_size)
+    options = HintOptions(request.jobs, request.timeout)
     is_json, reports = request.output_format is OutputFormat.JSON, request.reports is not None
     statistics = is_json or (reports and Format.HTML in request.report_format)
     search_class_hints(book, options, terminal, reports=reports, statistics=statistics)

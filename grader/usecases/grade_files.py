@@ -10,10 +10,12 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.remarks import Remarks, remarks_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.filling import Filled, FillOptions, Preflight, RowNote
-from grader.classroom.lms.grades import FeedbackItem, LmsGrade, feedback_html, feedback_items
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html, feedback_items
+from grader.classroom.lms.filling import FillOptions
+from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, fill_offline
+from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.tables import SIZE_LIMIT, CellValue, write_table
 from grader.files.reading import read_capped
 from grader.grading.criterion import Criterion

@@ -5,20 +5,21 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.errors import InputError, OutOfTime
+from grader.files.names import ROBOT_ENDINGS
 from grader.grading.hints.hinting import fixed, hinted
 from grader.grading.hints.record import INCOMPLETE
 from grader.grading.levels import LEVELS, Level
 from grader.grading.report import Fix, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
-from grader.usecases import Warn
-from grader.usecases.writing import ROBOT_FILES, make_folder, refuse_inputs, refuse_symlinks, save_bytes
+from grader.usecases.terminal import Warn
+from grader.usecases.writing import make_folder, refuse_inputs, refuse_symlinks, save_bytes
 
 _MAX_NAMED = 6
-_FILES = (*ROBOT_FILES, ".zip")  # endings that no folder has
+_FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
 
 
-def with_hints(
+def add_hints(
     report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
 ) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.

@@ -9,10 +9,11 @@ from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.submission.opening import open_submission
+from grader.submission.submission import Lab, Opening
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
-from grader.usecases import Warn
 from grader.usecases.saves import read_arguments
+from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 20
 
@@ -22,7 +23,7 @@ def inspect(
 ) -> Inspection:
     """Return the inspection of the URDF at a path. Raises GraderError."""
     given = read_arguments(arguments)
-    submission = open_submission(path, wanted="robot.urdf", limit=max_size, arguments=given, with_neighbours=True)
+    submission = open_submission(path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)

@@ -16,19 +16,18 @@ from grader.classroom.gradebook.marks import (
     Mark,
     NewerMarkError,
     add_mark,
-    criterion_of,
     newest_mark,
-    read_points,
     undo_mark,
 )
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import Student
+from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.validation import TOTAL
 from grader.report.review import mark_text
 from grader.text import counted_points, enumerated, format_points, printable
-from grader.usecases import Warn
+from grader.usecases.terminal import Warn
 
 _NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
 _MAX_NAMED = 10

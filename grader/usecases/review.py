@@ -8,14 +8,15 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, ReviewScope
-from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review import ReviewSession
+from grader.classroom.typed_names import read_points
 from grader.errors import InputError
 from grader.report.review import mark_text, render_item
 from grader.report.screen import draw
 from grader.text import format_points
-from grader.usecases import Terminal
 from grader.usecases.review_pictures import PictureFolder, write_all_pictures
+from grader.usecases.terminal import Terminal
 
 NOTHING = "nothing needs manual grading\n"
 _HELP = (
@@ -37,7 +38,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
             return NOTHING
         book.check_writable()
         folder = PictureFolder(session, book, pictures) if pictures else None
-        written = write_all_pictures(session, folder, terminal.show) if folder else {}
+        written = write_all_pictures(session, folder, terminal.print) if folder else {}
         try:
             while session.item is not None or _at_end(session, terminal):
                 assert session.item is not None
@@ -48,7 +49,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
                 if not _go_on(session, terminal):
                     break
         except KeyboardInterrupt:
-            terminal.show(f"\n{summary(session)}")
+            terminal.print(f"\n{summary(session)}")
             raise
         return summary(session)
 
@@ -72,7 +73,7 @@ def _show(session: ReviewSession, pictures: Sequence[str], terminal: Terminal) -
     used = session.comments()
     comments = {number: text for number, text in session.numbered_comments().items() if text in used}
     page = partial(render_item, session.item, position, pictures, comments)
-    terminal.show(draw(page, terminal.screen()))
+    terminal.print(draw(page, terminal.screen()))
 
 
 def summary(session: ReviewSession) -> str:

@@ -12,16 +12,17 @@ from typing import Any
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
-from grader.classroom.gradebook.marks import NewerMarkError, read_points
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review import ReviewSession
+from grader.classroom.typed_names import read_points
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
-from grader.usecases import Terminal
 from grader.usecases.local_server import LocalServer, Request, Response
 from grader.usecases.review import NOTHING, summary, undo
 from grader.usecases.review_pictures import item_pictures
+from grader.usecases.terminal import Terminal
 
 Album = tuple[EmbeddedPicture | NotShown, ...]
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
@@ -171,7 +172,7 @@ def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: 
         if server is None:
             return NOTHING
         with suppress(KeyboardInterrupt):
-            terminal.show(f"{server.url}\n")
+            terminal.print(f"{server.url}\n")
             terminal.warn(
                 "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
             )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
-from grader.classroom.gradebook.student_grade import SubmissionSources
+from grader.classroom.gradebook.submission_files import SubmissionSources
 from grader.classroom.review import ReviewSession
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError

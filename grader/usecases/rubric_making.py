@@ -2,8 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +11,7 @@ from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
 from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
-from grader.classroom.run.batch import Progress
+from grader.classroom.run.progress import Progress
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.mutation.samples import read_samples
@@ -24,12 +23,12 @@ from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import package_around
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
-from grader.usecases import Warn
 from grader.usecases.exit_codes import ExitCode, read_threshold
 from grader.usecases.rubrics import load, summary
+from grader.usecases.terminal import ShowClass, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 
 _URDF = "robot.urdf"
@@ -82,11 +81,11 @@ def _solution(reference: str, warn: Warn) -> Solution:
 
 def _opened(reference: str) -> Submission:
     """Return the reference as a submission; of several packages, the one with the URDF is graded."""
-    submission = open_submission(reference, wanted=_URDF)
+    submission = open_submission(reference, Lab(_URDF))
     package = package_around(submission.packages, submission.path)
     if package is None or package is submission.package or submission.path is None:
         return submission
-    return open_submission(reference, wanted=submission.path.removeprefix(f"{package.folder}/"), package=package.name)
+    return open_submission(reference, Lab(submission.path.removeprefix(f"{package.folder}/"), package.name))
 
 
 def _head(file: Path, reference: str, submission: Submission) -> Head:
@@ -131,7 +130,6 @@ def _grouped(omissions: Iterable[Omission]) -> Iterator[str]:
 
 
 _MAX_PERCENT = 100
-ShowProgress = Callable[[str], AbstractContextManager[Callable[[Progress], None]]]
 
 
 class TestRequest(NamedTuple):
@@ -145,12 +143,12 @@ class TestRequest(NamedTuple):
     format: OutputFormat
 
 
-def test(request: TestRequest, screen: Screen, warn: Warn, show_progress: ShowProgress) -> tuple[str, ExitCode]:
+def test(request: TestRequest, screen: Screen, warn: Warn, show_class: ShowClass) -> tuple[str, ExitCode]:
     """Return the result as text and the exit code; raises GraderError for a broken rubric or without a reference."""
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
     samples = read_samples(request.folder) if request.folder is not None else None
-    with show_progress(f"Testing {rubric.id}") as show:
+    with show_class(f"Testing {rubric.id}") as show:
         result = tested(
             rubric,
             samples,

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
 from grader.text import counted, printable
-from grader.usecases import Warn
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.terminal import Warn
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
+
+DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
 def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":

@@ -6,18 +6,19 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.gradebook.changes import Snapshot, changes, last_two
+from grader.classroom.gradebook.changes import changes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.histories import MergeItem, compare
 from grader.classroom.gradebook.merge import Choice, Conflict, Merged, conflict_of, copy_of, merge
+from grader.classroom.gradebook.snapshots import Snapshot, last_two
 from grader.errors import GraderError, InputError
 from grader.report.changes import render_changes, render_changes_json
 from grader.report.formats import OutputFormat
 from grader.report.review import mark_text
 from grader.report.screen import Screen, draw
 from grader.text import counted, printable, printable_path
-from grader.usecases import Terminal
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.terminal import Terminal
 
 
 class DiffRequest(NamedTuple):
@@ -72,12 +73,12 @@ def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Termina
     choices: dict[Conflict, Choice] = {}
     prompt = f"k to keep the mark of {names[0]}, t to take that of {names[1]}, s to skip: "
     for item in conflicts:
-        terminal.show("".join(f"{line}\n" for line in _conflict_lines(item, names)))
+        terminal.print("".join(f"{line}\n" for line in _conflict_lines(item, names)))
         answer = terminal.ask(prompt)
         while answer is not None and answer.strip().lower() not in _ANSWERS:
             answer = terminal.ask(prompt)
         if answer is None:
-            terminal.show("\n")
+            terminal.print("\n")
             break
         if choice := _ANSWERS[answer.strip().lower()]:
             choices[conflict_of(item)] = choice

@@ -20,9 +20,9 @@ from grader.report.console import wrapped
 from grader.report.formats import Format, render
 from grader.report.screen import draw
 from grader.text import printable_path
-from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
+from grader.usecases.terminal import Terminal, Warn
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
@@ -53,7 +53,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     try:
         for has_changed in changes:
             try:
-                result = grade_submission(request, terminal.warn, terminal.show_progress)
+                result = grade_submission(request, terminal.warn, terminal.show_file)
             except (InputError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 if has_changed or str(error) != last_error:
@@ -111,12 +111,12 @@ def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: b
     shown = report, render(report, Format.TERMINAL, verbose=True), hinted_texts(report)
     if last is not None and shown[1] == last[1]:
         if has_changed:
-            terminal.show(f"{unchanged_line(report)}\n")
+            terminal.print(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
     lines = [*comparison_lines(last[0], report), *applied_hints(last[0], last[2], report)] if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
-    terminal.show(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
+    terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
     return shown
 
 

@@ -11,10 +11,10 @@ from contextlib import suppress
 from pathlib import Path
 
 from grader.errors import InputError
+from grader.files.names import ROBOT_ENDINGS
 from grader.text import printable, printable_path
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
-ROBOT_FILES = (".urdf", ".xacro")
 _SQLITE_FILES = ("", "-wal", "-shm", "-journal")  # SQLite keeps recent changes in files beside the gradebook
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
@@ -133,7 +133,7 @@ def _student_folders(submissions: Sequence[Path | str]) -> Iterator[Path]:
     checkouts = [Path(os.environ[name]) for name in CHECKOUTS if os.environ.get(name)]
     for path in (*map(Path, submissions), *checkouts):
         real = Path(os.path.realpath(path))
-        folder = real.parent if path.suffix.lower() in ROBOT_FILES and not real.is_dir() else real
+        folder = real.parent if path.suffix.lower() in ROBOT_ENDINGS and not real.is_dir() else real
         if folder != Path(folder.anchor):
             yield folder
 

@@ -20,7 +20,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.source import Location
 from grader.submission.opening import read_submission
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 from tests.checks.robots import ARM, PATH, Scene
 from tests.checks.submissions import Submitted
 
@@ -71,7 +71,7 @@ class _Solution(ReferenceSolution):
     """A reference solution without a file: the arm."""
 
     def __init__(self) -> None:
-        super().__init__(Path(), "", "", ())
+        super().__init__(Path(), Lab(""))
 
     @property
     def robot(self) -> Configuration:

@@ -13,7 +13,7 @@ from grader.package.package import Package
 from grader.robot.kinematics import Configuration
 from grader.source import Location
 from grader.submission.opening import submission_of
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 
 FOLDER = "my_robot"
 MANIFEST = "my_robot/package.xml"
@@ -45,7 +45,7 @@ class Submitted:
                 IgnoredFile(path, "is a rar archive", is_archive=True) for path in self.files if path.endswith(".rar")
             ],
         )
-        return submission_of(tree, "submission", wanted="urdf/my_robot.urdf", package=FOLDER)
+        return submission_of(tree, "submission", Lab("urdf/my_robot.urdf", FOLDER))
 
     @property
     def package(self) -> Package:

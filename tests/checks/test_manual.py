@@ -11,6 +11,7 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.documents.document import MAX_LINES
 from grader.source import Location
+from grader.submission.submission import Opening
 from tests.checks.outcomes import ask
 from tests.checks.submissions import ANSWERS, REFERENCE, URDF, Submitted, gif, jpeg, png
 from tests.documents.files import docx
@@ -315,7 +316,7 @@ def test_the_number_of_documents_is_capped_with_a_note() -> None:
 
 def test_documents_that_broke_the_grading_need_manual_grading() -> None:
     """The model answer stays beside the question, and no document is converted."""
-    submission = replace(REFERENCE.submission, no_documents="it took long")
+    submission = replace(REFERENCE.submission, opening=Opening(no_documents="it took long"))
     outcome = answered(submission, question=QUESTION, answer=ANSWER, places=PLACES)
     message = "What happens? The documents cannot be read: it took long; needs manual grading"
     assert (outcome.status, outcome.message, outcome.expected) == ("pending", message, None)

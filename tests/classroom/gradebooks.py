@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.marks import AddedMark, Entry, add_mark
-from grader.classroom.gradebook.result import GradingResult, Verdict
+from grader.classroom.gradebook.result import GradingResult, GradingVerdict
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import ClassSubmission, Student
@@ -60,7 +60,7 @@ def graded_as(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: s
         for criterion, sign in zip(rubric.criteria, signs, strict=True)
         if sign != "-"
     )
-    verdict: Verdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
+    verdict: GradingVerdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
     from grader.grading.graded_submission import GradedSubmission
 
     report = Report(GradedSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)

@@ -31,7 +31,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.intake.fingerprint import is_zip
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.opening import open_class_submission
 from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.run.batch import Batch, RunSettings
@@ -281,7 +281,7 @@ class HostileClass(RuleBasedStateMachine):
         owners = {next((name for name in NAMES if _is_below(path, self.made.place(name))), MALLORY) for path in paths}
         assert len(owners) == 1, (key, paths)
         try:
-            opened = open_submission(str(self.source), paths, names, key)
+            opened = open_class_submission(str(self.source), paths, names, key)
         except InputError:
             return
         read = [opened.data] if opened.data is not None else []

@@ -12,8 +12,9 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.intake.roster import Roster, RosterEntry
-from grader.classroom.lms.filling import LmsStudent, Preflight, match_rows
+from grader.classroom.lms.filling import LmsStudent, match_rows
 from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.preflight import Preflight
 from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -142,8 +143,8 @@ def test_only_unique_pairs_match(rows: list[str], keys: list[str]) -> None:
 def test_empty_identifiers_match_nothing() -> None:
     """An empty field is no identifier: two students without a number are not the same."""
     people = People([clues_of(Student("a")), clues_of(Student("b"))])
-    assert set(people.clues[0]) == {Clue.WORD, Clue.ANY_CASE}
-    assert people.find({Clue.WORD: ("",)}, (Clue.WORD,)).people == ()
+    assert set(people.clues[0]) == {Clue.EXACT_ID, Clue.ANY_CASE}
+    assert people.find({Clue.EXACT_ID: ("",)}, (Clue.EXACT_ID,)).people == ()
 
 
 @pytest.mark.parametrize(

@@ -18,12 +18,12 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.lms.filling import Conflict, Preflight, RowNote
+from grader.classroom.lms.preflight import Conflict, Preflight, RowNote
 from grader.classroom.students import ClassSubmission
+from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
-from grader.files.opening import ARCHIVES
+from grader.files.names import ARCHIVES
 from grader.grading.grade import grade
 from grader.usecases.grade_files import preflight_lines
 from tests.classroom.gradebooks import (

@@ -16,7 +16,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Entry, add_mark
 from grader.classroom.gradebook.remarks import remarks_of
-from grader.classroom.lms.grades import FeedbackItem, feedback_html, is_own_feedback
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html, is_own_feedback
 from grader.grading.rubric import read_rubric
 from tests.classroom.gradebooks import batch, graded_as, grader, lab_text, make_class, record_run, refusal, urdf
 

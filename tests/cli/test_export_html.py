@@ -10,8 +10,8 @@ from urllib.parse import unquote
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.run.batch import Progress
 from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.progress import Progress
 from grader.errors import InputError
 from grader.report.formats import Format
 from grader.usecases.class_reports import ReportRun, write_reports
@@ -217,7 +217,7 @@ class FailingWorkers(Executor):
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
         """Run a function here and now."""
         future: Future[Any] = Future()
-        if any(isinstance(given, dict) and "ben" in given for given in arguments):
+        if any(isinstance(given, list) and "ben" in dict(given) for given in arguments):
             future.set_exception(self.error)
         else:
             future.set_result(function(*arguments, **named))
@@ -237,7 +237,7 @@ def test_a_crash_costs_one_page(error: Exception, why: str, top: Path) -> None:
     progress: list[Progress] = []
     run = ReportRun(top / "book.db", top / "pages", (Format.HTML,))
     write_reports(FailingWorkers(error), run, lines.append, progress.append)
-    assert [state.done for state in progress] == [0, 4]
+    assert [state.done for state in progress] == [0, 1, 2, 3, 4]
     assert lines == [
         f"3 reports written to {top / 'pages'}",
         f"no report for ben: {why}",

@@ -129,7 +129,7 @@ def test_undo_restores_a_mark_for_an_earlier_submission_as_such(top: Path) -> No
     mark(top, "anna", "box", "2")
     mark(top, "anna", "box", "--undo")
     with Gradebook(top / "book.db") as book:
-        assert Grades(book).find("anna").older_marks == ("box",)
+        assert Grades(book).find("anna").doubtful.older == ("box",)
 
 
 def test_a_second_opinion_changes_no_grade(top: Path) -> None:

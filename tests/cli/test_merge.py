@@ -226,8 +226,8 @@ def test_the_result_of_a_mark_is_found_or_copied(top: Path) -> None:
     assert merge(top).returncode == 0
     with Gradebook(top / "a.db") as book:
         after = Grades(book).find("ash")
-        assert (after.result, after.out_of, len(after.older_marks)) == (before.result, before.out_of, 2)
-        assert Grades(book).find("birch").older_marks == ()
+        assert (after.result, after.out_of, len(after.doubtful.older)) == (before.result, before.out_of, 2)
+        assert Grades(book).find("birch").doubtful.older == ()
         assert book.first("SELECT count(*) FROM result") == (4,)
         assert book.first("SELECT count(*) FROM rubric") == (2,)
         assert not [*book.rows("PRAGMA foreign_key_check")]

@@ -15,8 +15,8 @@ import pytest
 from rich.console import Console
 from rich.progress import Progress
 
-from grader.classroom.run.batch import Progress as State
-from grader.cli import progress
+from grader.classroom.run.progress import Progress as State
+from grader.cli import terminal
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 
@@ -67,11 +67,11 @@ def test_a_large_class_fits(work: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is cut off at 80 columns, and what is errored or unreadable is counted."""
     screen = io.StringIO()
     console = Console(file=screen, width=80, force_terminal=True, color_system=None, legacy_windows=False)
-    bars = Progress(*progress._bar().columns, console=console, auto_refresh=False, expand=True)
-    monkeypatch.setattr(progress, "_bar", lambda: bars)
+    bars = Progress(*terminal._bar().columns, console=console, auto_refresh=False, expand=True)
+    monkeypatch.setattr(terminal, "_bar", lambda: bars)
     monkeypatch.setattr(sys, "stderr", type("Terminal", (io.StringIO,), {"isatty": lambda _: True})())
     monkeypatch.setattr(time, "monotonic", iter(range(0, 100_000, 100)).__next__)
-    with progress.progress_display(work) as show:
+    with terminal.show_class(work) as show:
         show(State(12345))
         show(State(12345, 7000, 4000, 120, 12))
         with console.capture() as captured:

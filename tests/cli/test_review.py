@@ -15,10 +15,10 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, queued_result
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.cli.terminal import class_progress
+from grader.cli.terminal import show_class
 from grader.report.screen import Screen
-from grader.usecases import Terminal
 from grader.usecases.review import review as review_class
+from grader.usecases.terminal import Terminal
 from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
@@ -278,7 +278,7 @@ def test_undo_of_a_criterion_that_is_no_longer_graded(top: Path) -> None:
             grade_without(top / "book.db", "anna", "essay")
         return line
 
-    terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None, class_progress)
+    terminal = Terminal(lambda _text: None, lines.append, lambda: Screen(80), ask, lambda _file: None, show_class)
     assert review_class(top / "book.db", ReviewScope("essay", "Kim"), None, terminal).startswith("1 marked, ")
     assert lines == ["not undone: this criterion is no longer graded for this student"]
     assert [row[:3] for row in marks(top)] == [("anna", "essay", 3.0), ("emil", "essay", 2.0)]

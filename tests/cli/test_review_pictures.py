@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from grader.classroom.gradebook.student_grade import SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.files.reading import URDF_LIMIT
 from grader.submission.urdf import Read
@@ -93,14 +93,14 @@ def test_a_copy_with_the_same_content_is_no_change(top: Path) -> None:
 
 
 def test_another_limit_of_a_urdf_is_no_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A submission that was graded with --max-size is opened with the same limit, of which its fingerprint has a note."""
+    """A submission that was graded with --max-size is opened with the same limit."""
     write_submission(tmp_path / "ash")
     (tmp_path / "ash" / "robot.urdf").write_text(urdf() + " " * 2_000_000)
     later = time.time_ns() + 10**9  # files that were just written have no fingerprint
     monkeypatch.setattr("grader.classroom.gradebook.student_grade.time", SimpleNamespace(time_ns=lambda: later))
     for limit, is_read in ((3_000_000, True), (URDF_LIMIT, False)):
-        stamp = fingerprint(str(tmp_path), ("ash",), later, limit)
-        sources = SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", stamp), lab())
+        stamp = fingerprint(str(tmp_path), ("ash",), later)
+        sources = SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", stamp, "", limit), lab())
         assert isinstance(sources.urdf, Read) == is_read
     assert SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", f"{stamp}1"), lab()).submission is None
 

@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 def picture(name: str, rubric: str = "lab6") -> Picture:
     """Return the picture of a sample submission."""
     loaded = load_rubric(rubric)
-    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / name), wanted=loaded.urdf)))
+    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / name), loaded.lab)))
     assert found is not None
     return found
 
@@ -83,7 +83,7 @@ def test_rubric_that_hides_hints_hides_the_reference() -> None:
     from dataclasses import replace
 
     rubric = replace(load_rubric("lab6"), hints="place")
-    found = picture_of(grade(rubric, open_submission(str(ROOT / "submissions/lidar-buried"), wanted=rubric.urdf)))
+    found = picture_of(grade(rubric, open_submission(str(ROOT / "submissions/lidar-buried"), rubric.lab)))
     assert found is not None
     assert found.reference is None
     assert found.outlines == ()
@@ -120,7 +120,7 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, pict
     assert (done.returncode, done.stderr) == (1, b"")
     assert picture in done.stdout.decode()
     loaded = load_rubric("lab6")
-    found = picture_of(grade(loaded, open_submission(str(tmp_path), wanted=loaded.urdf)))
+    found = picture_of(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
     assert found is not None
     point = next(callout.point for callout in found.callouts if callout.link == "left_wheel")
     assert point == pytest.approx((-0.15, 0.2, 0.0))
@@ -166,7 +166,7 @@ def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Pa
     assert old in text
     (tmp_path / "my_robot.urdf").write_text(text.replace(old, new))
     loaded = load_rubric("lab6")
-    found = picture_of(grade(loaded, open_submission(str(tmp_path), wanted=loaded.urdf)))
+    found = picture_of(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
     assert found is not None
     assert found.callouts
     assert (found.outlines, found.frames) == ((), ())

@@ -16,6 +16,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.source import Location
+from grader.submission.submission import Opening
 from tests.checks.submissions import Submitted, gif, png
 from tests.conversion import convert_here
 
@@ -240,7 +241,9 @@ def test_a_file_that_is_gone_is_named() -> None:
 
 def test_documents_that_are_not_read_are_named() -> None:
     """Where reading them broke the grading, the person opens them."""
-    submission = replace(Submitted({"Task1_Step8.docx": word("x")}).submission, no_documents="it took long")
+    submission = replace(
+        Submitted({"Task1_Step8.docx": word("x")}).submission, opening=Opening(no_documents="it took long")
+    )
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["task 1 step 8"]})
     (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("Task1_Step8.docx",))), submission)
     assert str(found) == "Task1_Step8.docx: documents of this submission are not read: open it yourself"

@@ -35,12 +35,12 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
     """Return the sample with macros, or the one in a single file, with a mistake in a file; and the text of this file."""
     submission = (MACROS if path != "" else INERTIALS).open()
     assert submission.reopen is not None or path == ""
-    data = submission.everything.files[path].read(1 << 20) if path else submission.urdf.data  # type: ignore[union-attr]
+    data = submission.whole_tree.files[path].read(1 << 20) if path else submission.urdf.data  # type: ignore[union-attr]
     text = data.decode().replace(old, new, 1)
     assert text.encode() != data
     if submission.reopen is None:
         return read_submission(text.encode(), identity="student", path="my_robot.urdf.xacro"), text
-    return submission.reopen(overlaid(submission.everything, {path: text.encode()})), text
+    return submission.reopen(overlaid(submission.whole_tree, {path: text.encode()})), text
 
 
 @pytest.mark.parametrize(
@@ -130,9 +130,9 @@ PATH = "os.path.join(share, 'my_robot.urdf')"
 def test_a_launch_file_runs_xacro(reading: str, expected: str) -> None:
     """However the launch file reads the text, it can read the expansion."""
     submission = SAMPLES["xacro-in-urdf"].open()
-    text = submission.everything.files[LAUNCH].read(1 << 20).decode()
+    text = submission.whole_tree.files[LAUNCH].read(1 << 20).decode()
     assert READ in text
     assert submission.reopen is not None
-    found = search(submission.reopen(overlaid(submission.everything, {LAUNCH: text.replace(READ, reading).encode()})))
+    found = search(submission.reopen(overlaid(submission.whole_tree, {LAUNCH: text.replace(READ, reading).encode()})))
     assert texts(found.found[0].edits)[-1] == expected
     assert not found.final.failed

@@ -137,9 +137,9 @@ def _bases() -> Iterator[Base]:
         assert isinstance(urdf, Read)
         paths = [urdf.path]
         if urdf.is_expanded:
-            paths += [path for path in submission.everything.files if path.endswith(".xacro") and path not in paths]
+            paths += [path for path in submission.whole_tree.files if path.endswith(".xacro") and path not in paths]
         for path in paths:
-            data = urdf.data if path == urdf.path else submission.everything.files[path].read(1 << 20)
+            data = urdf.data if path == urdf.path else submission.whole_tree.files[path].read(1 << 20)
             texts[data] += 1
             if texts[data] == 1:
                 name = sample.name if path == urdf.path else f"{sample.name}/{path}"

@@ -92,7 +92,7 @@ def graded(robot: Robot, folder: Path) -> Report:
     """Return the report of a robot."""
     rubric = rubric_of(robot.lab)
     path = str(robot.write(folder))
-    return grade(rubric, open_submission(path, wanted=rubric.urdf, package=rubric.package, folders=rubric.folders))
+    return grade(rubric, open_submission(path, rubric.lab))
 
 
 @cache

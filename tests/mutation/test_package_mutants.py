@@ -57,13 +57,13 @@ def test_a_mutant_makes_one_change(name: str, old: str, new: str) -> None:
 def test_files_are_deleted_and_renamed() -> None:
     """Those that ROS 2 reads, not those for people."""
     deleted = {mutant.path for mutant in FOUND.values() if mutant.is_deleted}
-    assert deleted == set(REFERENCE.everything.files)
+    assert deleted == set(REFERENCE.whole_tree.files)
     renamed = FOUND["file renamed: urdf/my_robot.urdf"]
     assert (renamed.path, renamed.renamed) == ("urdf/my_robot.urdf", "urdf/my_robt.urdf")
     for_people = dict.fromkeys(("README.md", "LICENSE", "docs/a.urdf", "test/test_a.py", ".gitignore", "a.png"), b"")
     assert REFERENCE.reopen is not None
-    assert found_in(REFERENCE.reopen(overlaid(REFERENCE.everything, for_people))) == FOUND
-    built = found_in(REFERENCE.reopen(overlaid(REFERENCE.everything, {"CMakeLists.txt": b""})))
+    assert found_in(REFERENCE.reopen(overlaid(REFERENCE.whole_tree, for_people))) == FOUND
+    built = found_in(REFERENCE.reopen(overlaid(REFERENCE.whole_tree, {"CMakeLists.txt": b""})))
     assert set(built) - set(FOUND) == {"file deleted: CMakeLists.txt", "file renamed: CMakeLists.txt"}
 
 
@@ -92,7 +92,7 @@ def test_a_criterion_fails_for_its_mutant(name: str, lost: str) -> None:
     mutant = FOUND[name]
     data = None if mutant.is_deleted else mutant.applied(text(mutant.path)).encode()
     assert REFERENCE.reopen is not None
-    changed = REFERENCE.reopen(overlaid(REFERENCE.everything, {mutant.path: data}))
+    changed = REFERENCE.reopen(overlaid(REFERENCE.whole_tree, {mutant.path: data}))
     (result,) = decide(LAB6, changed, [lost])
     assert result.outcome.status == "failed"
 
@@ -123,7 +123,7 @@ def test_texts_for_people_are_not_changed() -> None:
 def test_other_files(name: str, content: str, ids: list[str]) -> None:
     """Launch files in XML and YAML have mutants, too; a file that cannot be read has none but its own deletion."""
     assert REFERENCE.reopen is not None
-    changed = REFERENCE.reopen(overlaid(REFERENCE.everything, {name: content.encode()}))
+    changed = REFERENCE.reopen(overlaid(REFERENCE.whole_tree, {name: content.encode()}))
     own = {
         key: mutant
         for key, mutant in found_in(changed, lambda path: content if path == name else text(path)).items()

@@ -29,7 +29,7 @@ endif()
 def read_cmake(text: str) -> CMake:
     """Return what a CMakeLists.txt with this text installs."""
     files = Submitted({**dict.fromkeys(FILES, ""), "CMakeLists.txt": text})
-    return reader.read_cmake(files.submission.everything)
+    return reader.read_cmake(files.submission.whole_tree)
 
 
 @pytest.mark.parametrize(

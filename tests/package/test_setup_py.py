@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pytest
 
 from grader.files.folder import read_folder
-from grader.files.limits import ignored_part
+from grader.files.names import ignored_part
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import parse
 from tests.command_line import HANG_TIMEOUT

@@ -43,7 +43,7 @@ def recast(report: Report, words: Words) -> Report:
         evidence=tuple(
             file._replace(files=tuple(replace(file, path=path()) for file in file.files)) for file in report.evidence
         ),
-        others=tuple(replace(other, path=path()) for other in report.others),
+        other_pictures=tuple(replace(other, path=path()) for other in report.other_pictures),
     )
 
 

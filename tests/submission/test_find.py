@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
+from grader.submission import search
 from grader.submission.opening import submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
-from grader.submission.search import UrdfChoice, find_urdf
+from grader.submission.search import UrdfChoice
+from grader.submission.submission import Lab
 from grader.submission.urdf import OtherCandidate
 from tests.work import limited_work
 
@@ -51,6 +53,11 @@ def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
 def manifest(name: str) -> bytes:
     """Return a package.xml with this name."""
     return f'<package format="3"><name>{name}</name></package>'.encode()
+
+
+def find_urdf(tree: Tree, urdf: str, package_folder: str | None = None) -> UrdfChoice:
+    """Return which robot of a tree is graded."""
+    return search.find_urdf(tree, urdf, package_folder, find_robots(tree, urdf.rpartition("/")[2]))
 
 
 def rejected(found: UrdfChoice) -> dict[str, str]:
@@ -157,7 +164,7 @@ def test_the_size_limit() -> None:
     """Only files that may be read as a URDF are searched for a robot; one with the ending is named all the same."""
     large = ROBOT + b" " * 5000
     tree = make_tree("", [_file("a.txt", large), _file("b.urdf", large)], ())
-    assert [robot.path for robot in find_robots(tree, limit=5000)] == ["b.urdf"]
+    assert [robot.path for robot in find_robots(tree, max_size=5000)] == ["b.urdf"]
     assert [robot.path for robot in find_robots(tree)] == ["a.txt", "b.urdf"]
 
 
@@ -337,7 +344,7 @@ def test_very_many_urdfs() -> None:
     text = b"<robot>" + b"".join(b"<xacro:include filename='%d.urdf'/>" % n for n in range(80))
     tree = tree_of(*(f"p{n % 200}/{n}/{n % 80}.urdf" for n in range(5000)), **{str(n): text for n in range(10)})
     with limited_work(5_000_000):
-        found = submission_of(tree, "many", wanted=EXPECTED, package="my_robot", folders=("Lab6",))
+        found = submission_of(tree, "many", Lab(EXPECTED, "my_robot", ("Lab6",)))
     assert len(found.other_candidates) == 4999
 
 
@@ -392,7 +399,7 @@ def packages(expected: str, names: dict[str, str | None]) -> tuple[Package, ...]
         )
         for folder, name in names.items()
     ]
-    return read_packages(make_tree("upload", files, ()), expected)
+    return read_packages(make_tree("upload", files, ()), Lab("", expected))
 
 
 @pytest.mark.parametrize(
@@ -446,8 +453,7 @@ def test_a_team_is_not_mixed_up() -> None:
     found = submission_of(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
-        wanted=EXPECTED,
-        package="my_robot",
+        Lab(EXPECTED, "my_robot"),
     )
     assert found.students == ("Lab6/Adams", "Lab6/Brown")
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
@@ -462,12 +468,12 @@ def test_a_package_with_the_labs_files_takes_precedence() -> None:
         *("Lab6/my_robot/package.xml", "Lab6/my_robot/setup.py", "Lab6/my_robot/urdf/my_robot.urdf"),
         package=manifest("my_robot"),
     )
-    found = submission_of(tree, "a", wanted=EXPECTED, package="my_robot")
+    found = submission_of(tree, "a", Lab(EXPECTED, "my_robot"))
     assert found.path == "Lab6/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/my_robot"
     stub = team(["package.xml"], ["package.xml", "setup.py", "rviz/a.rviz"])
-    package = submission_of(stub, "a", wanted=EXPECTED, package="my_robot").package
+    package = submission_of(stub, "a", Lab(EXPECTED, "my_robot")).package
     assert package is not None
     assert package.folder == "Lab6/Brown/my_robot"
 
@@ -476,9 +482,7 @@ def test_a_description_package() -> None:
     """A URDF in another package beside the graded one is found by its path."""
     tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
                    package=manifest("my_robot"))  # fmt: skip
-    assert (
-        submission_of(tree, "a", wanted=EXPECTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
-    )
+    assert submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path == "my_robot_description/urdf/my_robot.urdf"
 
 
 def test_an_old_version_comes_before_another_robot() -> None:

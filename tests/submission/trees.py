@@ -5,7 +5,7 @@ from functools import partial
 
 from grader.files.tree import File, make_tree
 from grader.submission.opening import submission_of
-from grader.submission.submission import Submission
+from grader.submission.submission import Lab, Submission
 
 FOLDERS = ("Lab6",)
 ROBOT = b"<?xml version='1.0'?><robot name='my_robot'><link name='base_link'/></robot>"
@@ -28,7 +28,7 @@ def submission(files: Mapping[str, bytes], *generated: str, folders: tuple[str, 
     """Return the submission that these files make for lab 6; `generated` are paths of a build."""
     found = [File(path, len(data), partial(_read, data)) for path, data in files.items()]
     tree = make_tree("repo", found, (), generated=generated)
-    return submission_of(tree, "repo", wanted="urdf/my_robot.urdf", package="my_robot", folders=folders)
+    return submission_of(tree, "repo", Lab("urdf/my_robot.urdf", "my_robot", folders))
 
 
 def others(graded: Submission) -> dict[str, str]:

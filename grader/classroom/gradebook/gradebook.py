@@ -2,15 +2,14 @@
 
 import os
 import sqlite3
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from grader.classroom.gradebook.connection import BUSY_TIMEOUT, prepare, transaction_of
 from grader.classroom.gradebook.result import StoredOutcome, decompressed
-from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
 from grader.classroom.gradebook.stored import (
     STORED_SUBMISSIONS,
     STUDENT_COLUMNS,
@@ -24,7 +23,6 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.text import printable_path, shell_quoted
 
 _PRIMARY = 0xFF  # the bits of an error code without its details
-_BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transaction
 
 
 class Run(NamedTuple):
@@ -62,19 +60,19 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         with self.input_errors():
             self.connection = self._connect(create)
             try:
-                _prepare(self.connection, self.shown, self.read_only)
+                prepare(self.connection, self.shown, self.read_only)
             except BaseException:
                 self.connection.close()
                 raise
 
     def _connect(self, create: bool) -> sqlite3.Connection:
         if create or not self.read_only:
-            return sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT, isolation_level=None)
+            return sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
         # In a folder without write permission SQLite reads a file with a write-ahead log only if nothing can write to
         # it.
         is_static = not Path(f"{self.path}-wal").exists()
         uri = f"{self.path.absolute().as_uri()}?mode=ro{'&immutable=1' * is_static}"
-        return sqlite3.connect(uri, timeout=_BUSY_TIMEOUT, isolation_level=None, uri=True)
+        return sqlite3.connect(uri, timeout=BUSY_TIMEOUT, isolation_level=None, uri=True)
 
     @cached_property
     def read_only(self) -> str:
@@ -114,7 +112,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     @contextmanager
     def transaction(self) -> Iterator[None]:
         """Commit everything that is written inside, or nothing."""
-        with self.input_errors(), _transaction(self.connection):
+        with self.input_errors(), transaction_of(self.connection):
             yield
 
     def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
@@ -174,9 +172,9 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         return self._stored(WITHOUT_SUBMISSION)
 
     def _stored(self, query: str) -> Iterator[StoredSubmission]:
-        with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
+        with self.input_errors(), closing(sqlite3.connect(self.path, timeout=BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(query):
-                yield StoredSubmission._make((*row[:13], row[13:]))
+                yield StoredSubmission.of(row)
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
         """Return a stored rubric, with or without model answers; raises RubricError if this grader cannot read it."""
@@ -199,75 +197,3 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         with self.input_errors():
             rows = self.connection.execute(query, (result,)).fetchall()  # a class has many: faster than `rows`
         return {row[0]: StoredOutcome._make(row) for row in rows}
-
-
-def _prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
-    """Configure a connection and create the tables of a new file; raises InputError for another kind or version."""
-    connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
-    queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
-    kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)
-    connection.execute("COMMIT")
-    if tables and kind != APPLICATION_ID:
-        raise InputError(f"{shown} is a database, but not a gradebook: name another file")
-    if version != VERSION and (tables or read_only):
-        raise InputError(
-            f"{shown} is a gradebook of version {version}, and this grader reads version {VERSION}: "
-            "use the grader that made it, or name another file"
-        )
-    if read_only:
-        return
-    _enable_wal(connection)
-    connection.execute("PRAGMA synchronous = NORMAL")
-    connection.execute("PRAGMA foreign_keys = ON")
-    if not tables:
-        _create_tables(connection)
-
-
-def _enable_wal(connection: sqlite3.Connection) -> None:
-    """Switch to a write-ahead log, so that readers and a writer do not block each other.
-
-    SQLite does not apply its busy timeout to this pragma, so it is retried here.
-    """
-    until = time.monotonic() + _BUSY_TIMEOUT
-    while True:
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-        except sqlite3.OperationalError as error:
-            if "locked" not in str(error) or time.monotonic() > until:
-                raise
-            time.sleep(0.01)
-        else:
-            return
-
-
-def _create_tables(connection: sqlite3.Connection) -> None:
-    """Create all tables, or, if that fails, none."""
-    with _transaction(connection):
-        if connection.execute("PRAGMA user_version").fetchone() == (VERSION,):
-            return  # another process has created them meanwhile
-        for statement in _statements(SCHEMA):
-            connection.execute(statement)
-        connection.execute(f"PRAGMA user_version = {VERSION}")
-        connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-
-
-@contextmanager
-def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
-    connection.execute("BEGIN IMMEDIATE")
-    try:
-        yield
-    except BaseException:
-        if connection.in_transaction:
-            connection.execute("ROLLBACK")
-        raise
-    connection.execute("COMMIT")
-
-
-def _statements(script: str) -> Iterator[str]:
-    """Yield the statements of a script: `executescript` would commit the open transaction first."""
-    statement = ""
-    for line in script.splitlines(keepends=True):
-        statement += line
-        if sqlite3.complete_statement(statement):
-            yield statement
-            statement = ""

@@ -1,6 +1,5 @@
 """The current grades in a gradebook: look up students, list those that need attention, build their reports."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import datetime
@@ -11,9 +10,10 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import criterion_points, points_of, storable
+from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
-from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.student_grade import DoubtfulMarks, StudentGrade
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
@@ -24,11 +24,10 @@ from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
 from grader.text import shell_quoted
 
-# Columns of the view `grade` that are taken as they are, those of criteria between spaces, points, and truth values.
+# Columns of the view `grade` that are taken as they are, points, and truth values.
 _PLAIN = ("id", "run", "result", "faults", "marks", "rubric", "verdict", "reason", "submitted", "section", "marker")
-_NAMES = ("older_marks", "revalued_marks", "over_marks")
 _POINTS = ("score", "out_of", "pending")
-_TRUTHS = ("is_gone", "is_late", "is_excused", "final_is_older")
+_TRUTHS = ("is_gone", "is_excused", "final_is_older")
 
 
 class Grades:
@@ -74,9 +73,9 @@ class Grades:
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
         outcomes = self.book.outcomes(grade.result).values() if grade.result is not None else ()
-        criteria = [self.rubric(grade.rubric).criteria[one.position] for one in outcomes if one.status == "settled"]
+        criteria = [self.rubric(grade.rubric).criteria[one.position] for one in outcomes if one.status == "carried"]
         marks = self._manual_marks(grade) if criteria else {}
-        return [row.id for row in criteria if row.adjustment is None and row.id not in marks]
+        return [row.id for row in criteria if row.id not in marks]
 
     def automatic_points(self, grade: StudentGrade) -> dict[str, Decimal]:
         """Return the points of each criterion that a check decided."""
@@ -126,7 +125,7 @@ class Grades:
         query = "SELECT criterion, points, grader_name, comment FROM manual_mark WHERE student = ?"
         adjusted = {row.id for row in self.rubric(grade.rubric).criteria if row.adjustment is not None}
         return {
-            name: ManualMark(points_of(points), by, comment)
+            name: ManualMark(points_from_units(points), by, comment)
             for name, points, by, comment in self.book.rows(query, grade.id)
             if name not in adjusted
         }
@@ -141,25 +140,24 @@ class Grades:
             yield self._grade(row)
 
     def _grade(self, row: dict[str, Any]) -> StudentGrade:
-        paths, names, attempt, earlier = json.loads(row["files"])
         values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}
-        values |= {name: self._in_order(row["rubric"], row[name]) for name in _NAMES}
-        values |= {name: points_of(row[name] or 0) for name in _POINTS}
-        final = None if row["final"] is None else points_of(row["final"])
+        values |= {name: points_from_units(row[name] or 0) for name in _POINTS}
+        final = None if row["final"] is None else points_from_units(row["final"])
         is_outdated = bool(row["rubric"]) and row["rubric"] != self._newest_sha256
         is_current = bool(row["rubric"]) and not is_outdated
         return StudentGrade(
             **values,
-            removed_marks=tuple(sorted(row["removed_marks"].split())),
+            doubtful=DoubtfulMarks(
+                older=self._in_order(row["rubric"], row["older_marks"]),
+                revalued=self._in_order(row["rubric"], row["revalued_marks"]),
+                over=self._in_order(row["rubric"], row["over_marks"]),
+                removed=tuple(sorted(row["removed_marks"].split())),
+            ),
             student=Student(*(row[name] for name in STUDENT_COLUMNS)),
             is_on_roster=None if row["is_on_roster"] is None else bool(row["is_on_roster"]),
             is_outdated=is_outdated,
             has_other_parts=is_current and tuple(row["parts"].split()) != self.parts,
-            files=SubmissionFiles(
-                row["source"], tuple(paths), tuple(names), row["key"], row["fingerprint"], row["digest"]
-            ),
-            attempt=attempt,
-            earlier=tuple(earlier),
+            files=SubmissionFiles.of(row),
             late=self._lateness(row, values["score"]),
             final=final,
         )

@@ -1,17 +1,27 @@
-"""The proven hints in a gradebook: which submissions need them, which of these have the same, and which are stored."""
+"""The proven hints in a gradebook: which submissions need them, which are stored, and the edits that many need."""
 
-import json
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import PurePosixPath
+from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.graded_students import manual_units
+from grader.classroom.gradebook.result import units_of
+from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.grading.graded_submission import GradedSubmission
+from grader.grading.hints.record import StoredHint, hints_from_record
 from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
+from grader.source import Edit
 
+_MAX_FIXES = 20
 _QUERY = """
-SELECT grade.id AS student, key, grade.result, digest, urdf, robot, parts, source, files, is_gone, hint.hints
+SELECT grade.id AS student, grade.result, urdf, robot, parts, is_gone, hint.hints,
+    key, digest, source, files, fingerprint, max_size
 FROM grade LEFT JOIN hint ON hint.result = grade.result
 WHERE verdict = 'graded' AND rubric = ? AND version = ? ORDER BY is_gone, key
 """
@@ -19,7 +29,7 @@ _RUBRICS = "SELECT DISTINCT rubric FROM grade WHERE result IS NOT NULL AND versi
 _ROBOT = ("urdf", "robot")  # what a check examines that depends on the URDF alone
 
 
-class Mistaken(NamedTuple):
+class LossySubmission(NamedTuple):
     """A submission that lost points. `hints` are those that are stored, as JSON; None if they have not been searched.
 
     Submissions with the same `content` have the same hints. Those with the same `robot` and the same failed criteria
@@ -27,13 +37,9 @@ class Mistaken(NamedTuple):
     """
 
     student: int
-    key: str
     result: int
-    digest: str
+    files: SubmissionFiles
     parts: tuple[str, ...]
-    root: str
-    paths: tuple[str, ...]
-    names: tuple[str, ...]
     is_gone: bool
     hints: str | None
     submission: GradedSubmission
@@ -41,7 +47,7 @@ class Mistaken(NamedTuple):
     robot: tuple[str, ...]
 
 
-def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
+def lossy_submissions(book: Gradebook, rubric: Rubric) -> list[LossySubmission]:
     """Return the newest submissions graded with a rubric by this grader that lost points in the URDF or the package.
 
     Those that are no longer in the class come last; otherwise they are in the order of the keys.
@@ -60,7 +66,9 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
             content = (*files, row["parts"], str(statuses))
             of_robots = {position: statuses.get(position) for position in of_robot}
             robot = content if is_package_wrong or not row["robot"] else ("robot", row["robot"], str(of_robots))
-            found.append(_mistaken(row, submission, content, robot))
+            parts, is_gone = tuple(row["parts"].split()), bool(row["is_gone"])
+            known = row["student"], row["result"], SubmissionFiles.of(row), parts, is_gone, row["hints"]
+            found.append(LossySubmission(*known, submission, content, robot))
     return found
 
 
@@ -70,27 +78,6 @@ def _positions(rubric: Rubric) -> tuple[list[int], list[int]]:
     criteria = [criterion for criterion in rubric.criteria if criterion.part not in from_files]
     of_robot = [row.position for row in criteria if row.check.subject in _ROBOT]
     return of_robot, [row.position for row in criteria if row.position not in of_robot]
-
-
-def _mistaken(
-    row: Mapping[str, Any], submission: GradedSubmission, content: tuple[str, ...], robot: tuple[str, ...]
-) -> Mistaken:
-    paths, names, *_ = json.loads(row["files"])
-    return Mistaken(
-        student=row["student"],
-        key=row["key"],
-        result=row["result"],
-        digest=row["digest"],
-        parts=tuple(row["parts"].split()),
-        root=row["source"],
-        paths=tuple(paths),
-        names=tuple(names),
-        is_gone=bool(row["is_gone"]),
-        hints=row["hints"],
-        submission=submission,
-        content=content,
-        robot=robot,
-    )
 
 
 def rubrics_of(book: Gradebook) -> Iterator[Rubric]:
@@ -117,3 +104,67 @@ def remove_old_hints(book: Gradebook) -> None:
     current = "SELECT result FROM grade WHERE result IS NOT NULL AND version = ?"
     with book.transaction():
         book.connection.execute(f"DELETE FROM hint WHERE result NOT IN ({current})", (__version__,))
+
+
+@dataclass(frozen=True, slots=True)
+class CommonFix:
+    """A change that several students need; `students` are their keys.
+
+    `criteria` that pass and `points` gained are those of most students. `example` contains the edits of one student,
+    without file names.
+    """
+
+    action: str
+    students: tuple[str, ...]
+    criteria: tuple[str, ...]
+    points: Decimal
+    example: tuple[Edit, ...]
+
+    @property
+    def count(self) -> int:
+        """The number of students."""
+        return len(self.students)
+
+
+def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
+    """Return the changes that most students need, the most frequent first, as far as hints have been searched."""
+    needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
+    examples: dict[tuple[str, tuple[str, ...]], tuple[LossySubmission, StoredHint, tuple[StoredHint, ...]]] = {}
+    marks = manual_units(book)
+    for submission, example, hints in _searched(book, rubric):
+        given = {row.id for row in rubric.criteria if marks[submission.student].get(row.id) == units_of(row.points)}
+        for stored in hints:
+            action, gained = stored.hint.action, tuple(stored.hint.gains)
+            if action and not given.issuperset(gained):
+                needed.setdefault(action, {}).setdefault(submission.files.key, gained)
+                examples.setdefault((action, gained), (example, stored, hints))
+    fixes = []
+    for action, gains in needed.items():
+        kinds = Counter(gains.values())
+        gained = min(kinds, key=lambda names: (-kinds[names], names))
+        example, stored, hints = examples[action, gained]
+        edits = tuple(_nameless(edit, example, rubric) for edit in stored.own_edits(hints))
+        fixes.append(CommonFix(action, tuple(gains), gained, sum(stored.hint.gains.values(), Decimal(0)), edits))
+    return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
+
+
+def _searched(
+    book: Gradebook, rubric: Rubric
+) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[StoredHint, ...]]]:
+    """Yield submissions, each with the first that has the same robot and the same failures, and with its hints."""
+    submissions = lossy_submissions(book, rubric)
+    first = {one.robot: one for one in reversed(submissions) if one.hints is not None}
+    hints = {robot: hints_from_record(one.hints or "[]") for robot, one in first.items()}
+    for submission in submissions:
+        if submission.robot in first:
+            yield submission, first[submission.robot], hints[submission.robot]
+
+
+def _nameless(edit: Edit, example: LossySubmission, rubric: Rubric) -> Edit:
+    """Return an edit with the rubric's path of the URDF, or one in the package: folders may have students' names."""
+    if not edit.path:
+        return edit._replace(path=rubric.urdf)
+    package = example.submission.package
+    folder = f"{package.folder}/" if package is not None and package.folder else ""
+    is_inside = package is not None and edit.path.startswith(folder)
+    return edit._replace(path=edit.path[len(folder) :] if is_inside else PurePosixPath(edit.path).name)

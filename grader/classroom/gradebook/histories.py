@@ -8,10 +8,10 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.marks import Entry, Mark, mark_of
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
-from grader.classroom.matching import NUMBERS, Clue, People, clues_of
+from grader.classroom.matching import LMS_IDS, Clue, People, clues_of
 from grader.classroom.students import Student
 
-_IDS = (*NUMBERS, Clue.WORD)
+_IDS = (*LMS_IDS, Clue.EXACT_ID)
 
 
 class StoredMark(NamedTuple):

@@ -3,18 +3,14 @@
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, storable, units_of
+from grader.classroom.gradebook.result import points_from_units, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
-from grader.grading.rubric import Rubric
 from grader.grading.validation import TOTAL
-from grader.names import did_you_mean
-from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
 
@@ -74,29 +70,6 @@ class NewerMarkError(Exception):
     def __init__(self, mark: Mark) -> None:
         super().__init__()
         self.mark = mark
-
-
-def read_points(text: str, name: str, most: Decimal) -> Decimal:
-    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are for and the range."""
-    text = text.strip()
-    try:
-        points = Decimal("NaN" if "_" in text else text.replace(",", "."))
-    except InvalidOperation:
-        points = Decimal("NaN")
-    if points.is_finite() and not 0 <= points <= most:
-        raise InputError(f"{name} is worth 0 to {format_points(most)} points, not {text}")
-    if not points.is_finite() or points != points.quantize(Decimal(1) / UNITS_PER_POINT):
-        raise InputError(f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, not {text!r}")
-    return points
-
-
-def criterion_of(rubric: Rubric, name: str) -> Criterion:
-    """Return the criterion with this id; raises InputError."""
-    criteria = {criterion.id: criterion for criterion in rubric.criteria}
-    if name not in criteria:
-        guess = did_you_mean(name, criteria)
-        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` lists them)")
-    return criteria[name]
 
 
 def add_mark(
@@ -211,7 +184,7 @@ def current_marks(book: Gradebook, student: int) -> dict[str, Mark]:
 
 def mark_of(row: Mapping[str, Any]) -> Mark:
     """Return a row of the table of marks."""
-    points = None if row["points"] is None else points_of(row["points"])
+    points = None if row["points"] is None else points_from_units(row["points"])
     entry = Entry(row["kind"], points, row["comment"])
     return Mark(row["id"], entry, row["grader_name"], row["at"], row["result"])
 

@@ -2,7 +2,7 @@
 
 import json
 import zlib
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from decimal import Decimal
 from math import isfinite
 from typing import Literal, NamedTuple
@@ -14,7 +14,7 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.text import cut
 
-Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+GradingVerdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 _MAX_CAUSE = 200  # characters
 _DIGITS = 6  # of a measured value
@@ -42,7 +42,7 @@ class GradingResult(NamedTuple):
     """
 
     key: str
-    verdict: Verdict
+    verdict: GradingVerdict
     digest: str
     fingerprint: str
     parts: str = ""
@@ -59,13 +59,18 @@ class GradingResult(NamedTuple):
         """Return the result with the points and outcomes of a report, which is compressed with a dictionary."""
         graded = {result.criterion.part for result in report.results}
         return self._replace(
-            parts=" ".join(part.id for part in report.rubric.parts if part.id in graded),
+            parts=parts_text(report.rubric, graded),
             score=units_of(report.score),
             out_of=units_of(report.max_score),
             pending=units_of(report.pending),
             outcomes=_outcomes(report),
             record=compressed(to_record(report).encode(), dictionary),
         )
+
+
+def parts_text(rubric: Rubric, ids: Container[str]) -> str:
+    """Return the ids of parts as the gradebook stores them: between spaces, in the order of the rubric."""
+    return " ".join(part.id for part in rubric.parts if part.id in ids)
 
 
 def storable(text: str) -> str:
@@ -78,7 +83,7 @@ def units_of(points: Decimal) -> int:
     return int(points * UNITS_PER_POINT)
 
 
-def points_of(units: int) -> Decimal:
+def points_from_units(units: int) -> Decimal:
     """Return ten-thousandths as points."""
     return Decimal(units) / UNITS_PER_POINT
 
@@ -109,7 +114,7 @@ def criterion_points(
         elif outcome is None:
             points[row.id] = row.points
         else:
-            points[row.id] = points_of(outcome.points) if outcome.points is not None else None
+            points[row.id] = points_from_units(outcome.points) if outcome.points is not None else None
     return points
 
 
@@ -124,8 +129,8 @@ def _outcomes(report: Report) -> tuple[OutcomeRow, ...]:
 def _outcome(result: Result) -> OutcomeRow:
     criterion, outcome = result.criterion, result.outcome
     status, position = outcome.status, criterion.position
-    if result.why_given:
-        return position, "settled", units_of(result.points), "", None
+    if result.is_adjusted or result.carried:
+        return position, "adjusted" if result.is_adjusted else "carried", units_of(result.points), "", None
     if status == "failed":
         return position, status, 0, _cause(outcome.mistake or outcome.message), _measured(outcome)
     if status == "pending" and criterion.check.function not in MANUAL_CHECKS:

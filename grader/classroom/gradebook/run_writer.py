@@ -16,7 +16,7 @@ from grader.classroom.gradebook.stored import (
     profile_of,
 )
 from grader.classroom.students import ClassSubmission, Student
-from grader.files.reading import sha256_of
+from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.rubric import Rubric
 
 _FIND = f"SELECT id, {', '.join(PROFILE_COLUMNS)} FROM student WHERE key = ?"
@@ -31,16 +31,23 @@ class RunWriter:
     """Begins a run in a gradebook and writes its results. `run` is its id."""
 
     def __init__(
-        self, book: Gradebook, source: str, layout: str, rubric: Rubric, deadline: str = "", assignment: str = ""
+        self,
+        book: Gradebook,
+        source: str,
+        layout: str,
+        rubric: Rubric,
+        deadline: str = "",
+        assignment: str = "",
+        max_size: int = URDF_LIMIT,
     ) -> None:
         self._book, self._rubric = book, rubric.sha256
         self._dictionary: str | None = None
         with book.transaction():
             _save_rubric(book, rubric)
             (last_mark,) = book.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()
-            row = {"started": _now(), "source": storable(source), "layout": layout, "rubric": rubric.sha256}
-            row |= {"version": __version__, "last_mark": last_mark}
-            row |= {"deadline": deadline, "assignment": storable(assignment)}
+            row: dict[str, Any] = {"started": _now(), "source": storable(source), "layout": layout}
+            row |= {"rubric": rubric.sha256, "version": __version__, "last_mark": last_mark}
+            row |= {"deadline": deadline, "assignment": storable(assignment), "max_size": max_size}
             self.run = book.insert("run", row)
 
     def use_dictionary(self, dictionary: bytes) -> None:

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.criterion import Criterion
 
@@ -56,7 +56,7 @@ def compare(grades: Grades, by: Grouping) -> Comparison:
     sections = tuple(_section(name, groups[name], students, most, rubric.criteria) for name in sorted(groups))
     return Comparison(
         by,
-        points_of(most),
+        points_from_units(most),
         rubric.criteria,
         sections,
         _differing([section for section in sections if section.name]),
@@ -72,7 +72,7 @@ def _section(
 ) -> Section:
     found = [students[grade.id] for grade in grades if grade.id in students]
     totals = [student.grade(most) / UNITS_PER_POINT for student in found if student.counts]
-    late = [grade for grade in grades if grade.late.days and not grade.is_decided]
+    late = [grade for grade in grades if grade.late.days and not grade.has_final]
     return Section(
         name,
         len(grades),

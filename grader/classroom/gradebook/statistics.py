@@ -1,51 +1,22 @@
 """Statistics of a class: distribution of scores, difficulty and discrimination of criteria, most common failures."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
 from typing import Any, NamedTuple
 
-from grader.classroom.gradebook.failures import grouped, groups_of
+from grader.classroom.gradebook.criterion_statistics import CriterionStatistics, criteria_statistics
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students
-from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, units_of
+from grader.classroom.gradebook.graded_students import GradedStudent, full_units, graded_students, grouped, groups_of
+from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
 _BINS = 10
 _MAX_FAILURES = 20
 _VERDICTS = "SELECT verdict, is_excused, count(*), count(final) FROM grade GROUP BY verdict, is_excused"
-
-
-@dataclass(frozen=True, slots=True)
-class CriterionStatistics:
-    """The results of a criterion. The check passed for `passed` of `decided` students, `manual_marks` have one.
-
-    For `carried` students it failed because of an earlier mistake alone: they have the points.
-
-    `share` is the mean share of its points that was earned (the lower, the harder). `discrimination` is the correlation
-    of that share with the points of all other criteria: below about 0.2 the criterion says little about a student,
-    below 0 it may be wrong. It is None if all students have the same result.
-    """
-
-    criterion: Criterion
-    decided: int
-    passed: int
-    manual_marks: int
-    carried: int
-    failed: int
-    skipped: int
-    pending: int
-    errored: int
-    share: float | None
-    discrimination: float | None
-
-    @property
-    def of(self) -> int:
-        """The number of students for whom it was graded, or needs manual grading."""
-        return self.decided + self.pending + self.errored
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +70,6 @@ class ClassStatistics:
     failures: tuple[CommonFailure, ...]
 
 
-class _Pattern(NamedTuple):
-    """The results that some students have in common; `total` are the points of all criteria."""
-
-    statuses: tuple[str, ...]
-    earned: tuple[int | None, ...]
-    marked: tuple[int, ...]
-    total: int
-
-
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
     students = list(graded_students(book, rubric))
@@ -121,7 +83,7 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         excused=sum(count for _, is_excused, count, _ in verdicts if is_excused),
         final=sum(final for *_, final in verdicts),
         final_graded=sum(student.final is not None for student in students),
-        out_of=points_of(most),
+        out_of=points_from_units(most),
         graded=len(students),
         pending=sum(student.pending > 0 for student in students),
         undecided=len(students) - decided,
@@ -129,22 +91,12 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         reasons=_reasons(students),
         **_figures(values, decided),
         bins=_bins(values, most),
-        criteria=tuple(_criteria(rubric, students)),
+        criteria=tuple(criteria_statistics(rubric, students)),
         failures=tuple(
             CommonFailure(rubric.criteria[cause.position], cause.mistake, count)
             for cause, count in causes[:_MAX_FAILURES]
         ),
     )
-
-
-def _criteria(rubric: Rubric, students: Sequence[GradedStudent]) -> Iterator[CriterionStatistics]:
-    """Yield the figures of the criteria that were graded; of all, if none was."""
-    # Most students have the same results as others: the figures of criteria add up these few rows.
-    worth = [row.position for row in rubric.criteria if row.points]
-    patterns = Counter(_pattern(student, worth) for student in students)
-    graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
-    criteria = [row for row in rubric.criteria if row.position in graded]
-    yield from (_criterion(criterion, patterns) for criterion in criteria or rubric.criteria)
 
 
 def _figures(values: list[tuple[int, int]], total: int) -> dict[str, Any]:
@@ -203,44 +155,7 @@ def _totals(students: Iterable[GradedStudent]) -> PointTotals:
         earned += student.score
         pending += student.pending
         lost += max(0, student.decided - (student.score - student.bonus))  # a mark may exceed the maximum
-    return PointTotals(points_of(earned), points_of(lost), points_of(pending))
-
-
-def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
-    total = sum(student.earned[position] or 0 for position in worth)
-    return _Pattern(tuple(student.statuses), tuple(student.earned), student.marked, total)
-
-
-def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:
-    """Return the statistics from sums over its points x and the other criteria's points r: integers, so exact."""
-    found: Counter[str] = Counter()
-    position = criterion.position
-    count = x = r = xx = rr = xr = 0
-    for pattern, number in patterns.items():
-        found["manual_marks" if position in pattern.marked else pattern.statuses[position]] += number
-        earned = pattern.earned[position]
-        if earned is not None:
-            rest = pattern.total - (earned if criterion.points else 0)
-            count += number
-            x += earned * number
-            r += rest * number
-            xx += earned * earned * number
-            rr += rest * rest * number
-            xr += earned * rest * number
-    variances = (count * xx - x * x) * (count * rr - r * r)
-    return CriterionStatistics(
-        criterion,
-        decided=count,
-        passed=found["passed"],
-        manual_marks=found["manual_marks"],
-        carried=found["settled"],
-        failed=found["failed"],
-        skipped=found["skipped"],
-        pending=found["pending"],
-        errored=found["errored"],
-        share=x / (count * full_units(criterion)) if count else None,
-        discrimination=(count * xr - x * r) / sqrt(variances) if variances else None,
-    )
+    return PointTotals(points_from_units(earned), points_from_units(lost), points_from_units(pending))
 
 
 def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
@@ -248,7 +163,7 @@ def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
     for score, count in values:
         rank -= count
         if rank < 0:
-            return points_of(score)
+            return points_from_units(score)
     return Decimal(0)
 
 

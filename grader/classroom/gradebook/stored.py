@@ -25,43 +25,47 @@ STUDENT_COLUMNS = ("key", "name", "email", "login", "sis", "canvas", "moodle")
 PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
 _VALUES = attrgetter(*STUDENT_COLUMNS)
+_PROFILE = ", ".join(f"student.{name}" for name in PROFILE_COLUMNS)
 STORED_SUBMISSIONS = f"""
-SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.parts,
-    submission.fingerprint, submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
-    {", ".join(f"student.{name}" for name in PROFILE_COLUMNS)}
+SELECT student.id, {_PROFILE},
+    result.id, result.rubric, result.version, result.digest, result.verdict, result.parts,
+    submission.fingerprint, submission.files, submission.is_late, submission.submitted, submission.is_gone,
+    run.source, run.max_size
 FROM student JOIN newest_submission AS submission ON submission.student = student.id
 JOIN result ON result.id = submission.result
 JOIN run ON run.id = submission.run
 ORDER BY student.key
 """
-
-
 WITHOUT_SUBMISSION = f"""
-SELECT id, 0, '', '', '', 'missing', '', '', '[[], [], 0, []]', 0, '', 1, '', {", ".join(PROFILE_COLUMNS)}
-FROM student WHERE NOT EXISTS (SELECT 1 FROM submission WHERE submission.student = student.id) ORDER BY key
+SELECT student.id, {_PROFILE} FROM student
+WHERE NOT EXISTS (SELECT 1 FROM submission WHERE submission.student = student.id) ORDER BY key
 """
 
 
 class StoredSubmission(NamedTuple):
-    """The newest submission of a student in the gradebook, with its result and the student's profile.
-
-    For a student without a submission the result is 0, and there are no files.
-    """
+    """The profile of a student in the gradebook, and the newest submission with its result, unless there is none."""
 
     student_id: int
-    result: int
-    rubric: str
-    version: str
-    digest: str
-    verdict: str
-    parts: str  # ids between spaces
-    fingerprint: str
-    files: str  # JSON, see files_json
-    is_late: int
-    submitted: str
-    is_gone: int
-    source: str
     profile: tuple[Any, ...]  # PROFILE_COLUMNS
+    result: int = 0
+    rubric: str = ""
+    version: str = ""
+    digest: str = ""
+    verdict: str = "missing"
+    parts: str = ""  # ids between spaces
+    fingerprint: str = ""
+    files: str = "[[], [], 0, []]"  # JSON, see files_json
+    is_late: int = 0
+    submitted: str = ""
+    is_gone: int = 1
+    source: str = ""
+    max_size: int = 0
+
+    @classmethod
+    def of(cls, row: tuple[Any, ...]) -> "StoredSubmission":
+        """Return what a row of one of the two queries says."""
+        end = 1 + len(PROFILE_COLUMNS)
+        return cls(row[0], row[1:end], *row[end:])
 
     @property
     def student(self) -> Student:

@@ -1,23 +1,14 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
-from functools import cached_property
 from typing import NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness
-from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.classroom.students import Student
-from grader.errors import InputError
-from grader.files.reading import URDF_LIMIT
-from grader.grading.rubric import Rubric
-from grader.source import Source
-from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, Urdf
 from grader.text import counted, counted_points
 
 
@@ -38,48 +29,17 @@ class Reason(StrEnum):
     MARKED = "could not be graded, and was marked manually"
 
 
-class SubmissionFiles(NamedTuple):
-    """Where a submission was when graded: paths below the class `root`, and the fingerprint and digest of the files.
+class DoubtfulMarks(NamedTuple):
+    """The criteria whose manual mark may have to change.
 
-    The fingerprint is empty for files that were modified just before grading, and changes if files are copied. The
-    digest is of the contents.
+    It was given for an `older` submission, or when the criterion had other points (`revalued`); it is `over` the
+    current maximum, or the criterion was `removed` from the rubric.
     """
 
-    root: str
-    paths: tuple[str, ...]
-    names: tuple[str, ...]
-    key: str
-    fingerprint: str
-    digest: str = ""
-
-
-class SubmissionSources:
-    """Opens a submission when one of its files is first asked for."""
-
-    def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
-        self._files, self._rubric = files, rubric
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one file; None if it cannot be read or has changed."""
-        return self.submission.source(path) if self.submission is not None else None
-
-    @property
-    def urdf(self) -> Urdf:
-        """The URDF; absent if it cannot be read or has changed."""
-        return self.submission.urdf if self.submission is not None else Absent()
-
-    @cached_property
-    def submission(self) -> Submission | None:
-        """The submission; None if it cannot be read or has changed since it was graded."""
-        root, paths, names, key, stored, digest = self._files
-        found = fingerprint(root, paths, time.time_ns())
-        limit = stored.removeprefix(found).removeprefix(" ")  # of a URDF, if it is not the default
-        is_unchanged = found != "" and stored in (found, f"{found} {limit}")
-        try:
-            opened = open_submission(root, paths, names, key, int(limit) if is_unchanged and limit else URDF_LIMIT)
-            return opened.submission(self._rubric) if is_unchanged or opened.digest == digest else None
-        except InputError:
-            return None
+    older: tuple[str, ...] = ()
+    revalued: tuple[str, ...] = ()
+    over: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +47,7 @@ class StudentGrade:
     """One student's current grade. Without a submission `verdict` is `missing`, and there are no points.
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed.
-    `older_marks` are the criteria whose manual mark was given for an earlier submission, `revalued_marks` those that
-    had other points then, `over_marks` those whose mark exceeds the current maximum, and `removed_marks` those that the
-    rubric no longer has. `is_gone` means that the newest run did not find the submission, `is_outdated` that the rubric
+    `is_gone` means that the newest run did not find the submission, `is_outdated` that the rubric
     has changed since it was graded, `has_other_parts` that the parts have that a submission is graded on. `final` is
     the final mark; None if there is none, or the student is excused. `final_is_older` means that the final mark or
     excuse was given for an earlier submission. `section` and `marker` come from the roster.
@@ -100,10 +58,7 @@ class StudentGrade:
     result: int | None
     faults: int
     marks: int
-    older_marks: tuple[str, ...]
-    revalued_marks: tuple[str, ...]
-    over_marks: tuple[str, ...]
-    removed_marks: tuple[str, ...]
+    doubtful: DoubtfulMarks
     score: Decimal
     out_of: Decimal
     pending: Decimal
@@ -114,12 +69,9 @@ class StudentGrade:
     student: Student
     is_on_roster: bool | None
     is_gone: bool
-    is_late: bool
     is_outdated: bool
     has_other_parts: bool
     files: SubmissionFiles
-    attempt: int
-    earlier: tuple[str, ...]
     late: Lateness
     final: Decimal | None = None
     is_excused: bool = False
@@ -128,7 +80,7 @@ class StudentGrade:
     marker: str = ""
 
     @property
-    def is_decided(self) -> bool:
+    def has_final(self) -> bool:
         """Whether a person has decided the whole grade: with a final mark or an excuse, there is no late penalty."""
         return self.final is not None or self.is_excused
 
@@ -154,7 +106,10 @@ class StudentGrade:
                 "it was graded with an earlier version of the rubric: run `grader batch` again",
             ),
             (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
-            (self.over_marks, f"a manual mark exceeds the maximum of its criterion: {', '.join(self.over_marks)}"),
+            (
+                self.doubtful.over,
+                f"a manual mark exceeds the maximum of its criterion: {', '.join(self.doubtful.over)}",
+            ),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )
         return next((reason for holds, reason in reasons if holds), "")
@@ -163,9 +118,9 @@ class StudentGrade:
     def concerns(self) -> Iterator[tuple[Reason, str]]:
         """Yield why an instructor should look at this grade, each reason with its details."""
         is_errored = self.verdict == "errored" or self.faults
-        is_open = not self.is_decided and (self.faults or self.pending)
-        is_current = not self.is_decided and self.rubric and not self.is_outdated
-        is_ungraded = not self.is_decided and self.verdict in ("errored", "unreadable")
+        is_open = not self.has_final and (self.faults or self.pending)
+        is_current = not self.has_final and self.rubric and not self.is_outdated
+        is_ungraded = not self.has_final and self.verdict in ("errored", "unreadable")
         reasons = (
             (
                 is_open and is_errored,
@@ -174,15 +129,15 @@ class StudentGrade:
             ),
             (is_open and self.verdict == "unreadable", Reason.UNREADABLE, self.reason),
             (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not self.is_decided and self.verdict == "missing", Reason.MISSING, ""),
+            (not self.has_final and self.verdict == "missing", Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
-            (not self.is_decided and self.is_outdated, Reason.OUTDATED, ""),
-            (is_current and self.removed_marks, Reason.REMOVED, ", ".join(self.removed_marks)),
-            (self.over_marks, Reason.OVER, ", ".join(self.over_marks)),
+            (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
+            (is_current and self.doubtful.removed, Reason.REMOVED, ", ".join(self.doubtful.removed)),
+            (self.doubtful.over, Reason.OVER, ", ".join(self.doubtful.over)),
             (self.is_on_roster is False, Reason.NOT_ON_ROSTER, ""),
             (self.final_is_older, Reason.OLDER_FINAL, ""),
-            (self.older_marks, Reason.OLDER_MARKS, ", ".join(self.older_marks)),
-            (self.revalued_marks, Reason.REVALUED_MARKS, ", ".join(self.revalued_marks)),
+            (self.doubtful.older, Reason.OLDER_MARKS, ", ".join(self.doubtful.older)),
+            (self.doubtful.revalued, Reason.REVALUED_MARKS, ", ".join(self.doubtful.revalued)),
         )
         return ((reason, detail) for holds, reason, detail in reasons if holds)
 

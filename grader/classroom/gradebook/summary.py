@@ -2,122 +2,19 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.gradebook.fixes import CommonFix, common_fixes
+from grader.classroom.gradebook.agreement import Agreement, agreement
+from grader.classroom.gradebook.attention import Attention, attention
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix, common_fixes
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
-from grader.classroom.gradebook.result import points_of
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
-from grader.classroom.gradebook.student_grade import Reason
+from grader.files.names import ROBOT_ENDINGS
 from grader.grading.record import submission_of
 from grader.grading.rubric import Rubric
-
-MAX_DIFFERENCES = 5
-# A second opinion on an earlier submission, or of the person who gave the mark, is not compared.
-_PAIRS = """
-SELECT key, criterion, manual_mark.points, second_mark.points FROM second_mark
-JOIN manual_mark USING (student, criterion)
-JOIN result AS marked ON marked.id = manual_mark.result AND marked.digest = second_mark.digest
-JOIN student ON student.id = second_mark.student
-WHERE second_mark.points IS NOT NULL AND second_mark.grader_name <> manual_mark.grader_name
-ORDER BY key, criterion, second_mark.id
-"""
-
-
-class MarkedTwice(NamedTuple):
-    """A criterion of a student with the points of both graders, and the criterion's maximum."""
-
-    key: str
-    criterion: str
-    first: Decimal
-    second: Decimal
-    max_points: Decimal
-
-    @property
-    def difference(self) -> Decimal:
-        """The difference in percent of the maximum."""
-        return 100 * abs(self.first - self.second) / self.max_points
-
-
-class Agreement(NamedTuple):
-    """How many items were marked twice, how many of them equally, and the mean difference in percent of the maximum.
-
-    `largest` are the largest differences.
-    """
-
-    items: int
-    same: int
-    mean_difference_percent: float
-    largest: tuple[MarkedTwice, ...]
-
-
-def agreement(book: Gradebook, rubric: Rubric) -> Agreement:
-    """Return the agreement on the criteria of a rubric that have points."""
-    maxima = {criterion.id: criterion.points for criterion in rubric.criteria if criterion.points}
-    items = [
-        MarkedTwice(str(key), name, points_of(first), points_of(second), maxima[name])
-        for key, name, first, second in book.rows(_PAIRS)
-        if name in maxima
-    ]
-    apart = sorted((item for item in items if item.difference), key=lambda item: -item.difference)
-    mean = float(sum((item.difference for item in items), Decimal(0)) / len(items)) if items else 0.0
-    return Agreement(len(items), len(items) - len(apart), mean, tuple(apart[:MAX_DIFFERENCES]))
-
-
-_MAY_NEED_ATTENTION = (
-    "((verdict <> 'graded' OR faults OR rubric <> ? OR removed_marks <> '') AND final IS NULL AND NOT is_excused)"
-    " OR older_marks || revalued_marks || over_marks <> '' OR is_gone OR is_on_roster = 0 OR final_is_older"
-)
-
-
-class AttentionItem(NamedTuple):
-    """A student who needs attention, with what distinguishes this case from others with the same reason."""
-
-    key: str
-    name: str
-    detail: str
-
-    @property
-    def who(self) -> str:
-        """The name and the key, or the key alone."""
-        return f"{self.name} ({self.key})" if self.name and self.name != self.key else self.key
-
-
-class AttentionGroup(NamedTuple):
-    """The students who need attention for one reason, in the order of their keys."""
-
-    reason: str
-    items: tuple[AttentionItem, ...]
-
-
-class Attention(NamedTuple):
-    """The groups, the most urgent first, and the number of students in them: one may be in several groups."""
-
-    groups: tuple[AttentionGroup, ...]
-    total: int
-
-
-def attention(grades: Grades) -> Attention:
-    """Return who needs attention: no readable submission, a fault of the grader, a possibly outdated grade or mark."""
-    newest = grades.newest_rubric().sha256
-    found: dict[Reason, list[AttentionItem]] = {reason: [] for reason in Reason}
-    total = 0
-    for grade in grades.where(_MAY_NEED_ATTENTION, newest):
-        total += 1
-        for reason, detail in grade.concerns:
-            found[reason].append(AttentionItem(grade.student.key, grade.student.name, detail))
-    return Attention(tuple(_groups(found)), total)
-
-
-def _groups(found: dict[Reason, list[AttentionItem]]) -> Iterator[AttentionGroup]:
-    for reason, items in found.items():
-        if items:
-            yield AttentionGroup(reason.value, tuple(items))
-
 
 _QUERY = "SELECT result, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
 
@@ -141,7 +38,7 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
 
 def _is_single(files: str) -> bool:
     paths = json.loads(files)[0]
-    return len(paths) == 1 and paths[0].lower().endswith((".urdf", ".xacro"))
+    return len(paths) == 1 and paths[0].lower().endswith(ROBOT_ENDINGS)
 
 
 _MAYBE_LATE = (

@@ -7,8 +7,6 @@ from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 
-from grader.files.reading import URDF_LIMIT
-
 _MAX_ENTRIES = 100_000
 _CLOCK_RESOLUTION = 50_000_000  # nanoseconds in which a file system may give two changes the same time
 
@@ -19,17 +17,12 @@ def is_zip(root: str) -> bool:
     return not Path(root).is_dir()
 
 
-def fingerprint(root: str, paths: tuple[str, ...], now: int, limit: int = URDF_LIMIT) -> str:
+def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     """Return the fingerprint of a submission; empty if it cannot be trusted, because it was changed just before `now`.
 
-    `now` is in nanoseconds. Another `limit` (bytes of a URDF) gives another fingerprint: a file that was too large may
-    be read now.
+    `now` is in nanoseconds.
     """
-    found = _fingerprint(root, paths, now - _CLOCK_RESOLUTION)
-    return f"{found} {limit}" if found and limit != URDF_LIMIT else found
-
-
-def _fingerprint(root: str, paths: tuple[str, ...], settled: int) -> str:
+    settled = now - _CLOCK_RESOLUTION
     try:
         if is_zip(root):
             status = os.stat(root)  # noqa: PTH116

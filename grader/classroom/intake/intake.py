@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import Submissions, path_key
-from grader.classroom.intake.matches import Matches
+from grader.classroom.intake.matches import Matches, match_class
 from grader.classroom.intake.names import is_course_folder
 from grader.classroom.intake.roster import Roster
 from grader.classroom.matching import plain_word
@@ -111,8 +111,7 @@ def assign(
         if names := [printable_path(folder) for folder in folders]:
             notes += (f"{enumerated(names, _MAX_NAMED)} may be a template of the course: graded like a student's",)
         return Intake(layout, ignored, submissions, contested=submissions.contested, notes=notes)
-    matches = Matches(submissions, roster)
-    matches.share(holds_students)
+    matches = match_class(submissions, roster, holds_students)
     outside = [index for index in matches.unmatched if index not in matches.shared]
     courses = [index for index in outside if is_course_folder(submissions.path(index))]
     keys = _keys(submissions, roster, {*matches.owners, *matches.shared, *courses})

@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 from grader.errors import InputError
 from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path, zip_members
+from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, LITTER
 from grader.files.reading import read_start
 from grader.text import printable_path
 
 MAX_MEMBERS = 200_000  # of a zip
 _MAX_DEPTH = 20  # folders in a zip: names below do not tell whose a file is
-_LITTER = frozenset({"__MACOSX", "__pycache__", "node_modules", "site-packages", "Thumbs.db", "desktop.ini", "Icon\r"})
+_LITTER = LITTER | (IGNORED_FOLDERS - BUILD_FOLDERS)
 
 
 class Children(NamedTuple):

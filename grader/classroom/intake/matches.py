@@ -11,12 +11,25 @@ from grader.text import enumerated
 _MAX_NAMED = 10
 
 
-class Matches:
-    """The submissions of a class matched with a roster: both by their positions.
+def match_class(submissions: Submissions, roster: Roster, holds_students: Callable[[str], bool]) -> "Matches":
+    """Return which student each submission of a class belongs to, or which members of a group it counts for.
 
-    `owners` are the students of submissions. `shared` are the members that a group's submission counts for. `contested`
-    are the students with several possible submissions, `ambiguous` these submissions, `uncertain` those that may be
-    another student's, `unmatched` those of nobody on the roster. `notes` are messages for the user.
+    A folder that `holds_students` is a section, and not the work of a group.
+    """
+    matches = Matches(submissions, roster)
+    matches.match(roster)
+    matches.contest(roster)
+    matches.share(holds_students)
+    return matches
+
+
+class Matches:
+    """The submissions of a class, an `index` each, matched with a roster's entries, a `position` each.
+
+    `owners` are the positions of the students by the indices of their submissions. `shared` are the members that a
+    group's submission counts for. `contested` are the students with several possible submissions, `ambiguous` these
+    submissions, `uncertain` those that may be another student's, `unmatched` those of nobody on the roster. `notes` are
+    messages for the user.
     """
 
     def __init__(self, submissions: Submissions, roster: Roster) -> None:
@@ -28,18 +41,10 @@ class Matches:
         self.ambiguous: set[int] = set()
         self.uncertain: set[int] = set()
         self.notes: list[str] = []
-        self._claimants: dict[
-            tuple[int, ...], list[int]
-        ] = {}  # submissions that are named like a group, by its members
-        self._match(roster)
-        for student in submissions.contested:
-            self.contested.update(roster.candidates(student))
-        self.contested.difference_update(self.owners.values())
-        for index in self.unmatched:
-            if members := roster.members(submissions.student(index)):
-                self._claimants.setdefault(tuple(members), []).append(index)
+        # Submissions that are named like a group, by its members.
+        self._claimants: dict[tuple[int, ...], list[int]] = {}
 
-    def _match(self, roster: Roster) -> None:
+    def match(self, roster: Roster) -> None:
         """Match each submission, then decide between those of one student; none of an anonymous class."""
         groups = CanvasGroups(roster)
         doubts: list[tuple[str, GroupClaim]] = []
@@ -72,6 +77,15 @@ class Matches:
             )
         for owner, claimants in claims.items():
             self._decide(owner, sorted(claimants))
+
+    def contest(self, roster: Roster) -> None:
+        """Contest the students who may have a submission that was ignored, and add the unmatched groups."""
+        for student in self._submissions.contested:
+            self.contested.update(roster.candidates(student))
+        self.contested.difference_update(self.owners.values())
+        for index in self.unmatched:
+            if members := roster.members(self._submissions.student(index)):
+                self._claimants.setdefault(tuple(members), []).append(index)
 
     def _add_doubts(self, doubts: Iterable[tuple[str, GroupClaim]]) -> None:
         """Contest the members of doubtful claims, except those of a group with a clear claim.

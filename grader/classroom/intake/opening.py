@@ -10,8 +10,8 @@ from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.errors import InputError
 from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
-from grader.files.limits import ignored_part, is_generated
 from grader.files.members import ARCHIVE_ERRORS
+from grader.files.names import ROBOT_ENDINGS, ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start
 from grader.files.tree import Tree, make_tree
@@ -19,13 +19,12 @@ from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
 from grader.submission.opening import read_submission, submission_of
 from grader.submission.robots import START, is_robot
-from grader.submission.submission import Submission
+from grader.submission.submission import Opening, Submission
 from grader.text import printable_path
 
 if TYPE_CHECKING:
     import hashlib
 
-_URDF_ENDINGS = (".urdf", ".xacro")
 _UNSUPPORTED = "is neither a URDF nor a folder or archive"
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 _CHUNK = 1024 * 1024
@@ -34,8 +33,8 @@ _CHUNK = 1024 * 1024
 class OpenedSubmission(NamedTuple):
     """A submission before it is graded: its digest, and either the bytes of a single URDF or a file tree.
 
-    The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `limit` the bytes of
-    a URDF.
+    The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `max_size` the bytes
+    of a URDF.
     """
 
     name: str
@@ -43,7 +42,7 @@ class OpenedSubmission(NamedTuple):
     digest: str
     data: bytes | None
     tree: Tree | None
-    limit: int = URDF_LIMIT
+    max_size: int = URDF_LIMIT
 
     def submission(self, rubric: Rubric, no_documents: str = "") -> Submission:
         """Return the submission; raises InputError if it is empty. `no_documents` says why documents are not read."""
@@ -52,27 +51,24 @@ class OpenedSubmission(NamedTuple):
         return submission_of(
             with_inner(self.tree, LabFolders(rubric.folders).is_lab),
             self.name,
-            wanted=rubric.urdf,
-            package=rubric.package,
-            folders=rubric.folders,
-            limit=self.limit,
+            rubric.lab,
+            Opening(self.max_size, no_documents=no_documents),
             shown=self.shown,
-            no_documents=no_documents,
         )
 
 
-def open_submission(
-    root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, limit: int = URDF_LIMIT
+def open_class_submission(
+    root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
 ) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
     Several files become one submission, called `name`, that contains them as `names`.
     """
     if len(paths) == 1:
-        return _open_in_zip(root, paths[0], limit) if is_zip(root) else _open_on_disk(root, paths[0], limit)
+        return _open_in_zip(root, paths[0], max_size) if is_zip(root) else _open_on_disk(root, paths[0], max_size)
     files = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _class_zip(root, file_stamp(root)).files(files, name) if is_zip(root) else _side_by_side(root, files, name)
-    return OpenedSubmission(name, name, _digest_of_tree(name, tree, limit), None, tree, limit)
+    return OpenedSubmission(name, name, _digest_of_tree(name, tree, max_size), None, tree, max_size)
 
 
 def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
@@ -93,44 +89,44 @@ def _raw(root: str, path: str) -> IO[bytes]:
     return os.fdopen(open_regular(Path(root, path), top=root), "rb")
 
 
-def _open_on_disk(root: str, path: str, limit: int) -> OpenedSubmission:
+def _open_on_disk(root: str, path: str, max_size: int) -> OpenedSubmission:
     last = path.rpartition("/")[2]
-    if last.lower().endswith(_URDF_ENDINGS):
+    if last.lower().endswith(ROBOT_ENDINGS):
         shown = printable_path(last)
-        return _lone_urdf(shown, read_capped(f"{root}/{path}", limit, shown=shown, top=root), limit)
+        return _lone_urdf(shown, read_capped(f"{root}/{path}", max_size, shown=shown, top=root), max_size)
     place = Path(root, path)
     tree = outer_tree(place, root)
     if tree is None:
         shown = printable_path(place.name)
         if not is_robot(read_start(place, START, shown, root)):
             raise InputError(f"{shown} {_UNSUPPORTED}")
-        return _lone_urdf(shown, read_capped(place, limit, shown=shown, top=root), limit)
+        return _lone_urdf(shown, read_capped(place, max_size, shown=shown, top=root), max_size)
     name = tree_name(place)
-    digest = _digest_of_tree(name, tree, limit) if place.is_dir() else _digest_of_file(name, place, root, limit)
-    return OpenedSubmission(name, printable_path(path), digest, None, tree, limit)
+    digest = _digest_of_tree(name, tree, max_size) if place.is_dir() else _digest_of_file(name, place, root, max_size)
+    return OpenedSubmission(name, printable_path(path), digest, None, tree, max_size)
 
 
-def _open_in_zip(root: str, path: str, limit: int) -> OpenedSubmission:
+def _open_in_zip(root: str, path: str, max_size: int) -> OpenedSubmission:
     class_zip = _class_zip(root, file_stamp(root))
     last = path.rpartition("/")[2]
     if class_zip.is_folder(path):
         tree = class_zip.folder(path)
-        return OpenedSubmission(last, path, _digest_of_tree(last, tree, limit), None, tree, limit)
-    if last.lower().endswith(_URDF_ENDINGS):
-        return _lone_urdf(last, class_zip.read(path, limit), limit)
+        return OpenedSubmission(last, path, _digest_of_tree(last, tree, max_size), None, tree, max_size)
+    if last.lower().endswith(ROBOT_ENDINGS):
+        return _lone_urdf(last, class_zip.read(path, max_size), max_size)
     name = without_endings(last)
-    digest = _digest(name, limit)
+    digest = _digest(name, max_size)
     archive = None if last.lower().endswith(".xml") else class_zip.archive(path, digest)
     if archive is None:
-        data = class_zip.read(path, limit)
+        data = class_zip.read(path, max_size)
         if not is_robot(data):
             raise InputError(f"{last} {_UNSUPPORTED}")
-        return _lone_urdf(last, data, limit)
-    return OpenedSubmission(name, path, digest.hexdigest(), None, archive, limit)
+        return _lone_urdf(last, data, max_size)
+    return OpenedSubmission(name, path, digest.hexdigest(), None, archive, max_size)
 
 
-def _lone_urdf(name: str, data: bytes, limit: int) -> OpenedSubmission:
-    digest = _digest(name, limit)
+def _lone_urdf(name: str, data: bytes, max_size: int) -> OpenedSubmission:
+    digest = _digest(name, max_size)
     digest.update(data)
     return OpenedSubmission(name.rpartition(".")[0] or name, name, digest.hexdigest(), data, None)
 
@@ -151,13 +147,13 @@ def _side_by_side(root: str, names: dict[str, str], name: str) -> Tree:
     return make_tree(name, files, (), generated=generated, unseen=ignored.values() - ignored.keys())
 
 
-def _digest(name: str, limit: int) -> "hashlib._Hash":
+def _digest(name: str, max_size: int) -> "hashlib._Hash":
     """Return a hash of the name, which is in the report, and of the limit for a URDF if it is not the default."""
-    return sha256(repr(name if limit == URDF_LIMIT else (name, limit)).encode())
+    return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _digest_of_file(name: str, path: Path, root: str, limit: int) -> str:
-    digest = _digest(name, limit)
+def _digest_of_file(name: str, path: Path, root: str, max_size: int) -> str:
+    digest = _digest(name, max_size)
     try:
         with os.fdopen(open_regular(path, top=root), "rb") as file:
             while chunk := file.read(_CHUNK):
@@ -167,12 +163,12 @@ def _digest_of_file(name: str, path: Path, root: str, limit: int) -> str:
     return digest.hexdigest()
 
 
-def _digest_of_tree(name: str, tree: Tree, limit: int) -> str:
+def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
     """Return the hash of all that a submission is read from: its name, its files with their paths, the ignored files.
 
     Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of their own.
     """
-    seed = name if limit == URDF_LIMIT else (name, limit)
+    seed = name if max_size == URDF_LIMIT else (name, max_size)
     digest = sha256(
         repr((seed, sorted(tree.folders | tree.unseen), tuple(map(str, tree.ignored)), tree.generated)).encode()
     )

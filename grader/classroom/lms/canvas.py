@@ -13,15 +13,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
-from grader.classroom.lms.filling import (
-    Filled,
-    Filling,
-    FillOptions,
-    LmsStudent,
-    check_maximum,
-    first_of_each,
-)
-from grader.classroom.lms.grades import LmsGrade, read_points
+from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum, first_of_each
+from grader.classroom.lms.grades import LmsGrade, read_lms_points
+from grader.classroom.lms.preflight import Filled
 from grader.classroom.students import CANVAS_TEST_STUDENT, Student
 from grader.classroom.tables import Table, TableRow, read_table
 from grader.errors import InputError
@@ -109,7 +103,7 @@ def _warnings(table: Table, columns: _Columns, options: FillOptions) -> Iterator
     grade, points = columns.grade, columns.points_possible
     if points is None:
         yield "the file has no row Points Possible: the maximum in Canvas is unknown"
-    elif read_points(possible := points.value(grade.index)) != options.out_of:
+    elif read_lms_points(possible := points.value(grade.index)) != options.out_of:
         maximum = format_points(options.out_of)
         yield f"{grade.header!r} has {possible or 'no'} points possible in Canvas, but the rubric has {maximum}"
     if columns.titles.count("Section") > 1 and not options.only:

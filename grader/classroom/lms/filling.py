@@ -5,12 +5,12 @@ of theirs changes.
 """
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from decimal import Decimal
-from typing import NamedTuple
 
-from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
-from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
+from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
+from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
+from grader.classroom.matching import OF_RECORDS, People, clues_of, lms_ids_of
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
@@ -47,62 +47,6 @@ class LmsStudent:
     who: str
     student: Student
     aliases: tuple[str, ...] = ()
-
-
-class RowNote(NamedTuple):
-    """A row or student without a new grade, and why. `row` counts from 1 in the LMS file; 0 if there is none."""
-
-    row: int
-    who: str
-    why: str
-
-
-class Conflict(NamedTuple):
-    """A row with another grade, which is overwritten: `was` becomes `becomes`."""
-
-    row: int
-    who: str
-    was: str
-    becomes: str
-
-
-@dataclass(slots=True)
-class Preflight:
-    """The effects of importing the filled file.
-
-    `filled` rows are changed and `unchanged` ones have the grade already. All other rows are removed from the file, so
-    that the import does not change them. `excused` are the students whose excuse the file contains. `ungraded` are rows
-    of students without a grade, `refused` those whose grade the LMS would not accept, `unknown` rows that match no
-    student, `missing` students with a grade but without a row, `ambiguous` rows and students with several possible
-    matches, which are left unassigned. `kept_feedback` are rows with a comment that a person wrote. `older` are the
-    final marks and excuses in the file that were given for an earlier submission.
-    """
-
-    column: str
-    filled: int = 0
-    unchanged: int = 0
-    conflicts: list[Conflict] = field(default_factory=list)
-    ungraded: list[RowNote] = field(default_factory=list)
-    unknown: list[RowNote] = field(default_factory=list)
-    missing: list[RowNote] = field(default_factory=list)
-    ambiguous: list[RowNote] = field(default_factory=list)
-    kept_feedback: list[RowNote] = field(default_factory=list)
-    excused: list[str] = field(default_factory=list)
-    refused: list[RowNote] = field(default_factory=list)
-    older: list[RowNote] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-
-    @property
-    def matches(self) -> bool:
-        """Whether every row has its student, every grade its row, and the LMS accepts every grade."""
-        return not (self.refused or self.unknown or self.missing or self.ambiguous)
-
-
-class Filled(NamedTuple):
-    """A filled LMS file, unchanged except for the cells that were written, and what importing it does."""
-
-    data: bytes
-    preflight: Preflight
 
 
 class Filling:
@@ -152,7 +96,7 @@ class Filling:
     def with_points(self, row: TableRow, column: int, total: Decimal, like: str) -> TableRow:
         """Return a row with the total, written `like` another number, in a column; another old grade is a conflict."""
         old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
-        return row if read_points(old) == read_points(new) else self.with_value(row, column, new)
+        return row if read_lms_points(old) == read_lms_points(new) else self.with_value(row, column, new)
 
     def with_value(self, row: TableRow, column: int, new: str) -> TableRow:
         """Return a row with a value in a column, the same row if it has it; another old value is a conflict."""
@@ -191,7 +135,7 @@ def first_of_each(titles: Sequence[str], wanted: Container[str]) -> list[int]:
 def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
     """Raise InputError if a maximum in an LMS file is not that of the rubric: 9.33 of 100 is not 9.33 of 10."""
     for text in maxima:
-        maximum = read_points(text)
+        maximum = read_lms_points(text)
         if maximum is not None and maximum != out_of:
             raise InputError(
                 f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: "
@@ -205,7 +149,7 @@ def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], prefl
     A submission that is not on the roster is matched by LMS ids only: its name was written by a student.
     """
     rows = People(clues_of(student.student, student.aliases) for student in students)
-    ours = People(clues_of(grade.student) if grade.is_on_roster else numbers_of(grade.student) for grade in grades)
+    ours = People(clues_of(grade.student) if grade.is_on_roster else lms_ids_of(grade.student) for grade in grades)
     row_of = [rows.find(clues, OF_RECORDS) for clues in ours.clues]
     found: dict[int, LmsGrade] = {}
     left = set(range(len(grades)))

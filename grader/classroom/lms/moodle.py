@@ -12,17 +12,11 @@ import re
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
-from grader.classroom.lms.filling import (
-    Filled,
-    Filling,
-    FillOptions,
-    LmsStudent,
-    Preflight,
-    RowNote,
-    check_maximum,
-)
-from grader.classroom.lms.grades import LmsGrade, is_own_feedback, points_text, read_points, rounded_down
+from grader.classroom.lms.feedback import is_own_feedback
+from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum
+from grader.classroom.lms.grades import LmsGrade, points_text, read_lms_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
+from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow, neutral, read_table
 from grader.text import format_points
@@ -45,7 +39,7 @@ def fill_worksheet(data: bytes, grades: Sequence[LmsGrade], options: FillOptions
     filling = Filling(table, table.titles[columns.grade], students_of(table, columns))
 
     def fill_row(row: TableRow, grade: LmsGrade, total: Decimal) -> TableRow | str | RowNote:
-        maximum = read_points(row.value(columns.maximum))
+        maximum = read_lms_points(row.value(columns.maximum))
         if row.value(columns.changeable).casefold() in _NO:
             return "has a grade that is locked in Moodle"
         if maximum is not None and rounded_down(total) > maximum:
@@ -94,7 +88,7 @@ def _student(row: TableRow, columns: MoodleColumns) -> LmsStudent:
 def _warnings(
     table: Table, columns: MoodleColumns, out_of: Decimal, maxima: Sequence[str], preflight: Preflight
 ) -> Iterator[str]:
-    if any(read_points(maximum) != out_of for maximum in maxima):
+    if any(read_lms_points(maximum) != out_of for maximum in maxima):
         yield f"the maximum in Moodle is {', '.join(maxima)} points, and that of the rubric {format_points(out_of)}"
     if not columns.has_modified:
         yield 'the file has no known column "Last modified (grade)": Moodle refuses a worksheet without it'

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from grader.classroom.lms.grades import read_points
+from grader.classroom.lms.grades import read_lms_points
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 
@@ -83,7 +83,9 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     if grade is None:
         raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
-    if not rows or any((read_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)):
+    if not rows or any(
+        (read_lms_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)
+    ):
         reason = "an assignment that is graded by a scale takes no points"
         raise InputError(f"{shown} has no number as the maximum grade after {titles[grade]!r}: {reason}")
     between = range(identifier + 1, grade)
@@ -122,12 +124,12 @@ def _grade(kinds: list[str], rows: Sequence[TableRow], identifier: int) -> int |
 
 def _is_grade_and_maximum(rows: Sequence[TableRow], index: int) -> bool:
     """Return whether a column has the same number everywhere, and the column before it nothing, or numbers up to it."""
-    limits = {read_points(row.value(index)) for row in rows}
+    limits = {read_lms_points(row.value(index)) for row in rows}
     limit = limits.pop() if len(limits) == 1 else None
     if not limit or limit < 0:
         return False
     grades = [row.value(index - 1) for row in rows]
-    return all(not grade or ((points := read_points(grade)) is not None and points <= limit) for grade in grades)
+    return all(not grade or ((points := read_lms_points(grade)) is not None and points <= limit) for grade in grades)
 
 
 def _all(rows: Sequence[TableRow], index: int, pattern: re.Pattern[str]) -> bool:

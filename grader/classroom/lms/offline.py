@@ -20,15 +20,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
-from grader.classroom.lms.filling import (
-    Filled,
-    Filling,
-    FillOptions,
-    LmsStudent,
-    check_maximum,
-    first_of_each,
-)
-from grader.classroom.lms.grades import LmsGrade, read_points
+from grader.classroom.lms.filling import Filling, FillOptions, LmsStudent, check_maximum, first_of_each
+from grader.classroom.lms.grades import LmsGrade, read_lms_points
+from grader.classroom.lms.preflight import Filled
 from grader.classroom.students import Student
 from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError
@@ -104,7 +98,7 @@ def fill_offline(data: bytes, grades: Sequence[LmsGrade], options: FillOptions, 
     preflight = filling.preflight
 
     def fill_row(row: TableRow, _: LmsGrade, total: Decimal) -> TableRow | str:
-        maximum = read_points(grade.maximum)
+        maximum = read_lms_points(grade.maximum)
         if form.above and maximum is not None and total > maximum:
             note = filling.note(row, form.above)
             preflight.warnings.append(f"row {row.number}, {note.who}: {format_points(total)} points: {note.why}")
@@ -139,7 +133,7 @@ def _student(row: TableRow, titles: Sequence[str], form: OfflineFormat) -> LmsSt
 def _warnings(
     columns: Sequence[GradeColumn], grade: GradeColumn, options: FillOptions, form: OfflineFormat
 ) -> Iterator[str]:
-    maximum = read_points(grade.maximum)
+    maximum = read_lms_points(grade.maximum)
     if maximum is None:
         yield f"the file does not state the maximum of {grade.title!r} in {form.lms}"
     elif maximum != options.out_of:

@@ -1,51 +1,33 @@
 """Grade a class: send new and changed submissions to the workers, write each result into the gradebook at once."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain
 from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult, storable
+from grader.classroom.gradebook.result import GradingResult, parts_text, storable
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json
 from grader.classroom.run.class_check import assignments_text, check_same_class
+from grader.classroom.run.pool import WorkerError
+from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.stored_students import Identities, StoredStudents
-from grader.classroom.run.worker import ClassContext, Task, robot_hashes
+from grader.classroom.run.worker import ClassContext, Task, grade_all, robot_hashes, undecided_result
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
 from grader.grading.record import to_record
 from grader.grading.rubric import Rubric
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
-
-    total: int
-    graded: int = 0
-    unchanged: int = 0
-    unreadable: int = 0
-    errored: int = 0
-
-    @property
-    def done(self) -> int:
-        """The number of submissions that have a result."""
-        return self.graded + self.unchanged
-
-    def with_result(self, verdict: str) -> "Progress":
-        """Return the progress after one more result."""
-        counted = {"unchanged"} if verdict == "unchanged" else {"graded", verdict}
-        return replace(self, **{name: getattr(self, name) + 1 for name in counted})
 
 
 class RunSettings(NamedTuple):
@@ -83,18 +65,12 @@ class Batch:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256  # which is computed
         used = {criterion.part for criterion in rubric.criteria}
-        wanted = settings.parts or used
-        self._parts = " ".join(part.id for part in rubric.parts if part.id in wanted and part.id in used)
-        self._queue = Queue(executor, settings.workers, self._context)
+        self._parts = parts_text(rubric, used.intersection(settings.parts or used))
+        self._executor = executor
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
-        self._writer: RunWriter | None = None
+        self.has_begun = False  # whether the run is in the gradebook
         self.progress = Progress(settings.total)
         self.notes: list[str] = []
-
-    @property
-    def has_begun(self) -> bool:
-        """Return whether the run is in the gradebook."""
-        return self._writer is not None
 
     def grade(self, intake: Intake) -> Progress:
         """Grade all new or changed submissions. Raises InputError for a class that belongs to another gradebook."""
@@ -102,28 +78,21 @@ class Batch:
         identities = Identities(book, settings.root, settings.roster, intake.keys)
         if not settings.add:
             check_same_class(book, intake, identities, self._rubric.id)
-        assignment = assignments_text(intake.assignments)
-        writer = RunWriter(book, settings.root, settings.layout, self._rubric, settings.deadline, assignment)
-        self._writer = writer
+        writer = RunWriter(
+            book,
+            settings.root,
+            settings.layout,
+            self._rubric,
+            settings.deadline,
+            assignments_text(intake.assignments),
+            settings.max_size,
+        )
+        self.has_begun = True
         writer.add_handed_out(settings.handed_out)
         self._report(())  # the total, before the first result
         students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
-        for submission in intake.submissions():
-            stored = students.find(submission)
-            if stored is not None and students.is_doubtful(submission, stored):
-                path = submission.paths[0]
-                self.notes.append(f"{path} may belong to {stored.key}, who had another submission: left unassigned")
-                contested.add(stored.key)
-                self._report(("unchanged",))
-            else:
-                self._put(submission, stored)
-            while self._queue.is_full:
-                self._collect(writer, all_in=False)
-        while len(self._queue):
-            self._collect(writer, all_in=True)
-        for student in intake.absent:
-            students.recognise(student)
+        self._grade_all(writer, self._tasks(intake, students, contested))
         with book.transaction():
             for stored in students.gone():
                 self._add_gone(writer, stored, is_contested=stored.key in contested)
@@ -132,15 +101,49 @@ class Batch:
         writer.finish()
         return self.progress
 
-    def _put(self, submission: ClassSubmission, stored: StoredSubmission | None) -> None:
-        """Let a submission be graded, unless it has a valid result and has not changed."""
-        stored = stored if stored is not None and self._is_valid(stored) else None
-        if stored is not None and self._is_unchanged(submission, stored):
-            self._report(("unchanged",))
+    def _tasks(self, intake: Intake, students: StoredStudents, contested: set[str]) -> Iterator[Task]:
+        """Yield the submissions to grade: those that have no valid result, or have changed."""
+        for submission in intake.submissions():
+            stored = students.find(submission)
+            if stored is not None and students.is_doubtful(submission, stored):
+                path = submission.paths[0]
+                self.notes.append(f"{path} may belong to {stored.key}, who had another submission: left unassigned")
+                contested.add(stored.key)
+                self._report(("unchanged",))
+                continue
+            stored = stored if stored is not None and self._is_valid(stored) else None
+            if stored is not None and self._is_unchanged(submission, stored):
+                self._report(("unchanged",))
+                continue
+            self._at_work[submission.student.key] = (submission, stored)
+            digest = stored.digest if stored is not None else ""
+            yield Task(submission.student.key, submission.paths, submission.names, digest)
+
+    def _grade_all(self, writer: RunWriter, tasks: Iterator[Task]) -> None:
+        """Grade submissions, and write their results as they come.
+
+        A submission whose grading is lost is graded without its documents; if that is lost as well, it is `errored`.
+        """
+        first = next(tasks, None)
+        if first is None:
             return
-        self._at_work[submission.student.key] = (submission, stored)
-        digest = stored.digest if stored is not None else ""
-        self._queue.put(Task(submission.student.key, submission.paths, submission.names, digest))
+        context = self._context(writer)  # only if there is something to grade: grading the reference takes a while
+
+        def lost(task: Task, error: Exception) -> GradingResult | None:
+            if isinstance(error, WorkerError) and not task.no_documents:  # a document may be the cause
+                queue.put_back(task._replace(no_documents=str(error)))
+                return None
+            reason = str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
+            return undecided_result(context, task, GradingResult(task.key, "errored", "", "", reason=reason))
+
+        queue = Queue(self._executor, self._settings.workers, partial(grade_all, context), lost)
+        for results in queue.all(chain([first], tasks)):
+            with self._book.transaction():
+                for result in results:
+                    self._save(writer, result)
+            for result in results:
+                del self._at_work[result.key]
+            self._report(result.verdict for result in results)
 
     def _add_gone(self, writer: RunWriter, stored: StoredSubmission, *, is_contested: bool) -> None:
         """Record that a stored submission was not found, and whether its student has left the roster."""
@@ -150,9 +153,8 @@ class Batch:
         if stored.enrolment.is_on_roster and roster is not None and roster.entry(stored.key) is None:
             writer.remove_from_roster(stored.student_id)
 
-    def _context(self) -> ClassContext:
-        """Return the data of all tasks, only if there is something to grade: grading the reference takes a while."""
-        assert self._writer is not None
+    def _context(self, writer: RunWriter) -> ClassContext:
+        """Return the data of all tasks, and store what the reference solution is for them."""
         rubric, settings, dictionary = self._rubric, self._settings, b""
         if rubric.solution is not None and rubric.compares_with_reference:
             _ = rubric.solution.robot  # raises InputError: without it nothing can be graded
@@ -160,8 +162,8 @@ class Batch:
             if rubric.solution is not None:
                 reference = rubric.solution.submission
                 dictionary = to_record(grade(rubric, reference)).encode()
-                self._writer.add_handed_out(filter(None, robot_hashes(reference)))
-        self._writer.use_dictionary(dictionary)
+                writer.add_handed_out(filter(None, robot_hashes(reference)))
+        writer.use_dictionary(dictionary)
         return ClassContext(settings.root, rubric.data, str(rubric.path), dictionary, settings.max_size, settings.parts)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
@@ -174,18 +176,10 @@ class Batch:
         root, max_size = self._settings.root, self._settings.max_size
         return (
             stored.fingerprint != ""
+            and stored.max_size == max_size
             and stored.is_same(submission, self._enrolment(submission.student))
-            and fingerprint(root, submission.paths, time.time_ns(), max_size) == stored.fingerprint
+            and fingerprint(root, submission.paths, time.time_ns()) == stored.fingerprint
         )
-
-    def _collect(self, writer: RunWriter, *, all_in: bool) -> None:
-        for results in self._queue.take(all_in=all_in):
-            with self._book.transaction():
-                for result in results:
-                    self._save(writer, result)
-            for result in results:
-                del self._at_work[result.key]
-            self._report(result.verdict for result in results)
 
     def _save(self, writer: RunWriter, result: GradingResult) -> None:
         submission, stored = self._at_work[result.key]

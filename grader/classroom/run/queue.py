@@ -1,34 +1,42 @@
-"""Submissions in an executor: in groups as long as no task fails, one by one after a failure."""
+"""Tasks in an executor: in groups as long as none fails, one by one after a failure."""
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from functools import cache
+from typing import Generic, TypeVar
 
-from grader.classroom.gradebook.result import GradingResult
 from grader.classroom.run.pool import WorkerError
-from grader.classroom.run.worker import ClassContext, Task, failed, grade_all
 
 _GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
 _MAX_GROUP = 64
 _AHEAD = 3  # groups for each worker: one at work, the others ready
 _MAX_TRIES = 3
 
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
-class Queue:
+
+class Queue(Generic[Task, Result]):
     """Submits tasks and collects results.
 
-    A submission whose grading is lost is tried alone, then without its documents; if that is lost as well, it is
-    `errored`.
+    `work` returns the results of tasks in a worker, and `lost` that of a task which failed alone; None if it has put
+    the task back. `size` is the number of tasks in a group; default: as many as take `_GROUP_TIME`.
     """
 
-    def __init__(self, executor: Executor, workers: int, context: Callable[[], ClassContext]) -> None:
-        self._executor, self._workers = executor, workers
-        self._context = cache(context)
+    def __init__(
+        self,
+        executor: Executor,
+        workers: int,
+        work: Callable[[Sequence[Task]], list[Result]],
+        lost: Callable[[Task, Exception], Result | None],
+        size: int = 0,
+    ) -> None:
+        self._executor, self._workers, self._size = executor, workers, size
+        self._work, self._lost = work, lost
         self._waiting: deque[Task] = deque()
         self._alone: deque[tuple[Task, int]] = deque()
-        self._running: dict[Future[list[GradingResult]], tuple[Sequence[Task], int]] = {}
+        self._running: dict[Future[list[Result]], tuple[Sequence[Task], int]] = {}
         self._began = 0.0
         self._done = 0
 
@@ -37,12 +45,16 @@ class Queue:
         self._waiting.append(task)
         self._submit_ready(all_in=False)
 
+    def put_back(self, task: Task) -> None:
+        """Add a task that was lost, changed, to be tried alone."""
+        self._alone.append((task, 1))
+
     @property
     def is_full(self) -> bool:
         """Return whether more tasks wait than can be submitted now."""
         return len(self._waiting) >= self._group_size and len(self._running) >= self._workers * _AHEAD
 
-    def take(self, *, all_in: bool) -> Iterator[list[GradingResult]]:
+    def take(self, *, all_in: bool) -> Iterator[list[Result]]:
         """Submit all ready tasks and yield results as they come; `all_in` says that no more tasks will be added."""
         self._submit_ready(all_in=all_in)
         if not self._running:
@@ -55,14 +67,23 @@ class Queue:
                 yield results
         self._submit_ready(all_in=all_in)
 
+    def all(self, tasks: Iterable[Task]) -> Iterator[list[Result]]:
+        """Yield the results of tasks as they come, and no task is made before it can be submitted."""
+        for task in tasks:
+            self.put(task)
+            while self.is_full:
+                yield from self.take(all_in=False)
+        while len(self):
+            yield from self.take(all_in=True)
+
     def __len__(self) -> int:
         return len(self._waiting) + len(self._alone) + len(self._running)
 
     @property
     def _group_size(self) -> int:
-        if not self._done:
-            return 1
-        seconds = (time.perf_counter() - self._began) * self._workers / self._done  # for one submission
+        if self._size or not self._done:
+            return self._size or 1
+        seconds = (time.perf_counter() - self._began) * self._workers / self._done  # for one task
         return max(1, min(_MAX_GROUP, int(_GROUP_TIME / seconds)))
 
     def _submit_ready(self, *, all_in: bool) -> None:
@@ -83,22 +104,18 @@ class Queue:
             self._submit([self._waiting.popleft() for _ in range(min(count, len(self._waiting)))], 1)
 
     def _submit(self, tasks: Sequence[Task], tries: int) -> None:
-        self._running[self._executor.submit(grade_all, self._context(), tasks)] = (tasks, tries)
+        self._running[self._executor.submit(self._work, tasks)] = (tasks, tries)
 
-    def _results(self, future: "Future[list[GradingResult]]") -> list[GradingResult]:
+    def _results(self, future: "Future[list[Result]]") -> list[Result]:
         tasks, tries = self._running.pop(future)
         try:
             return future.result()
-        except Exception as error:  # noqa: BLE001  any failure affects one submission at most
-            is_lost = isinstance(error, WorkerError)
+        except Exception as error:  # noqa: BLE001  any failure affects one task at most
+            is_own_fault = not isinstance(error, WorkerError) or error.is_own_fault
             if len(tasks) > 1:
                 self._alone += [(task, 1) for task in tasks]
-            elif isinstance(error, WorkerError) and not error.is_own_fault and tries < _MAX_TRIES:
+            elif not is_own_fault and tries < _MAX_TRIES:
                 self._alone.append((tasks[0], tries + 1))
-            elif is_lost and not tasks[0].no_documents:  # a document may be the cause
-                self._alone.append((tasks[0]._replace(no_documents=str(error)), 1))
-            else:
-                reason = str(error) if is_lost else f"{type(error).__name__}: {error}"
-                result = GradingResult(tasks[0].key, "errored", "", "", reason=reason)
-                return [failed(self._context(), tasks[0], result)]
+            elif (result := self._lost(tasks[0], error)) is not None:
+                return [result]
             return []

@@ -10,9 +10,10 @@ from json import dumps
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.run_writer import RunWriter
 from grader.classroom.gradebook.stored import StoredSubmission
-from grader.classroom.intake.layouts.layout import home_of, is_path_key, path_key
+from grader.classroom.intake.attempts import home_of
+from grader.classroom.intake.layouts.layout import is_path_key, path_key
 from grader.classroom.intake.roster import Roster, RosterEntry, entry_from_json
-from grader.classroom.matching import NUMBERS, Clue, Clues, People, clues_of, numbers_of
+from grader.classroom.matching import LMS_IDS, Clue, Clues, People, clues_of, lms_ids_of
 from grader.classroom.students import ClassSubmission, Student
 
 
@@ -58,24 +59,24 @@ class Identities:
         """Return the stored submission of the student who is certainly the same."""
         student = submission.student
         entry = self.roster.entry(student.key) if self.roster is not None else None
-        match = self._people.find(self._known(student), (*NUMBERS, Clue.WORD))
+        match = self._people.find(self._known(student), (*LMS_IDS, Clue.EXACT_ID))
         if not (match.people or match.contradicted) and (self.roster is None or entry is not None):
             # The login may be the name of a folder that another team has as well, or that could not be a key.
             login = "" if student.team or is_path_key(student.key) else student.login
             words = clues_of(Student(student.key, login=login, canvas=student.canvas, moodle=student.moodle))
             claims = {**words, Clue.PATH: (dumps(submission.paths),)}
-            match = self._people.find(claims, (*NUMBERS, Clue.WORD, Clue.PATH), self._not_on_roster)
+            match = self._people.find(claims, (*LMS_IDS, Clue.EXACT_ID, Clue.PATH), self._not_on_roster)
         if match.only is not None:
             return self._stored[match.only]
         stored, people = self._without
-        match = people.find(self._known(student), (*NUMBERS, Clue.WORD)) if stored else match
+        match = people.find(self._known(student), (*LMS_IDS, Clue.EXACT_ID)) if stored else match
         return stored[match.only] if match.only is not None else None
 
     def _known(self, student: Student) -> Clues:
         """Return the LMS ids of a student, and the data of the roster."""
         entry = self.roster.entry(student.key) if self.roster is not None else None
         from_roster = clues_of(entry.student, entry.aliases) if entry is not None else {}
-        return {**from_roster, **numbers_of(student)}
+        return {**from_roster, **lms_ids_of(student)}
 
 
 def _clues(stored: StoredSubmission, root: str) -> Clues:
@@ -83,9 +84,9 @@ def _clues(stored: StoredSubmission, root: str) -> Clues:
     student, entry = stored.student, stored.enrolment.roster_entry
     if stored.enrolment.is_on_roster:
         known = entry_from_json(entry) if entry else RosterEntry(student)
-        return {**clues_of(known.student, known.aliases), **numbers_of(student)}
+        return {**clues_of(known.student, known.aliases), **lms_ids_of(student)}
     path = (dumps(stored.paths),) if stored.source == root else ()
-    return {**clues_of(Student(stored.key)), **numbers_of(student), Clue.PATH: path}
+    return {**clues_of(Student(stored.key)), **lms_ids_of(student), Clue.PATH: path}
 
 
 class StoredStudents:

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.result import GradingResult, Verdict
+from grader.classroom.gradebook.result import GradingResult, GradingVerdict
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_submission, unreadable_digest
+from grader.classroom.intake.opening import open_class_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
-from grader.files.opening import ARCHIVES
+from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
@@ -57,30 +57,32 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[GradingResul
 
 
 def _grade_one(context: ClassContext, task: Task) -> GradingResult:
-    rubric = _rubric(context.rubric, context.rubric_path)
-    result = GradingResult(
-        task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns(), context.max_size)
-    )
+    rubric = rubric_from(context.rubric, context.rubric_path)
+    result = GradingResult(task.key, "unchanged", "", fingerprint(context.root, task.paths, time.time_ns()))
     try:
-        opened = open_submission(context.root, task.paths, task.names, task.key, context.max_size)
+        opened = open_class_submission(context.root, task.paths, task.names, task.key, context.max_size)
         result = result._replace(digest=opened.digest)
         if opened.digest == task.graded:
             return result
         submission = opened.submission(rubric, task.no_documents)
         if submission.students:
-            raise InputError(several_students(submission))  # noqa: TRY301  it is handled like files that cannot be read
+            raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
         result = result._replace(digest=result.digest or unreadable_digest(context.root, task.paths))
         is_unchanged = result.digest and result.digest == task.graded
-        verdict: Verdict = "unchanged" if is_unchanged else "unreadable"
-        return result if is_unchanged else failed(context, task, result._replace(verdict=verdict, reason=str(error)))
+        verdict: GradingVerdict = "unchanged" if is_unchanged else "unreadable"
+        return (
+            result
+            if is_unchanged
+            else undecided_result(context, task, result._replace(verdict=verdict, reason=str(error)))
+        )
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         is_memory = isinstance(error, MemoryError)
         if is_memory and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
         reason = NO_MEMORY if is_memory else f"the grader itself failed: {type(error).__name__}: {error}"
-        return failed(context, task, result._replace(verdict="errored", reason=reason))
+        return undecided_result(context, task, result._replace(verdict="errored", reason=reason))
     fault, reason = report.fault, _why_unreadable(submission)
     verdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result._replace(verdict=verdict, reason=fault or reason).with_report(report, context.dictionary)
@@ -118,16 +120,16 @@ def _why_unreadable(submission: Submission) -> str:
     return ""
 
 
-def several_students(submission: Submission) -> str:
+def students_refusal(submission: Submission) -> str:
     """Return why a submission is left unassigned that contains those of several students."""
     named = enumerated(submission.students, _MAX_NAMED)
     count = len(submission.students)
     return f"it contains the submissions of {count} students, {named}: left unassigned (--layout teams grades each)"
 
 
-def failed(context: ClassContext, task: Task, result: GradingResult) -> GradingResult:
+def undecided_result(context: ClassContext, task: Task, result: GradingResult) -> GradingResult:
     """Return the result of a submission that could not be graded: every criterion is undecided, and says why."""
-    rubric, reason = _rubric(context.rubric, context.rubric_path), result.reason
+    rubric, reason = rubric_from(context.rubric, context.rubric_path), result.reason
     status: Status = "errored" if result.verdict == "errored" else "pending"
     message = reason if status == "errored" else f"{reason}; needs manual grading"
     chosen = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
@@ -140,5 +142,6 @@ def failed(context: ClassContext, task: Task, result: GradingResult) -> GradingR
 
 
 @lru_cache(maxsize=4)
-def _rubric(data: bytes, path: str) -> Rubric:
+def rubric_from(data: bytes, path: str) -> Rubric:
+    """Return the rubric in the content of a file, which need not exist; tasks of a run share it."""
     return read_rubric(data, Path(path))

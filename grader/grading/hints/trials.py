@@ -140,7 +140,7 @@ def _new_problems(before: Submission, after: Submission) -> bool:
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
     """Return whether a file is the URDF or one that its xacro reads, and not one that the package's checks read."""
-    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.everything.files
+    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.whole_tree.files
     return is_robot or path == submission.path
 
 

@@ -43,7 +43,7 @@ def _places(edits: list[Edit], submission: Submission) -> str:
     """Return the lines to look at: lines 65 and 73; of another file with its name."""
     files: dict[str, list[int]] = {}
     for edit in edits:
-        if edit.path == submission.path or edit.path in submission.everything.files:
+        if edit.path == submission.path or edit.path in submission.whole_tree.files:
             files.setdefault(edit.path, []).append(edit.line)
     texts = []
     for path, lines in files.items():

@@ -60,7 +60,7 @@ def package_proposals(
 def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits of the file of a kind, and those that rename or create one; without a kind, of the package's name."""
     if not kind:
-        yield from package_names(task, task.package.wanted or task.package.share.split("/")[1])
+        yield from package_names(task, task.package.lab_name or task.package.share.split("/")[1])
         return
     yield from file_proposals(task, kind)
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()

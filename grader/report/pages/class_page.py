@@ -8,10 +8,11 @@ from lxml import etree
 from markupsafe import Markup
 
 from grader import __version__
-from grader.classroom.gradebook.fixes import CommonFix
+from grader.classroom.gradebook.criterion_statistics import CriterionStatistics
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
-from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics, members
+from grader.classroom.gradebook.statistics import ClassStatistics, members
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.drawing.curves import SIDE, TOP
 from grader.drawing.picture import Picture, picture_of

@@ -193,7 +193,7 @@ def inspection_html(inspection: Inspection) -> str:
         "title": printable(robot.robot.name if robot is not None else inspection.path),
         "path": inspection.path,
         "effect": effect(reading),
-        "verdict": _CLASSES.get(reading.verdict if reading.is_decided else "", "failed"),
+        "verdict": _CLASSES.get(reading.verdict if reading.is_certain else "", "failed"),
         "problems": [
             (problem.severity, problem_line(problem), source_lines(problem.location, sources.get))
             for problem in reading.problems[:_MAX_LISTED]

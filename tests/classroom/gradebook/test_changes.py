@@ -9,12 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import run_writer as module
-from grader.classroom.gradebook.changes import Change, PointsChange, changes, last_two
+from grader.classroom.gradebook.changes import Change, PointsChange, changes
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import Entry, Kind, add_mark, criterion_of
+from grader.classroom.gradebook.marks import Entry, Kind, add_mark
 from grader.classroom.gradebook.run_writer import save_student
+from grader.classroom.gradebook.snapshots import last_two
 from grader.classroom.students import Student
+from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
 from grader.grading.criterion import Adjustment
 from grader.grading.rubric import Rubric, read_rubric

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome, Value
-from grader.classroom.gradebook.failures import Failure, grouped
+from grader.classroom.gradebook.graded_students import Failure, grouped
 from grader.classroom.gradebook.result import GradingResult, StoredOutcome
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Report, Result

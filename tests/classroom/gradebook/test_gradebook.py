@@ -13,10 +13,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook import gradebook as module
+from grader.classroom.gradebook import connection
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.schema import APPLICATION_ID, SCHEMA, VERSION
+from grader.classroom.gradebook.schema import APPLICATION_ID, VERSION
+from grader.classroom.gradebook.views import VIEWS
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import graded_as, grader, lab, mark, record_run, refusal, units, urdf
@@ -209,7 +210,7 @@ def test_another_version_is_refused(book: Gradebook, version: int) -> None:
 def test_a_failed_creation_leaves_no_trace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """If a statement fails, the file has no tables, and the next command creates them."""
     with monkeypatch.context() as patched:
-        patched.setattr(module, "SCHEMA", f"{SCHEMA}\nINSERT INTO nowhere VALUES (1);\n")
+        patched.setattr(connection, "VIEWS", f"{VIEWS}\nINSERT INTO nowhere VALUES (1);\n")
         with pytest.raises(InputError, match="no such table: nowhere"):
             Gradebook(tmp_path / "new.db", create=True)
     with Gradebook(tmp_path / "new.db", create=True) as again:

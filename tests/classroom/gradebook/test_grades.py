@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from grader.classroom.gradebook.attention import attention
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.marks import Entry, add_mark, criterion_of
+from grader.classroom.gradebook.marks import Entry, add_mark
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment
-from grader.classroom.gradebook.summary import attention
 from grader.classroom.students import ClassSubmission, Student
+from grader.classroom.typed_names import criterion_of
 from grader.grading.rubric import Rubric, read_rubric
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
-from grader.classroom.gradebook.marks import TAKE_BACK, criterion_of, read_points
+from grader.classroom.gradebook.marks import TAKE_BACK
+from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 

@@ -23,12 +23,12 @@ from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.review import ReviewSession
 from grader.classroom.students import Student
-from grader.cli.terminal import class_progress
+from grader.cli.terminal import show_class
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, read_rubric
 from grader.report.screen import Screen
-from grader.usecases import Terminal
 from grader.usecases.manual_marks import MarkRequest, give_mark
+from grader.usecases.terminal import Terminal
 from grader.usecases.two_gradebooks import merge_gradebooks
 from tests.classroom.gradebook.two_graders import TOTAL, Book, Entry, Grade, Item, Row
 from tests.classroom.gradebooks import graded_as, lab_text, record_run
@@ -311,7 +311,7 @@ def _ignore(_: str) -> None:
     """Print nothing."""
 
 
-TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignore, class_progress)
+TERMINAL = Terminal(_ignore, _ignore, lambda: Screen(80), lambda _: None, _ignore, show_class)
 
 
 @pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.exhaustive)])

@@ -11,7 +11,7 @@ from grader.classroom.intake.layouts.folders import class_prefix
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import ClassSubmission, Student
-from grader.files.opening import ARCHIVES
+from grader.files.names import ARCHIVES
 from tests.classroom.class_folders import assigned, lay_out
 from tests.classroom.lab6_class import read_class
 

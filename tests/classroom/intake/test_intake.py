@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.classroom.intake.detection import LAYOUTS
 from grader.classroom.intake.layouts.layout import MAX_LINES
-from grader.classroom.intake.reading import LAYOUTS
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError

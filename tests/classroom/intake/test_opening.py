@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.student_grade import SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
 from grader.classroom.intake.fingerprint import fingerprint, is_zip
-from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.opening import open_class_submission
 from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder
@@ -33,7 +33,7 @@ def later() -> int:
 
 def digest(top: Path, *paths: str, names: tuple[str, ...] = (), key: str = "ann") -> str:
     """Return the digest of a submission."""
-    return open_submission(str(top), paths, names, key).digest
+    return open_class_submission(str(top), paths, names, key).digest
 
 
 def mark(top: Path, *paths: str) -> str:
@@ -194,12 +194,12 @@ def test_several_files_are_one_submission(tmp_path: Path) -> None:
     for name in ("ann_1_my_robot.urdf", "ann_2_notes.txt"):
         (tmp_path / name).write_bytes(URDF)
     paths = ("ann_1_my_robot.urdf", "ann_2_notes.txt")
-    opened = open_submission(str(tmp_path), paths, ("my_robot.urdf", "notes.txt"), "ann")
+    opened = open_class_submission(str(tmp_path), paths, ("my_robot.urdf", "notes.txt"), "ann")
     assert opened.tree is not None
     assert set(opened.tree.files) == {"my_robot.urdf", "notes.txt"}
     submission = opened.submission(LAB6)
     assert (submission.id, submission.path) == ("ann", "my_robot.urdf")
-    unnamed = open_submission(str(tmp_path), paths, (), "ann")
+    unnamed = open_class_submission(str(tmp_path), paths, (), "ann")
     assert unnamed.tree is not None
     assert set(unnamed.tree.files) == set(paths)
     digests = {
@@ -218,7 +218,7 @@ def test_symlinks_among_several_files_are_refused(tmp_path: Path) -> None:
         (tmp_path / "b.txt").unlink(missing_ok=True)
         (tmp_path / "b.txt").symlink_to(target)
         with pytest.raises(InputError, match=r"b\.txt is a symlink, and was not followed"):
-            open_submission(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
+            open_class_submission(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
 
 
 @pytest.mark.parametrize("opens_in_folders", [True, False])
@@ -271,7 +271,7 @@ def test_unreadable_submissions_are_one_line(make: Callable[[Path], None], tmp_p
     """They raise an InputError, in a class as alone."""
     make(tmp_path)
     with pytest.raises(InputError) as caught:
-        open_submission(str(tmp_path), ("ann.urdf",), (), "ann")
+        open_class_submission(str(tmp_path), ("ann.urdf",), (), "ann")
     assert "\n" not in str(caught.value)
 
 
@@ -279,7 +279,7 @@ def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
     """A text file with another name is refused."""
     (tmp_path / "ann.txt").write_text("text")
     with pytest.raises(InputError, match=r"ann\.txt is neither a URDF nor a folder or archive"):
-        open_submission(str(tmp_path), ("ann.txt",), (), "ann")
+        open_class_submission(str(tmp_path), ("ann.txt",), (), "ann")
 
 
 def test_a_replaced_zip_is_read_again(tmp_path: Path) -> None:
@@ -291,7 +291,7 @@ def test_a_replaced_zip_is_read_again(tmp_path: Path) -> None:
         with zipfile.ZipFile(place, "w") as archive:
             archive.writestr("ann.urdf", URDF.replace(b"'a'", f"'{name}'".encode()))
         assert is_zip(str(place))
-        seen.append(open_submission(str(place), ("ann.urdf",), (), "ann").data)
+        seen.append(open_class_submission(str(place), ("ann.urdf",), (), "ann").data)
     assert [b"one" in seen[0], b"other" in seen[1]] == [True, True]  # type: ignore[operator]
 
 
@@ -374,7 +374,7 @@ def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
     """Digests and files are the same: build folders and hidden files are ignored in both."""
     files = {"1": URDF, "2": b"notes", "3": URDF, "4": b"hidden"}
     names = ("my_robot.urdf", "onlinetext/notes.html", "build/my_robot.urdf", ".hidden")
-    opened = [open_submission(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
+    opened = [open_class_submission(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
     assert opened[0].digest == opened[1].digest
     for submission in opened:
         assert submission.tree is not None
@@ -389,6 +389,6 @@ def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Pa
     output = set()
     for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
         with pytest.raises(InputError) as caught:
-            open_submission(str(top), (f"lab/{name}",), (), "ann")
+            open_class_submission(str(top), (f"lab/{name}",), (), "ann")
         output.add(str(caught.value).replace(f"{top}/", ""))
     assert len(output) == 1

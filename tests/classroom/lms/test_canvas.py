@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.filling import Conflict, Filled, FillOptions, RowNote
-from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
+from grader.classroom.lms.filling import FillOptions
+from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
+from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import read_table
 from grader.errors import InputError
@@ -264,7 +265,7 @@ def test_points_never_gain(points: Decimal) -> None:
     """The written points are at most those earned, less than a cent below, and read back as themselves."""
     text = points_text(points)
     assert Decimal(0) <= points - Decimal(text) < Decimal("0.01")
-    assert read_points(text) == read_points(text.replace(".", ",")) == Decimal(text)
+    assert read_lms_points(text) == read_lms_points(text.replace(".", ",")) == Decimal(text)
     assert has_decimal_comma(text.replace(".", ","))
 
 
@@ -283,7 +284,7 @@ def test_points_never_gain(points: Decimal) -> None:
 )
 def test_points_are_read_as_canvas_reads_them(text: str, points: str | None) -> None:
     """The last comma or point is the decimal mark; anything else is no number."""
-    assert read_points(text) == (None if points is None else Decimal(points))
+    assert read_lms_points(text) == (None if points is None else Decimal(points))
 
 
 NAMES = st.text(st.sampled_from("aé=+-@\"',;\n\r\t 😀\u202eשא\\(x)"), min_size=1, max_size=8)

@@ -11,9 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
-from grader.classroom.lms.filling import Filled, FillOptions, RowNote
-from grader.classroom.lms.grades import LIMIT, FeedbackItem, LmsGrade, feedback_html, feedback_items, is_own_feedback
+from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, feedback_items, is_own_feedback
+from grader.classroom.lms.filling import FillOptions
+from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
+from grader.classroom.lms.preflight import Filled, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import neutral
 from grader.errors import InputError

@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.lms.filling import Filled, FillOptions
+from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.offline import BLACKBOARD, BRIGHTSPACE, OfflineFormat, fill_offline
+from grader.classroom.lms.preflight import Filled
 from grader.classroom.students import Student
 from grader.errors import InputError
 

@@ -10,8 +10,9 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope, reusable_comments
-from grader.classroom.gradebook.marks import NewerMarkError, criterion_of
+from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review import ReviewSession
+from grader.classroom.typed_names import criterion_of
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
 LAB = lab()

@@ -150,9 +150,8 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
     with Gradebook(tmp_path / "out.db") as book:
         for standing in Grades(book).all():
             paths, names = standing.files.paths, standing.files.names
-            if (
-                len(paths) > 1 and standing.verdict == "graded" and not standing.is_late
-            ):  # which is a note in the report
+            # A late penalty is a note in the report.
+            if len(paths) > 1 and standing.verdict == "graded" and not standing.late.days:
                 together = tmp_path / "together" / standing.student.key
                 together.mkdir(parents=True)
                 for path, name in zip(paths, names, strict=True):

@@ -10,10 +10,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 
-from grader.classroom.intake.layouts.layout import Attempts, ClassFolder, Submissions, attempts_in, last_copy, path_key
+from grader.classroom.intake.attempts import Attempts, attempts_in, last_copy
+from grader.classroom.intake.layouts.layout import ClassFolder, Submissions, path_key
 from grader.classroom.intake.names import ending_of, stems_of, without_copy
 from grader.classroom.students import ClassSubmission, Student
-from grader.files.limits import BUILD_FOLDERS
+from grader.files.names import BUILD_FOLDERS
 
 _LAB = re.compile(r"lab-?\d+-", re.IGNORECASE)
 

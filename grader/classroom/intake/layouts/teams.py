@@ -14,6 +14,7 @@ from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of, stems_of
 from grader.classroom.students import ClassSubmission
+from grader.files.names import PACKAGE_FILES
 from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.students import is_part
 from grader.text import enumerated, printable_path
@@ -38,7 +39,7 @@ _PART = re.compile(
     r"|my_?robot.*|.*_(?:ws|description|bringup|gazebo|interfaces|msgs|pkg|package|robot|sim|control))"
 )
 _ROBOT = re.compile(r"\.urdf$|xacro|urdf\b")  # in names of files
-_PACKAGE = frozenset({"package.xml", "setup.py", "CMakeLists.txt"})
+_PACKAGE = PACKAGE_FILES | {"CMakeLists.txt"}
 
 
 def find_labs(folder: ClassFolder) -> dict[str, str]:

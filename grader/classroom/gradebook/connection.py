@@ -1,0 +1,85 @@
+"""Connections to the file of a gradebook: its kind and version, its tables, its transactions."""
+
+import sqlite3
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from grader.classroom.gradebook.schema import APPLICATION_ID, TABLES, VERSION
+from grader.classroom.gradebook.views import VIEWS
+from grader.errors import InputError
+
+BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transaction
+
+
+def prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
+    """Configure a connection and create the tables of a new file; raises InputError for another kind or version."""
+    connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
+    queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
+    kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)
+    connection.execute("COMMIT")
+    if tables and kind != APPLICATION_ID:
+        raise InputError(f"{shown} is a database, but not a gradebook: name another file")
+    if version != VERSION and (tables or read_only):
+        raise InputError(
+            f"{shown} is a gradebook of version {version}, and this grader reads version {VERSION}: "
+            "use the grader that made it, or name another file"
+        )
+    if read_only:
+        return
+    _enable_wal(connection)
+    connection.execute("PRAGMA synchronous = NORMAL")
+    connection.execute("PRAGMA foreign_keys = ON")
+    if not tables:
+        _create_tables(connection)
+
+
+def _enable_wal(connection: sqlite3.Connection) -> None:
+    """Switch to a write-ahead log, so that readers and a writer do not block each other.
+
+    SQLite does not apply its busy timeout to this pragma, so it is retried here.
+    """
+    until = time.monotonic() + BUSY_TIMEOUT
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error) or time.monotonic() > until:
+                raise
+            time.sleep(0.01)
+        else:
+            return
+
+
+def _create_tables(connection: sqlite3.Connection) -> None:
+    """Create all tables, or, if that fails, none."""
+    with transaction_of(connection):
+        if connection.execute("PRAGMA user_version").fetchone() == (VERSION,):
+            return  # another process has created them meanwhile
+        for statement in _statements(TABLES + VIEWS):
+            connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {VERSION}")
+        connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+
+@contextmanager
+def transaction_of(connection: sqlite3.Connection) -> Iterator[None]:
+    """Commit everything that is written inside, or nothing."""
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
+    connection.execute("COMMIT")
+
+
+def _statements(script: str) -> Iterator[str]:
+    """Yield the statements of a script: `executescript` would commit the open transaction first."""
+    statement = ""
+    for line in script.splitlines(keepends=True):
+        statement += line
+        if sqlite3.complete_statement(statement):
+            yield statement
+            statement = ""

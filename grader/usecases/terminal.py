@@ -1,0 +1,30 @@
+"""What a use case prints with, and reads a line: the command passes it."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.report.screen import Screen
+
+if TYPE_CHECKING:
+    from grader.classroom.run.progress import Progress
+
+Warn = Callable[[str], None]
+ShowFile = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path
+# Shows the progress of a pass over a class, whose work is named.
+ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
+
+
+class Terminal(NamedTuple):
+    """The terminal of a command.
+
+    `ask` prints a prompt and returns the line that is typed, None at the end of the input. `screen` is called before
+    each use, because a terminal can be resized.
+    """
+
+    print: Callable[[str], None]
+    warn: Warn
+    screen: Callable[[], Screen]
+    ask: Callable[[str], str | None]
+    show_file: ShowFile
+    show_class: ShowClass
