@@ -119,7 +119,7 @@ def pending_points(report: Report) -> str:
 
 def notes(report: Report) -> list[str]:
     """Return notes on how the submission was read."""
-    return [f"Note: {printable(note)}" for note in report.notes]
+    return [f"Note: {printable(note)}" for note in report.all_notes]
 
 
 def first_ignored(report: Report) -> list[str]:
@@ -143,8 +143,8 @@ def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
     for part, found_files in groupby(report.evidence, key=lambda found_files: found_files.evidence.part):
         title = printable(report.rubric.part(part).title)
         yield title, [(_evidence_text(found), bool(found.files)) for found in found_files]
-    if report.others:
-        yield "Other pictures and documents", [(printable(file.words), True) for file in report.others]
+    if report.other_pictures:
+        yield "Other pictures and documents", [(printable(file.words), True) for file in report.other_pictures]
 
 
 def evidence_line(report: Report) -> str:

@@ -20,7 +20,8 @@ from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
-    from grader.grading.report import Fix, Report
+    from grader.grading.hints.hinting import Fix
+    from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 

@@ -5,10 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from grader.errors import InputError, OutOfTime
-from grader.grading.hints.hinting import fixed, hinted
-from grader.grading.hints.record import INCOMPLETE
+from grader.grading.hints.hinting import Fix, fixed, hinted
 from grader.grading.levels import LEVELS, Level
-from grader.grading.report import Fix, Report
+from grader.grading.report import INCOMPLETE_HINTS, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases import Warn
@@ -84,7 +83,7 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapp
             make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
-    gone += [f"; {INCOMPLETE}"] * (INCOMPLETE in report.notes)
+    gone += [f"; {INCOMPLETE_HINTS}"] * (not report.hints_complete)
     names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
     before, after = format_points(report.score), format_points(fix.report.score)
     score = f"{before} -> {after} of {format_points(report.max_score)} points"

@@ -214,7 +214,7 @@ def test_evidence_is_shown_with_its_criterion() -> None:
     shown = [(found.evidence.id, [file.path for file in found.files]) for found in report.evidence]
     steps = ("Task1_Step8", "Task1_Step18", "Task1_Step36", "Task2_Step6", "Task3_Step3")
     assert sorted(shown) == sorted((step.lower().replace("_", "-"), [f"{step}.png"]) for step in steps)
-    assert [file.path for file in report.others] == ["holiday.png"]
+    assert [file.path for file in report.other_pictures] == ["holiday.png"]
 
 
 def test_a_single_urdf_is_graded_on_its_own_part() -> None:

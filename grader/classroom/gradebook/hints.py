@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.record import submission_of
+from grader.grading.record import graded_submission_from
 from grader.grading.rubric import Rubric
 
 _QUERY = """
@@ -53,7 +53,7 @@ def mistaken(book: Gradebook, rubric: Rubric) -> list[Mistaken]:
         failed = {position for position, status in statuses.items() if status == "failed"}
         if failed.isdisjoint(of_robot) and failed.isdisjoint(of_package):
             continue
-        submission = submission_of(book.record(row["result"]))
+        submission = graded_submission_from(book.record(row["result"]))
         is_package_wrong = not submission.is_single and not failed.isdisjoint(of_package)
         if is_package_wrong or not failed.isdisjoint(of_robot):
             files = ("file", row["urdf"]) if submission.is_single and row["urdf"] else ("digest", row["digest"])

@@ -12,10 +12,10 @@ from grader.classroom.gradebook.result import Verdict
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import WorkerError
 from grader.errors import InputError
+from grader.grading.hints.record import NO_HINTS
 from grader.grading.rubric import Rubric, read_rubric
 
 _AHEAD = 3  # tasks for each worker: one at work, the others ready
-_NONE = "[null]"  # of a search that was not complete
 _GRADED: Verdict = "graded"
 _ERRORED: Verdict = "errored"
 _NO_DOCUMENTS = "hints are about the URDF and the package"
@@ -93,7 +93,7 @@ class HintSearch:
         except Exception as error:  # noqa: BLE001  it costs the hints of one submission, not its report
             if isinstance(error, WorkerError) and not error.is_own_fault:
                 return _ERRORED
-            found, verdict = _NONE, _ERRORED
+            found, verdict = NO_HINTS, _ERRORED
         if found is None:
             self.unavailable += 1
         else:
