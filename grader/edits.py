@@ -6,7 +6,7 @@ from os.path import commonprefix
 from typing import NamedTuple
 
 from grader import markup
-from grader.source import Edit, Source
+from grader.source import Edit, Edits, Source
 
 _SAME = 1e-5  # numbers that differ by less are the same
 _PIECE = re.compile(r"(\s*)(\S+)")
@@ -19,7 +19,7 @@ class Proposal(NamedTuple):
     counts the ways to make the same change in xacro, the most plausible first.
     """
 
-    edits: tuple[Edit, ...]
+    edits: Edits
     cause: str
     action: str
     link: str = ""
@@ -126,7 +126,7 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
     return "".join((*pieces, text[position:]))
 
 
-def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> tuple[Edit, ...]:
+def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> Edits:
     """Return the edits of a text that do what `first` does, and then `second`, whose places are those after `first`.
 
     An edit that touches an earlier one becomes one edit with it.

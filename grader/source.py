@@ -44,10 +44,13 @@ class Edit(NamedTuple):
     renamed: str = ""
 
 
+Edits = tuple[Edit, ...]
+
+
 class Correction(NamedTuple):
     """Edits that may correct a text, what is wrong, as a noun, and what to do."""
 
-    edits: tuple[Edit, ...]
+    edits: Edits
     cause: str
     action: str
 
@@ -115,7 +118,7 @@ class Source:
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
 
-    def rewrites(self, attribute: str, wanted: "Mapping[int, tuple[str, str]]") -> "list[tuple[Edit, ...]] | None":
+    def rewrites(self, attribute: str, wanted: "Mapping[int, tuple[str, str]]") -> "list[Edits] | None":
         """Return the ways to give an attribute of expanded elements other values; None where the text is what is read.
 
         `wanted` has the values that the reader sees and should see, by the indices of the elements.

@@ -105,7 +105,7 @@ ABOUT = {
     ),
 }
 
-Match = Literal["name", "order"]
+MatchBy = Literal["name", "order"]
 Samples = Annotated[
     int, Constraint("from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000})
 ]
@@ -120,7 +120,7 @@ def kinematics_match_reference(
     samples: Samples = 100,
     tolerance: NonNegative = 0.002,
     angle: NonNegative = 1.0,
-    match: Match = "name",
+    match: MatchBy = "name",
     relative_to: str = "",
 ) -> Outcome:
     """The links move as in the reference solution when the joints move within its limits.
@@ -173,7 +173,7 @@ def _paired(
     reference: Configuration,
     bases: tuple[str, str],
     pairs: Sequence[tuple[str, str]],
-    match: Match,
+    match: MatchBy,
 ) -> list[tuple[Joint, Joint]] | Outcome:
     """Return the joints of the robot that move links, each with that of the reference, or the failure to pair them."""
     own = movers(robot, bases[0], [link for link, _ in pairs])

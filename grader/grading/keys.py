@@ -6,7 +6,7 @@ from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 
 MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
@@ -226,7 +226,9 @@ RUBRIC = KeyTable(
             "The criteria of the package if there is evidence, but no package: "
             "failed (the default), or manual grading.",
         ),
-        "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
+        "hints": described(
+            toml_type(HintLevel), "How much hints tell students: none, place, cause (the default) or edit."
+        ),
         "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),
         "part": described(_rows(PART), "The parts of the lab, in the order of the report."),
         "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),

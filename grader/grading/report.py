@@ -12,7 +12,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.rubric import Evidence, Rubric
 from grader.problems import Problem
-from grader.source import Edit, Location
+from grader.source import Edits, Location
 
 if TYPE_CHECKING:
     from grader.documents.evidence import EvidenceFile
@@ -47,7 +47,7 @@ class Hint(NamedTuple):
     message: str
     at: Location
     gains: Mapping[str, Decimal]  # criteria with their points
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     action: str = ""
     shown_by: str = ""
 

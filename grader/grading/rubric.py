@@ -13,7 +13,7 @@ from grader.checks.manual import answered
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.criterion import Adjustment, Carried, Criterion
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.toml_rows import TomlRow
@@ -92,7 +92,7 @@ class Rubric:
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
     without_package: str = ""
-    hints: Level = "cause"
+    hints: HintLevel = "cause"
     ignored: tuple[Ignored, ...] = ()
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()

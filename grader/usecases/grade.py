@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
 from grader.usecases import DEFAULT_RUBRIC, Progress, Warn
@@ -44,7 +44,7 @@ class GradeRequest:
     answers: bool = False
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
     verbose: bool = False
-    hints: Level | None = None  # the most that hints tell; None for what the rubric allows
+    hints: HintLevel | None = None  # the most that hints tell; None for what the rubric allows
     fix: Path | None = None  # where to write the submission with the edits of all hints
 
     @property

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from grader.errors import InputError, OutOfTime
 from grader.grading.hints.hinting import Fix, fixed, hinted
-from grader.grading.levels import LEVELS, Level
+from grader.grading.levels import LEVELS, HintLevel
 from grader.grading.report import INCOMPLETE_HINTS, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
@@ -18,7 +18,7 @@ _FILES = (*ROBOT_FILES, ".zip")  # endings that no folder has
 
 
 def with_hints(
-    report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
+    report: Report, submission: Submission, wanted: HintLevel | None, warn: Warn, *, is_fixed: bool
 ) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader import markup
 from grader.edits import text_of, with_attribute, with_child, with_sibling
 from grader.names import closest
-from grader.source import Correction, Edit, Source
+from grader.source import Correction, Edit, Edits, Source
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace, UnknownName, XacroFails
 
@@ -19,7 +19,6 @@ _DEFINING = ("property", "arg", "macro")
 _UNKNOWN = "a name that xacro does not know"
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
-Edits = tuple[Edit, ...]
 Calls = Mapping[tuple[str, int], tuple[str, ScopePlace, Mapping[tuple[str, int], ScopePlace]]]
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from grader import markup
 from grader.edits import merged, with_attribute
-from grader.source import Edit
+from grader.source import Edit, Edits
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.scopes import Definition, Key, ScopePlace, XacroScope, literal
 from grader.xacro.texts import PIECE, Texts
@@ -62,14 +62,14 @@ class Rewriter:
         self._budget = Budget(_WORK)
         self._known: dict[int, tuple[XacroScope, tuple[list[str], list[str]]]] = {}
 
-    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[Edits]:
         """Return the ways to change an attribute (or, without a name, the text) for its uses, the most plausible first.
 
         Those with which all uses get what they should be come first, then those for the changed ones.
         """
         text = written(place, attribute, uses[0].scope)
         changed = [use for use in uses if not _same(use.old, use.new)]
-        found: list[tuple[Edit, ...]] = []
+        found: list[Edits] = []
         for several in dict.fromkeys((tuple(uses), tuple(changed))) if changed else ():
             if text is not None:
                 ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
@@ -172,7 +172,7 @@ class Rewriter:
                     short = float(f"{found:.{digits}g}") + 0.0
                     yield digits, with_number(site.text, slot, f"{short:.9g}")
 
-    def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[tuple[Edit, ...]]:
+    def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[Edits]:
         """Return the edits that give calls of a macro a value of their own, where they have the default."""
         defaults = [it for it in self._definitions(text, uses[0].scope) if it.attribute == "params"]
         edits: list[Edit] = []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.markup import element_end
 from grader.problems import Problem
-from grader.source import Correction, Edit, Location, Source
+from grader.source import Correction, Edit, Edits, Location, Source
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expander import STOPS, Expander, Open
@@ -98,7 +98,7 @@ class ExpandedSource(Source):
         place = self._nodes[tag].place
         return place.source.element(place.tag)
 
-    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[tuple[Edit, ...]]:
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
         """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
         first = self._nodes[next(iter(wanted))]
         moved = first.moved.get(attribute)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.xml.element_values import FoundElement, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
 from grader.xml.parsing import Element, Unresolved
 
-Value = Scalar | list[Scalar]
+AttributeValue = Scalar | list[Scalar]
 
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
@@ -19,7 +19,7 @@ class WantedElement(NamedTuple):
     tag: str
     attributes: Mapping[str, Scalar]
     path: str
-    values: Mapping[str, Value]
+    values: Mapping[str, AttributeValue]
     tolerance: float
 
     @property
@@ -66,7 +66,7 @@ class WantedElement(NamedTuple):
         wanted = value if isinstance(value, list) else [value]
         return any(is_same(readable(found.text), one, self.tolerance) for one in wanted)
 
-    def _has(self, element: Element, key: str, value: Value) -> bool:
+    def _has(self, element: Element, key: str, value: AttributeValue) -> bool:
         texts = [readable(found.text) for found in texts_at(element, key)]
         return are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
 

@@ -13,7 +13,7 @@ from grader.classroom.gradebook.result import units_of
 from grader.grading.hints.record import hints_from_record, own_edits
 from grader.grading.report import Hint
 from grader.grading.rubric import Rubric
-from grader.source import Edit
+from grader.source import Edit, Edits
 
 _MAX_FIXES = 20
 
@@ -30,7 +30,7 @@ class CommonFix:
     students: tuple[str, ...]
     criteria: tuple[str, ...]
     points: Decimal
-    example: tuple[Edit, ...]
+    example: Edits
 
     @property
     def count(self) -> int:

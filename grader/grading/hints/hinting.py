@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.hints.search import FoundHint, HintSearch
-from grader.grading.hints.trials import Edits, Trials, costs_of
+from grader.grading.hints.trials import Trials, costs_of
 from grader.grading.hints.words import message
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
 from grader.grading.report import Hint, Report, Result
 from grader.robot.edits.draft import Draft
-from grader.source import Location
+from grader.source import Edits, Location
 from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
 from grader.text import enumerated
@@ -42,7 +42,7 @@ class Fix(NamedTuple):
     why_nothing: str = ""
 
 
-def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> HintedReport:
+def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edits: bool = False) -> HintedReport:
     """Return a report with proven hints for criteria that failed; `keep_edits` keeps edits that the level hides."""
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution

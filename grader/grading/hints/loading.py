@@ -1,12 +1,11 @@
 """Repair a URDF step by step until ROS 2 loads it: each step makes ROS 2 read on, or reject or drop less."""
 
 from collections.abc import Iterable, Iterator
-from decimal import Decimal
 from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.trials import Edits, State, Trials, joined
+from grader.grading.hints.trials import State, Trials, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
@@ -14,6 +13,7 @@ from grader.robot.edits.pieces import STRUCTURE
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
+from grader.source import Edits
 from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
 from grader.xml.pieces import remaining
@@ -142,13 +142,9 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     for left, proposal in near:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
-            rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.way, -proposal.size)
+            rank = (left[0] < 0, after.score, tuple(-count for count in left), -proposal.way, -proposal.size)
             ranked.append((rank, LoadingStep(proposal, state, after)))
     return max(ranked, key=lambda found: found[0])[1] if ranked else None
-
-
-def _score(state: State) -> Decimal:
-    return sum((result.points for result in state.results.values()), Decimal(0))
 
 
 def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:

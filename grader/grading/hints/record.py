@@ -11,7 +11,7 @@ from decimal import Decimal
 from typing import Any
 
 from grader.grading.report import Hint, Report
-from grader.source import Edit, Location
+from grader.source import Edit, Edits, Location
 
 NO_HINTS = '{"hints":[],"complete":false}'  # of a search that failed
 _MAIN = ""  # the path of the graded URDF
@@ -34,7 +34,7 @@ def hints_from_record(text: str) -> tuple[Hint, ...]:
     return tuple(map(_hint, json.loads(text)["hints"]))
 
 
-def own_edits(hint: Hint, others: Sequence[Hint]) -> tuple[Edit, ...]:
+def own_edits(hint: Hint, others: Sequence[Hint]) -> Edits:
     """Return the edits of a hint that are not those of another one of the submission, which it includes."""
     mine = set(hint.edits)
     earlier = {edit for other in others if mine > set(other.edits) for edit in other.edits}

@@ -6,7 +6,7 @@ from math import hypot, isfinite, pi
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.grading.hints.model import Model
+from grader.grading.hints.state_edits import QuickGrading
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
@@ -77,8 +77,8 @@ def _slots(owner: Element, tag: str) -> Iterator[Slot]:
 class Solver:
     """Searches the values with which one criterion measures what it expects."""
 
-    def __init__(self, model: Model, difference: RobotDifference, name: str, outcome: Outcome) -> None:
-        self._model, self._difference, self._name = model, difference, name
+    def __init__(self, quick: QuickGrading, difference: RobotDifference, name: str, outcome: Outcome) -> None:
+        self._quick, self._difference, self._name = quick, difference, name
         self._outcome = outcome
         measured, expected = _vector(outcome.measured), _vector(outcome.expected)
         is_each = measured is not None and expected is not None and len(expected) == 1
@@ -181,7 +181,7 @@ class Solver:
 
     def _residual(self, slot: Slot, values: Values) -> Values | None:
         sets = self._difference.with_twins(slot.sets(values, _precisely))
-        return self._difference_of(self._model.results(sets, (self._name,))[self._name].outcome)
+        return self._difference_of(self._quick.results(sets, (self._name,))[self._name].outcome)
 
     def _difference_of(self, outcome: Outcome) -> Values | None:
         actual, expected = _vector(outcome.measured), self._expected

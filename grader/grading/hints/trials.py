@@ -11,13 +11,12 @@ from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.robot.edits.pieces import SOLVED
-from grader.source import Edit
+from grader.source import Edit, Edits
 from grader.submission.editing import content, edited_files, with_files, with_urdf
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 Results = Mapping[str, Result]
-Edits = tuple[Edit, ...]
 
 _TEXT_STEPS = 2  # that it costs more to read a text than elements that are changed
 _MAX_STEPS = 3000  # of one submission
@@ -39,6 +38,16 @@ class State(NamedTuple):
     edits: Edits
     results: Results
     lost: str = ""
+
+    @property
+    def score(self) -> Decimal:
+        """The points of all criteria."""
+        return sum((result.points for result in self.results.values()), Decimal(0))
+
+    @property
+    def lost_points(self) -> Decimal:
+        """The points that mistakes cost."""
+        return sum((result.criterion.points for result in self.results.values() if result.is_lost), Decimal(0))
 
     @property
     def failed(self) -> list[str]:
@@ -188,7 +197,7 @@ def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]
     return tuple(found)
 
 
-def together(proposals: Sequence[Proposal], edits: Edits) -> Proposal:
+def as_one(proposals: Sequence[Proposal], edits: Edits) -> Proposal:
     """Return several proposals as one, with these edits: those of the first one come first."""
     causes = dict.fromkeys(proposal.cause for proposal in proposals)
     actions = dict.fromkeys(proposal.action for proposal in proposals)

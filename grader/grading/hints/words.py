@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from grader.grading.hints.search import FoundHint
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.source import Edit, Location, Source
 from grader.submission.editing import content, creates
 from grader.submission.submission import Submission
@@ -15,7 +15,7 @@ _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: FoundHint, level: Level, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
+def message(found: FoundHint, level: HintLevel, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
     """Return the hint in a sentence, which need not name the URDF. `entry` is where an earlier one is shown."""
     own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
     earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"

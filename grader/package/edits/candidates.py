@@ -18,7 +18,7 @@ from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import defined, respelt, reworded
 from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
-from grader.source import Edit, Source
+from grader.source import Edits, Source
 from grader.xml.syntax import proposals
 
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
@@ -47,7 +47,7 @@ def package_proposals(
         for value in (it if isinstance(it, list) else [it])
     ]
     task = PackageTask(package, reference, frozenset(value for value in values if isinstance(value, str)))
-    found: dict[tuple[Edit, ...], Proposal] = {}
+    found: dict[Edits, Proposal] = {}
     for kind in ("", *kinds):
         with isolated():
             # Of equal ones, a later one says better what changes.

@@ -6,10 +6,11 @@ from functools import cached_property
 from itertools import groupby
 
 from grader.difference import Node, Step, is_alike, paired, steps
-from grader.robot.edits.draft import Draft, Edits, Set, child_of, end_of, escaped
+from grader.robot.edits.draft import Draft, Set, child_of, end_of, escaped
 from grader.robot.edits.nodes import node_of, wanted_value
 from grader.robot.edits.numbers import number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
+from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, PARTS
 

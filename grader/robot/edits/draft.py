@@ -10,11 +10,10 @@ from grader.edits import merged, text_of, with_attribute, with_child, with_eleme
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
-from grader.source import Edit, Location, Source
+from grader.source import Edits, Location, Source
 from grader.xml.parsing import Element, make_element
 from grader.xml.urdf_format import PARTS
 
-Edits = tuple[Edit, ...]
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _MAX_WAYS = 6

@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from grader.robot.edits.draft import Draft, Edits, Set, child_of
+from grader.robot.edits.draft import Draft, Set, child_of
 from grader.robot.edits.numbers import Values, named, values_of
+from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
