@@ -18,7 +18,7 @@ from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted
 
 if TYPE_CHECKING:
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
     from grader.xacro.inventory import Definitions, Inventory
 
 ABOUT = {
@@ -101,7 +101,7 @@ def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
 
 def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
 
     reading, urdf = submission.needed_urdf(), submission.urdf
     assert isinstance(urdf, Read)  # else there is none that is needed
@@ -128,7 +128,7 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
 
 def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro in a file of the submission that the graded URDF does not include."""
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
 
     found = [path for path in submission.tree.files if _ends(path, file)]
     if len(found) > 1:
@@ -149,7 +149,8 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
     from grader.submission.workspace import Surroundings
-    from grader.xacro.expansion import ExpandedSource, expand
+    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import expand
 
     packages = submission.packages or submission.neighbours
     around = Surroundings(

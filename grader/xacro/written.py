@@ -32,6 +32,15 @@ class Written(NamedTuple):
         return self._replace(start=self.start + start, text=self.text[start:end])
 
 
+class Use(NamedTuple):
+    """A use of a text: the scope in which it is evaluated, what it is and should be, and the macro calls around it."""
+
+    scope: XacroScope
+    old: str
+    new: str
+    calls: tuple[tuple[str, ScopePlace], ...] = ()
+
+
 class TextChange(NamedTuple):
     """A text that becomes another one."""
 

@@ -103,9 +103,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
     draft = Draft.of(reading)
     if draft is not None:
         difference = RobotDifference(draft, reference or draft)
-        yield from (
-            Proposal(*correction) for correction in draft.source.corrections(difference.names, difference.numbers)
-        )
+        yield from draft.corrections(difference.names, difference.numbers)
         problems = repairable(reading.problems)
         own = (pieces_for(difference, problem) for problem in problems)
         lines = {problem.location.line for problem in problems}

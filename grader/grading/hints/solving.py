@@ -8,7 +8,8 @@ from typing import NamedTuple
 from grader.checks.outcome import Outcome
 from grader.grading.hints.state_edits import QuickGrading
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Draft, Set, child_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of
 from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
 from grader.xml.parsing import Element

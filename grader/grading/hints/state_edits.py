@@ -15,7 +15,8 @@ from grader.grading.hints.trials import State, Trials
 from grader.grading.report import Result
 from grader.grading.subjects import named_links
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Draft, Set
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set
 from grader.robot.edits.numbers import values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.kinematics import Configuration
@@ -95,10 +96,8 @@ class StateEdits:
         if self.draft is None:
             return []
         with self.trials.isolated():
-            found = [
-                Piece(it.cause, it.action, "", (), it.edits)
-                for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)
-            ]
+            corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
+            found = (Piece(it.cause, it.action, "", (), it.edits) for it in corrections)
             return [*found, *self.difference.pieces]
         return []
 
@@ -125,7 +124,7 @@ class StateEdits:
         return sorted(found, key=lambda piece: piece.rank)
 
     def passing(self, piece: Piece, wanted: Sequence[str] = ()) -> frozenset[str]:
-        """Return the wanted criteria, else the lost ones, that pass with a piece; its text is changed only if needed."""
+        """Return the wanted criteria, else the lost ones, that pass with a piece; its text changes only if needed."""
         if id(piece) not in self._passing:
             self._kept.append(piece)
             wanted = wanted or self.lost

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Set, child_of, empty_element
+from grader.robot.edits.draft import empty_element
+from grader.robot.edits.elements import Set, child_of
 from grader.robot.edits.numbers import number
 from grader.robot.edits.pieces import KNOWN, Piece
 from grader.robot.frames import placed_by

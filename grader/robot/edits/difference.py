@@ -6,7 +6,8 @@ from functools import cached_property
 from itertools import groupby
 
 from grader.difference import Node, Step, is_alike, paired, steps
-from grader.robot.edits.draft import Draft, Set, child_of, end_of, escaped
+from grader.robot.edits.draft import Draft, escaped
+from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.nodes import node_of, wanted_value
 from grader.robot.edits.numbers import number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from grader.robot.edits.draft import Draft, Set, child_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of
 from grader.robot.edits.numbers import Values, named, values_of
 from grader.source import Edits
 from grader.xml.parsing import Element

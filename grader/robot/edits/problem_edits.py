@@ -7,7 +7,8 @@ from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.edits.difference import RobotDifference, renamed
-from grader.robot.edits.draft import Draft, Set, child_of, end_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.pieces import ENDS, Piece, unique
 from grader.robot.edits.readable import is_readable, readable
 from grader.xml.parsing import Element
