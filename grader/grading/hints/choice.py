@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.checks.registry import declared
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
-from grader.grading.hints.solving import Solver, slots
+from grader.grading.hints.slots import slots
+from grader.grading.hints.solving import Solver
 from grader.grading.hints.state_edits import StateEdits
 from grader.grading.hints.trials import State, Trials, as_one, joined
 from grader.robot.edits.conventions import conventions, other_frames

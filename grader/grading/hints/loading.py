@@ -23,6 +23,7 @@ _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
 _MAX_VALUES = 40  # edits of one step that are graded
 _MAX_CANDIDATES = 150  # edits of one step that are read
+_MAX_MOVED = 6  # elements that are moved elsewhere
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
@@ -113,7 +114,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
             if piece.rank == STRUCTURE
             or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)
         ]
-        for piece in chain(misplaced(difference), chain.from_iterable(own), near):
+        for piece in chain(islice(misplaced(difference), _MAX_MOVED), chain.from_iterable(own), near):
             for way, edits in enumerate(draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]):
                 yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
