@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from grader.checks.manual import evidence_shown
 from grader.errors import InputError
+from grader.grading.criterion import Evidence
 from grader.grading.deciding import decide
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import missing_work, robot_of
 from grader.grading.report import EvidenceResult, Report, Result, without_gifts
-from grader.grading.rubric import Evidence, Rubric
+from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

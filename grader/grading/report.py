@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import Criterion, Evidence
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.rubric import Evidence, Rubric
+from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Edits, Location
 

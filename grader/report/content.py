@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from decimal import Decimal
 from itertools import groupby
 
+from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
-from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report.locations import location_text
 from grader.report.order import earned_text, failures, sum_text, undecided_results

@@ -6,8 +6,8 @@ from itertools import groupby
 from typing import NamedTuple, TypeVar
 
 from grader.checks.manual import MANUAL_CHECKS
+from grader.grading.criterion import worth
 from grader.grading.report import Report, Result
-from grader.grading.worth import worth
 from grader.text import format_points, signed_points
 
 T = TypeVar("T")

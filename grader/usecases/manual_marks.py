@@ -24,8 +24,7 @@ from grader.classroom.gradebook.marks import (
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import Student
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
-from grader.grading.validation import TOTAL
+from grader.grading.criterion import TOTAL, Criterion
 from grader.report.review import mark_text
 from grader.text import counted_points, enumerated, format_points, printable
 from grader.usecases import Warn

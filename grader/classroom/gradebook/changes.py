@@ -10,9 +10,9 @@ from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import criterion_points, points_of
 from grader.errors import InputError
+from grader.grading.criterion import TOTAL
 from grader.grading.rubric import Rubric
 from grader.grading.rubric_changes import RubricChange, concerning, rubric_changes
-from grader.grading.validation import TOTAL
 from grader.text import format_points, shell_quoted
 
 _STATES = """

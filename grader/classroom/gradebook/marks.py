@@ -10,9 +10,8 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import UNITS_PER_POINT, points_of, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import TOTAL, Criterion
 from grader.grading.rubric import Rubric
-from grader.grading.validation import TOTAL
 from grader.names import did_you_mean
 from grader.text import format_points
 

@@ -16,9 +16,8 @@ from grader.classroom.gradebook.marks import Entry, Kind, add_mark, criterion_of
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.students import Student
 from grader.errors import InputError
-from grader.grading.criterion import Adjustment
+from grader.grading.criterion import TOTAL, Adjustment
 from grader.grading.rubric import Rubric, read_rubric
-from grader.grading.validation import TOTAL
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 from tests.examples import examples
 
