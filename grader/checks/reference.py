@@ -11,8 +11,7 @@ from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
-from grader.robot.pairing import Offset, RobotPair, movers
-from grader.robot.sampling import SINGLE, random_positions, singles
+from grader.robot.pairing import SINGLE, Offset, RobotPair, movers, random_positions, singles
 from grader.robot.selectors import selected_link
 from grader.text import counted, enumerated, quoted
 

@@ -8,9 +8,8 @@ from typing import Any
 from grader.checks.measures.fact import Fact, Facts, Omission, Solution, shown
 from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
-from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import readable
+from grader.xml.wanted_element import name_of, readable
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _OF_CONTINUOUS = ("@effort", "@velocity")

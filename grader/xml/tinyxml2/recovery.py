@@ -3,9 +3,9 @@
 import re
 from typing import Literal, NamedTuple
 
+from grader.problems import Kind
 from grader.text import enumerated
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import NoteDifference
 from grader.xml.tinyxml2.tags import MalformedTagError, ReadTag, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import CHILDREN
@@ -31,6 +31,14 @@ _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
 _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
+
+
+class NoteDifference(NamedTuple):
+    """A difference from XML, an error, or what was assumed about one, at a character offset."""
+
+    kind: Kind
+    message: str
+    offset: int
 
 
 class Recovered(NamedTuple):

@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from grader.problems import Kind
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import NoteDifference
-from grader.xml.tinyxml2.recovery import Recovery
+from grader.xml.tinyxml2.recovery import NoteDifference, Recovery
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, ReadTag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
