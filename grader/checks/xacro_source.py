@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from grader.xacro.expanded_source import ExpandedSource
     from grader.xacro.inventory import Definitions, Inventory
 
-ABOUT = {
-    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything),
-}
+ABOUT = {"xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)}
 
 _MAX_NAMED = 5  # names in a message
 
@@ -114,9 +112,8 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     elif not file or submission.is_single:
         others = [path for path in submission.tree.files if path.lower().endswith(".xacro") and path != urdf.path]
         if others:
-            message = (
-                f"the graded URDF is {urdf.path}, which is no xacro, but there is {enumerated(others, _MAX_NAMED)}"
-            )
+            listed = enumerated(others, _MAX_NAMED)
+            message = f"the graded URDF is {urdf.path}, which is no xacro, but there is {listed}"
             raise NotDecided(message, "the graded URDF is no xacro, but the submission has xacro")
         if reading.root is None:
             raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")

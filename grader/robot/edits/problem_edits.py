@@ -122,11 +122,10 @@ def _missing(difference: RobotDifference, element: Element) -> Iterator[Piece]:
         if child == "limit":
             yield difference.of_sets([Set(element, "", "type", "continuous")])
         inside = [it for it in element if it.tag in CHILDREN.get(child, ())]
-        text = missing_element(child)
         if inside:
             edits = draft.wrap(inside[0], child)
             yield difference.piece(element, f"a shape outside <{child}>", f"put the shape into <{child}>", edits)
-        elif text is not None:
+        elif (text := missing_element(child)) is not None:
             edits = draft.insert(element, text)
             yield difference.piece(element, f"the <{child}> of {{}} is missing", f"add the <{child}> of {{}}", edits)
     if tag == "material":
