@@ -16,8 +16,7 @@ from grader.static_python.parse import START
 from grader.static_python.values import MAX_TEXT, Call, Unknown, Value, as_text
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
-_MAX_DEPTH = 40
-_WORK = 10_000  # of an expression
+_MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
 _PACKAGE_FOLDERS = (
@@ -76,8 +75,6 @@ class _Substitution:
         name = self.call.name.rpartition(".")[2]
         if name in _METHODS:
             return _METHODS[name](self)
-        if self.call.name == COMMAND_LINE:
-            return self.resolve(self.call.args) if self.call.args else ""
         if name.endswith("LaunchDescriptionSource"):
             return self.argument("launch_file_path", "location")
         if name in BOOLEAN_SUBSTITUTIONS:
@@ -132,9 +129,7 @@ class _Substitution:
     def needs_texts(self, message: str, count: int | None = None) -> None:
         """Add an error if a function of Python gets a substitution: without .perform or .find it has no text yet."""
         names = [value.name for value in self.call.args[:count] if isinstance(value, Call)]
-        if any(
-            name.startswith(("launch.", "launch_ros.")) and not name.endswith((".perform", ".find")) for name in names
-        ):
+        if any(it.startswith(("launch.", "launch_ros.")) and not it.endswith((".perform", ".find")) for it in names):
             self.context.add_error(message, self.call.at)
 
     def path(self, parts: Value) -> Resolved:
@@ -204,6 +199,7 @@ def _builtin(name: str) -> Value:
 _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
     **dict.fromkeys(_OF_OWNER, lambda substitution: substitution.resolve(substitution.call.owner)),
     **dict.fromkeys(_PACKAGE_FOLDERS, _Substitution.package_folder),
+    COMMAND_LINE.rpartition(".")[2]: lambda substitution: substitution.resolve(substitution.call.args or ""),
     "TextSubstitution": lambda substitution: substitution.argument("text"),
     "PathSubstitution": lambda substitution: substitution.argument("path"),
     "ParameterValue": lambda substitution: substitution.argument("value"),
