@@ -1,12 +1,12 @@
 """Edits of the text of a file: made for its elements, put together, and applied."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from os.path import commonprefix
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from grader import markup
-from grader.source import Edit, Source
+from grader.source import Edit, Edits, Location, Source
 
 _SAME = 1e-5  # numbers that differ by less are the same
 _PIECE = re.compile(r"(\s*)(\S+)")
@@ -19,7 +19,7 @@ class Proposal(NamedTuple):
     counts the ways to make the same change in xacro, the most plausible first.
     """
 
-    edits: tuple[Edit, ...]
+    edits: Edits
     cause: str
     action: str
     link: str = ""
@@ -30,6 +30,29 @@ class Proposal(NamedTuple):
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
+
+
+@runtime_checkable
+class Expanded(Protocol):
+    """A source of xacro: its elements come from other texts, several perhaps from one in a macro."""
+
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
+        """Return the ways to give an attribute (or, without a name, the text) of expanded elements other values.
+
+        `wanted` has the values that the reader sees and should see, by the indices of the elements.
+        """
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the elements that come from the same text as this one."""
+
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element as it is inserted in or instead of the one with this index."""
+
+    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
 
 
 def _changed(old: str, new: str) -> int:
@@ -126,7 +149,7 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
     return "".join((*pieces, text[position:]))
 
 
-def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> tuple[Edit, ...]:
+def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> Edits:
     """Return the edits of a text that do what `first` does, and then `second`, whose places are those after `first`.
 
     An edit that touches an earlier one becomes one edit with it.

@@ -47,7 +47,8 @@ class NotDecided(LookupError):
 class MissingElement(LookupError):
     """Something that a check needs does not exist: a link, a shape, a chain of joints, a defined pose.
 
-    `kind` and `name` are equal for checks that fail for the same reason; `known` lists the names that exist; `location`
+    `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and `package` are those of
+    work that a submission lacks, where evidence may take its place. `known` lists the names that exist; `location`
     is a Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
     between students who made the same mistake; `mistake` is the message alone. `problem` is that of an Outcome.
     """

@@ -2,7 +2,6 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
@@ -44,12 +43,7 @@ class Edit(NamedTuple):
     renamed: str = ""
 
 
-class Correction(NamedTuple):
-    """Edits that may correct a text, what is wrong, as a noun, and what to do."""
-
-    edits: tuple[Edit, ...]
-    cause: str
-    action: str
+Edits = tuple[Edit, ...]
 
 
 class Source:
@@ -114,33 +108,6 @@ class Source:
     def element(self, tag: int) -> "tuple[Source, int]":
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
-
-    def rewrites(self, attribute: str, wanted: "Mapping[int, tuple[str, str]]") -> "list[tuple[Edit, ...]] | None":
-        """Return the ways to give an attribute of expanded elements other values; None where the text is what is read.
-
-        `wanted` has the values that the reader sees and should see, by the indices of the elements.
-        """
-        del attribute, wanted
-        return None
-
-    def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the elements that come from the same text as this one."""
-        return [tag]
-
-    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
-        del edit
-        return ()
-
-    def adapted(self, tag: int, xml: str) -> str:
-        """Return the text of an element as it is inserted in or instead of the one with this index."""
-        del tag
-        return xml
-
-    def corrections(self, names: Sequence[str] = (), numbers: Sequence[str] = ()) -> list[Correction]:
-        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
-        del names, numbers
-        return []
 
 
 class LazyLocation(NamedTuple):

@@ -142,7 +142,7 @@ def _turns_about_z(joint: Element) -> bool:
 # --- Steps that say the same in other values --------------------------------------------------------------------------
 
 
-def _seeded(step: seeded.Step) -> Step:
+def _seeded(step: seeded.Rewriting) -> Step:
     """Return a step that draws the seed of one of `grader rubric test`."""
 
     def drawn(draw: st.DrawFn, tree: Element) -> None:

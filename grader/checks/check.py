@@ -1,19 +1,16 @@
-"""A check: what a rubric names, how its signature is read, and what it declares to hints, rubrics and pictures."""
+"""A check: what a rubric names, what its signature and docstring say, and what it declares to hints and pictures."""
 
 import inspect
+import re
 import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args, get_type_hints
+from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
-
-if TYPE_CHECKING:
-    from grader.checks.docstring import Documentation
-
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
 EQUIVALENTS = (
@@ -30,6 +27,8 @@ EQUIVALENTS = (
     "xacro macro",
 )
 BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
+_SECTION = re.compile(r"^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$", re.MULTILINE)
+_ARGUMENT = re.compile(r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+")
 
 
 def nothing(arguments: Mapping[str, Any]) -> Collection[str]:
@@ -124,8 +123,6 @@ class Check:
     @property
     def documentation(self) -> "Documentation":
         """What its docstring says. The fact is true of a submission that passes."""
-        from grader.checks.docstring import documentation  # late: grading does not read it
-
         return documentation(self.function)
 
 
@@ -160,3 +157,33 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
 def _is_subject(parameter: inspect.Parameter) -> bool:
     """Return whether a parameter after the first is another object that is examined: it is no keyword-only argument."""
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in SUBJECTS
+
+
+class Documentation(NamedTuple):
+    """The paragraphs of a docstring before its first section, a fact first; the meaning of each argument."""
+
+    paragraphs: tuple[str, ...]
+    arguments: Mapping[str, str]
+
+    @property
+    def fact(self) -> str:
+        """The first paragraph, in one line."""
+        return self.paragraphs[0] if self.paragraphs else ""
+
+
+def documentation(function: Callable[..., Any]) -> Documentation:
+    """Return what the docstring of a function says; a function without one, or without `Args:`, has empty parts."""
+    text, *sections = _SECTION.split(inspect.getdoc(function) or "")
+    named = dict(zip(sections[::2], sections[1::2], strict=True))
+    paragraphs = tuple(_one_line(paragraph) for paragraph in text.split("\n\n") if paragraph.strip())
+    return Documentation(paragraphs, _arguments(inspect.cleandoc(named.get("Args", named.get("Arguments", "")))))
+
+
+def _arguments(section: str) -> dict[str, str]:
+    """Return the entries of an `Args:` section by name; an entry continues on lines that are indented further."""
+    entries = (_ARGUMENT.split(entry, maxsplit=1) for entry in re.split(r"\n(?=\S)", section))
+    return {found[1]: _one_line(found[2]) for found in entries if len(found) == 3}
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

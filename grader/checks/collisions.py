@@ -14,7 +14,6 @@ from grader.robot.likeness import Mismatch, mismatch, turn_between
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
 from grader.robot.shapes import Shape, is_empty
 from grader.robot.transforms import IDENTITY, Vector, minus
-from grader.source import LazyLocation
 from grader.text import counted
 
 _EDITS = "grader.robot.edits.bodies:body_pieces"
@@ -27,8 +26,6 @@ ABOUT = {
 
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _MESH_ANGLE = 1.0  # degrees that a mesh may be turned, because its size is not known
-
-Element = Visual | Collision
 
 
 def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonNegative) -> Outcome:
@@ -94,7 +91,8 @@ def collides_as(
     shapes += [Sphere(sphere)] if sphere is not None else []
     if len(shapes) != 1:
         raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
-    what = _sized(shapes[0])
+    [wanted] = shapes
+    what = _sized(wanted)
     what += f" at {point(xyz)} m" if xyz else ""
     what += f" with rpy {point(rpy)}" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
@@ -103,19 +101,15 @@ def collides_as(
     def off(collision: Collision) -> Mismatch | None:
         if isinstance(collision.geometry, Mesh):
             return None
-        T_link_shape = placed_by(IDENTITY, collision.origin)
-        found = mismatch(
-            shapes[0], T_link_wanted, collision.geometry, T_link_shape, tolerance + SLACK, turned=rpy is not None
-        )
+        T_link_shape, is_turned = placed_by(IDENTITY, collision.origin), rpy is not None
+        found = mismatch(wanted, T_link_wanted, collision.geometry, T_link_shape, tolerance + SLACK, turned=is_turned)
         return found if found is None or xyz is not None else found._replace(apart=0.0)
 
     solid = _solid(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
     if fitting is None:
         nearest = min(solid, key=lambda one: _rank(off(one)))
-        differences, at = _differences(nearest, off(nearest), tolerance)
-        message = f"no collision shape of {link!r} is {what}; the nearest is {_described(nearest)}{differences}"
-        return failed(message, at or nearest.location)
+        return _differs(f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance)
     other = next((one for one in solid if one is not fitting), None)
     if only and other is not None:
         message = f"{link!r} has another collision shape, {_described(other)}; it should have only {what}"
@@ -135,8 +129,11 @@ def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, .
 
 def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: float) -> dict[int, int]:
     """Return the visual of each collision shape, by their indices: as many pairs as possible (Kuhn's algorithm)."""
-    alike = [[index for index, other in enumerate(solid) if _is_like(visual, other, tolerance)] for visual in shown]
     partners: dict[int, int] = {}
+    alike = [
+        [index for index, other in enumerate(solid) if _fits(_mismatch(visual, other, tolerance), tolerance)]
+        for visual in shown
+    ]
 
     def find(visual: int, tried: set[int]) -> bool:
         for collision in alike[visual]:
@@ -150,10 +147,6 @@ def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: fl
     for visual in range(len(shown)):
         find(visual, set())
     return partners
-
-
-def _is_like(visual: Visual, collision: Collision, tolerance: float) -> bool:
-    return _fits(_mismatch(visual, collision, tolerance), tolerance)
 
 
 def _fits(off: Mismatch | None, tolerance: float) -> bool:
@@ -185,9 +178,7 @@ def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], to
             return pending(f"{what} cannot be determined: {cause}; needs manual grading", cause)
     pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
     off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
-    differences, at = _differences(nearest, off, tolerance)
-    message = f"no collision shape of {link!r} is {_described(visual)}, as shown; the nearest is {_described(nearest)}"
-    return failed(f"{message}{differences}", at or nearest.location)
+    return _differs(f"no collision shape of {link!r} is {_described(visual)}, as shown", nearest, off, tolerance)
 
 
 def _rank(off: Mismatch | None) -> tuple[bool, float]:
@@ -195,10 +186,11 @@ def _rank(off: Mismatch | None) -> tuple[bool, float]:
     return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
 
 
-def _differences(nearest: Collision, off: Mismatch | None, tolerance: float) -> tuple[str, LazyLocation | None]:
-    """Return how a collision shape differs from the visual that it should be, and the place to look at."""
+def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: float) -> Outcome:
+    """Return a failure that says how the nearest shape differs from the one that should be, at the place to look at."""
+    message += f"; the nearest is {_described(nearest)}"
     if off is None:
-        return "", nearest.geometry.location
+        return failed(message, nearest.geometry.location or nearest.location)
     found = [
         (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
         (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
@@ -206,10 +198,10 @@ def _differences(nearest: Collision, off: Mismatch | None, tolerance: float) -> 
     ]
     wrong = [row for row in found if not row[1] <= tolerance + SLACK]
     text = " and ".join(text for text, *_ in wrong)
-    return f" ({text})", place(wrong[0][2], wrong[0][3])
+    return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
 
 
-def _described(element: Element) -> str:
+def _described(element: Visual | Collision) -> str:
     """Return a shape with its sizes, and its place in the link."""
     return f"{_sized(element.geometry)} at {point(element.origin.xyz)} m"
 

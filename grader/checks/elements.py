@@ -14,18 +14,19 @@ from grader.robot.reader import Reading
 from grader.source import LazyLocation
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines, quoted
-from grader.xml.element_values import (
+from grader.xml.parsing import Element
+from grader.xml.wanted_element import (
     FoundElement,
+    WantedElement,
     attribute,
     elements_at,
     name_of,
     numbers_of,
+    readable,
     steps_of,
     text_of,
     texts_at,
 )
-from grader.xml.parsing import Element
-from grader.xml.wanted_element import WantedElement, readable
 
 
 def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:

@@ -155,7 +155,9 @@ def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind:
         message += ": no entry of data_files in setup.py names it"
         return MissingElement(what, package.folder, message=message)
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
-    detail, at = package.pattern_hint(empty.pattern), setup.location(empty.at)
+    from grader.package.problems import why_no_match  # late: a URDF on its own needs none of what reads a package
+
+    detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"
     return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
 

@@ -9,7 +9,7 @@ from grader.robot.transforms import Vector
 from grader.source import LazyLocation, Location
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
-Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
+Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
 AnyPlace = Location | LazyLocation | None
 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
@@ -30,8 +30,8 @@ class Outcome(NamedTuple):
 
     status: Status
     message: str
-    measured: Value = None
-    expected: Value = None
+    measured: Measured = None
+    expected: Measured = None
     tolerance: float | None = None
     unit: str | None = None
     location: Location | None = None
@@ -102,8 +102,8 @@ def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str 
 def judged(
     fine: bool,
     message: str,
-    actual: Value = None,
-    expected: Value = None,
+    actual: Measured = None,
+    expected: Measured = None,
     tolerance: float | None = None,
     unit: str | None = None,
     *,

@@ -11,8 +11,7 @@ from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
-from grader.robot.pairing import Offset, RobotPair, movers
-from grader.robot.sampling import SINGLE, random_positions, singles
+from grader.robot.pairing import SINGLE, Offset, RobotPair, movers, random_positions, singles
 from grader.robot.selectors import selected_link
 from grader.text import counted, enumerated, quoted
 
@@ -105,7 +104,7 @@ ABOUT = {
     ),
 }
 
-Match = Literal["name", "order"]
+MatchBy = Literal["name", "order"]
 Samples = Annotated[
     int, Constraint("from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000})
 ]
@@ -120,7 +119,7 @@ def kinematics_match_reference(
     samples: Samples = 100,
     tolerance: NonNegative = 0.002,
     angle: NonNegative = 1.0,
-    match: Match = "name",
+    match: MatchBy = "name",
     relative_to: str = "",
 ) -> Outcome:
     """The links move as in the reference solution when the joints move within its limits.
@@ -173,7 +172,7 @@ def _paired(
     reference: Configuration,
     bases: tuple[str, str],
     pairs: Sequence[tuple[str, str]],
-    match: Match,
+    match: MatchBy,
 ) -> list[tuple[Joint, Joint]] | Outcome:
     """Return the joints of the robot that move links, each with that of the reference, or the failure to pair them."""
     own = movers(robot, bases[0], [link for link, _ in pairs])

@@ -18,12 +18,10 @@ from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted
 
 if TYPE_CHECKING:
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
     from grader.xacro.inventory import Definitions, Inventory
 
-ABOUT = {
-    "xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything),
-}
+ABOUT = {"xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)}
 
 _MAX_NAMED = 5  # names in a message
 
@@ -101,7 +99,7 @@ def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
 
 def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
 
     reading, urdf = submission.needed_urdf(), submission.urdf
     assert isinstance(urdf, Read)  # else there is none that is needed
@@ -114,9 +112,8 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     elif not file or submission.is_single:
         others = [path for path in submission.tree.files if path.lower().endswith(".xacro") and path != urdf.path]
         if others:
-            message = (
-                f"the graded URDF is {urdf.path}, which is no xacro, but there is {enumerated(others, _MAX_NAMED)}"
-            )
+            listed = enumerated(others, _MAX_NAMED)
+            message = f"the graded URDF is {urdf.path}, which is no xacro, but there is {listed}"
             raise NotDecided(message, "the graded URDF is no xacro, but the submission has xacro")
         if reading.root is None:
             raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
@@ -128,7 +125,7 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
 
 def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro in a file of the submission that the graded URDF does not include."""
-    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.expanded_source import ExpandedSource
 
     found = [path for path in submission.tree.files if _ends(path, file)]
     if len(found) > 1:
@@ -149,7 +146,8 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
     from grader.submission.surroundings import Surroundings
-    from grader.xacro.expansion import ExpandedSource, expand
+    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import expand
 
     packages = submission.packages or submission.neighbours
     surroundings = Surroundings(

@@ -9,7 +9,7 @@ from grader.cli.options import ArgOption, MaxSizeOption, PartOption, RubricOptio
 from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.report.formats import Format, render
 from grader.usecases.github import is_github_job, publish_refusal, publish_report
 from grader.usecases.grade import GradeRequest, grade_and_save
@@ -47,7 +47,7 @@ def grade(
         bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
     ] = False,
     hints: Annotated[
-        Level | None, typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit.")
+        HintLevel | None, typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit.")
     ] = None,
     fix: Annotated[Path | None, typer.Option(metavar="FILE|FOLDER", help=_FIX)] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,

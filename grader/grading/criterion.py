@@ -1,11 +1,15 @@
-"""A criterion: a row of a rubric."""
+"""The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty, ignored mutants."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from decimal import Decimal
 from typing import Any, NamedTuple
 
 from grader.checks.check import Check
+from grader.text import counted_points, format_points
+
+TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 
 
 class Carried(NamedTuple):
@@ -69,3 +73,71 @@ class Criterion:
     def is_given(self) -> bool:
         """Return whether every graded submission gets the points."""
         return self.adjustment is not None and self.adjustment.action == "full"
+
+
+class Worth(NamedTuple):
+    """The maximum of some criteria, and the points of extra credit in addition to it."""
+
+    points: Decimal
+    bonus: Decimal
+
+    @property
+    def text(self) -> str:
+        """The points in words: 14 points; 14 points and 5 bonus points; 5 bonus points."""
+        extra = f"{format_points(self.bonus)} bonus point{'' if self.bonus == 1 else 's'}" if self.bonus else ""
+        return " and ".join(filter(None, (counted_points(self.points) if self.points or not extra else "", extra)))
+
+    @property
+    def short(self) -> str:
+        """The points in short: 14; 14 + 5 bonus; 5 bonus."""
+        extra = f"{format_points(self.bonus)} bonus" if self.bonus else ""
+        return " + ".join(filter(None, (format_points(self.points) if self.points or not extra else "", extra)))
+
+
+def worth(criteria: Iterable[Criterion]) -> Worth:
+    """Return what criteria are worth together."""
+    points = bonus = Decimal(0)
+    for criterion in criteria:
+        points += criterion.maximum
+        bonus += criterion.points - criterion.maximum
+    return Worth(points, bonus)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the submission."""
+
+    id: str
+    title: str
+    needs: str = "urdf"
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling: "task 1 step 8"."""
+
+    id: str
+    part: str
+    title: str
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
+
+    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time
+    zone.
+    """
+
+    percent_per_day: Decimal
+    due: datetime | None = None
+    grace_minutes: Decimal = Decimal(0)
+    floor_percent: Decimal = Decimal(0)
+
+
+class Ignored(NamedTuple):
+    """Mutants of the reference that may lose nothing: patterns of their ids, and why."""
+
+    mutants: tuple[str, ...]
+    reason: str

@@ -144,11 +144,7 @@ class _Grading:
         robot = robot_of(self.submission.urdf)
         if missing.kind == "link" and robot is not None and is_another_robot(self._rubric, robot):
             missing = another_robot(self._rubric, robot)
-        first = self.missed.get((missing.kind, missing.name), criterion.id)
-        if (
-            criterion.adjustment is None
-        ):  # the mistake of an adjusted criterion does not count, so it excuses no other one
-            self.missed[missing.kind, missing.name] = first
+        first = self._first_miss(criterion, (missing.kind, missing.name))
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
@@ -158,6 +154,13 @@ class _Grading:
         return Result(
             criterion, explained(outcome, self._subjects.problems, self._subjects.source, missing.kind, missing.name)
         )
+
+    def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
+        """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other."""
+        first = self.missed.get(thing, criterion.id)
+        if criterion.adjustment is None:
+            self.missed[thing] = first
+        return first
 
 
 def _skipped(cause: str) -> Outcome:

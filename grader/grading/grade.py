@@ -1,17 +1,19 @@
-"""Grade a submission: the parts that are graded, the decided criteria, and the notes of the report."""
+"""Grade a submission: the parts that are graded, the decided criteria, the evidence, and the notes of the report."""
 
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
+from itertools import chain
 from typing import TYPE_CHECKING
 
+from grader.checks.manual import evidence_shown
 from grader.errors import InputError
+from grader.grading.criterion import Evidence
 from grader.grading.deciding import decide
-from grader.grading.evidence import evidence_of, not_searched
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import missing_work, robot_of
-from grader.grading.report import Report, Result
+from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.submission.submission import Submission
@@ -19,12 +21,15 @@ from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
 
 if TYPE_CHECKING:
+    from grader.documents.evidence_files import EvidenceFile
     from grader.robot.conventions import Convention
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
 _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
 )
+_MAX_PICTURES = 50
+_MAX_UNREAD = 4
 _MIN_OF_CONVENTION = 2  # criteria that a convention decides
 _NO_HINTS = "no hints were searched, because reading this robot takes too much work"
 _ELSEWHERE = "the graded URDF is outside the graded package"
@@ -40,25 +45,33 @@ def grade(
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_whole)
+    graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
-    results = tuple(decide(rubric, submission, wanted))
+    results = without_gifts(decide(rubric, submission, wanted), graded)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = evidence_of(rubric, submission, chosen if is_whole else ())
-    notes += not_searched(submission, evidence[0])
-    notes += _note_on_convention(rubric, submission, results)
+    evidence, other_pictures = _evidence_of(rubric, submission, chosen if is_whole else ())
+    notes += _note_on_unread(submission, evidence) + _note_on_convention(rubric, submission, results)
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
         notes += (_NO_HINTS,)
-    graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
-    return Report(graded, rubric, chosen, results, problems, *evidence, notes)
+    return Report(
+        submission=graded,
+        rubric=rubric,
+        parts=chosen,
+        results=results,
+        problems=problems,
+        evidence=evidence,
+        other_pictures=other_pictures,
+        notes=notes,
+    )
 
 
 def _chosen_parts(
     rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
-) -> tuple[tuple[str, ...], ...]:
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the graded parts, and notes for the report: what is not whole is graded only on parts that need a URDF."""
     for name in named:
         if rubric.part(name).needs != "urdf" and not is_whole:
@@ -74,6 +87,47 @@ def _chosen_parts(
         only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
         notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
     return chosen, tuple(notes)
+
+
+def _evidence_of(
+    rubric: Rubric, submission: Submission, chosen: Sequence[str]
+) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
+    """Return the evidence that the lab asks for, and the other pictures of the submission."""
+    wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
+    if not wanted:
+        return (), ()
+    from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
+    from grader.documents.evidence_files import evidence_files
+
+    graded = {evidence.id: _graded_names(evidence, rubric) for evidence in wanted}
+    # A file that may be meant for several pieces is listed where a criterion lists it, too.
+    ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
+    names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
+    found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
+    by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=True)}
+    found_files = tuple(EvidenceResult(evidence, *by_id[evidence.id]) for evidence in wanted)
+    listed = {file.path for one in found for file in (*one.files, *one.possible)}
+    others = [labelled for labelled in submission.labelled_files if labelled.file.path not in listed]
+    return found_files, evidence_files(others[:_MAX_PICTURES])
+
+
+def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+    """Return the names of the criteria about a piece of evidence: a file that counts for a criterion is not missing."""
+    shown = (row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown)
+    return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))
+
+
+def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> tuple[str, ...]:
+    """Return a note on the documents that may have evidence, but were not read."""
+    if all(found.files for found in evidence):
+        return ()
+    documents = submission.readable_documents
+    if documents is None:
+        return ()
+    from grader.documents.evidence import DOCUMENTS
+
+    unread = documents.named(DOCUMENTS)[1]
+    return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
 
 
 def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequence[Result]) -> tuple[str, ...]:

@@ -54,18 +54,18 @@ class GradedSubmission:
         """Return what a report says of a submission."""
         package = submission.package
         return cls(
-            submission.id,
-            submission.path,
-            submission.sha256,
-            GradedPackage(package.folder, package.name) if package is not None else None,
-            submission.other_candidates,
-            submission.ignored,
-            submission.has_urdf,
-            submission.verdict,
-            submission.is_single,
-            submission.unread,
-            lacks,
-            submission,
+            id=submission.id,
+            path=submission.path,
+            sha256=submission.sha256,
+            package=GradedPackage(package.folder, package.name) if package is not None else None,
+            other_candidates=submission.other_candidates,
+            ignored=submission.ignored,
+            has_urdf=submission.has_urdf,
+            verdict=submission.verdict,
+            is_single=submission.is_single,
+            unread=submission.unread,
+            lacks=lacks,
+            originals=submission,
         )
 
     def source(self, path: str) -> Source | None:

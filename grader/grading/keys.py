@@ -3,31 +3,14 @@
 from collections.abc import Mapping
 from datetime import datetime
 from decimal import Decimal
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
+from grader.grading.toml_rows import KeyTable
 
 MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
-
-
-class KeyTable(NamedTuple):
-    """A table of the rubric: what one is called, and its keys."""
-
-    name: str
-    keys: Mapping[str, TomlType]
-    required: tuple[str, ...] = ()
-
-    @property
-    def schema(self) -> dict[str, Any]:
-        """The JSON Schema of the table."""
-        return {
-            "type": "object",
-            "properties": {key: dict(value.schema) for key, value in self.keys.items()},
-            "required": list(self.required),
-            "additionalProperties": False,
-        }
 
 
 def _is_number(value: Any) -> bool:
@@ -48,13 +31,6 @@ def _range(least: int, most: int) -> Constraint:
     return Constraint(f"a number from {least} to {most}", lambda value: least <= value <= most, schema)
 
 
-def _rows(table: KeyTable) -> TomlType:
-    schema = {"type": "array", "items": table.schema, "minItems": 1}
-    return simple_type(
-        f"one or more [[{table.name}]] tables", schema, lambda value: value != [] and _is_list(value, dict)
-    )
-
-
 def _table(schema: Mapping[str, Any]) -> TomlType:
     return simple_type("a table", schema, lambda value: isinstance(value, dict))
 
@@ -66,8 +42,7 @@ _POINTS = constrained(
     _range(0, MAX_POINTS),
     Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
 )
-_PERCENT = constrained(_NUMBER, _range(0, 100))
-_MINUTES = constrained(_NUMBER, _range(0, MAX_POINTS))
+_PERCENT, _MINUTES = (constrained(_NUMBER, _range(0, most)) for most in (100, MAX_POINTS))
 _NAMES = simple_type(
     "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
 )
@@ -94,6 +69,7 @@ _FOLDERS = constrained(
         lambda names: all("/" not in name and any(map(str.isalnum, name)) for name in names),
     ),
 )
+_FALLBACK = toml_type(Literal["failed", "manual"])
 _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))
 
 PART = KeyTable(
@@ -204,7 +180,7 @@ IGNORE = KeyTable(
 )
 TEST = KeyTable(
     "test table",
-    {"ignore": described(_rows(IGNORE), "Mutants that may keep full marks, with the reason.")},
+    {"ignore": described(IGNORE.rows, "Mutants that may keep full marks, with the reason.")},
 )
 RUBRIC = KeyTable(
     "rubric",
@@ -218,19 +194,21 @@ RUBRIC = KeyTable(
         "points": described(_POINTS, "The sum of all points, which is then verified."),
         "answers": described(_ANSWERS, "The file with the model answers, in this file's folder or below."),
         "without_urdf": described(
-            toml_type(Literal["failed", "manual"]),
+            _FALLBACK,
             "The criteria of the URDF if there is evidence, but no URDF: failed (the default), or manual grading.",
         ),
         "without_package": described(
-            toml_type(Literal["failed", "manual"]),
+            _FALLBACK,
             "The criteria of the package if there is evidence, but no package: "
             "failed (the default), or manual grading.",
         ),
-        "hints": described(toml_type(Level), "How much hints tell students: none, place, cause (the default) or edit."),
+        "hints": described(
+            toml_type(HintLevel), "How much hints tell students: none, place, cause (the default) or edit."
+        ),
         "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),
-        "part": described(_rows(PART), "The parts of the lab, in the order of the report."),
-        "criterion": described(_rows(CRITERION), "The criteria, in the order in which they are checked."),
-        "evidence": described(_rows(EVIDENCE), "The pictures and documents that the lab asks for."),
+        "part": described(PART.rows, "The parts of the lab, in the order of the report."),
+        "criterion": described(CRITERION.rows, "The criteria, in the order in which they are checked."),
+        "evidence": described(EVIDENCE.rows, "The pictures and documents that the lab asks for."),
         "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
         "adjust": described(
             _table({"type": "object", "additionalProperties": ADJUSTMENT.schema}),

@@ -2,5 +2,5 @@
 
 from typing import Literal, get_args
 
-Level = Literal["none", "place", "cause", "edit"]
-LEVELS: tuple[Level, ...] = get_args(Level)  # each tells more than the one before
+HintLevel = Literal["none", "place", "cause", "edit"]
+LEVELS: tuple[HintLevel, ...] = get_args(HintLevel)  # each tells more than the one before

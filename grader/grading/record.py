@@ -8,7 +8,7 @@ from grader.checks.outcome import Outcome
 from grader.documents.evidence_files import EvidenceFile
 from grader.grading.criterion import Criterion
 from grader.grading.graded_submission import GradedPackage, GradedSubmission, Originals
-from grader.grading.report import EvidenceResult, Report, Result
+from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
 from grader.source import Location
@@ -46,7 +46,7 @@ def to_record(report: Report) -> str:
         "evidence": [
             {"evidence": one.evidence.id, "files": one.files, "possible": one.possible} for one in report.evidence
         ],
-        "others": report.other_pictures,
+        "other_pictures": report.other_pictures,
         "notes": report.notes,
     }
     return _ENCODER.encode(data)
@@ -57,23 +57,24 @@ def from_record(text: str, rubric: Rubric, originals: Originals | None = None) -
     data = json.loads(text)
     criteria = {criterion.id: criterion for criterion in rubric.criteria}
     evidence = {one.id: one for one in rubric.evidence}
+    submission = _submission(data["submission"], originals)
     return Report(
-        _submission(data["submission"], originals),
-        rubric,
-        tuple(data["parts"]),
-        tuple(_result(criteria, one) for one in data["results"]),
-        tuple(_problem(one) for one in data["problems"]),
-        tuple(
+        submission=submission,
+        rubric=rubric,
+        parts=tuple(data["parts"]),
+        results=without_gifts((_result(criteria, one) for one in data["results"]), submission),
+        problems=tuple(_problem(one) for one in data["problems"]),
+        evidence=tuple(
             EvidenceResult(evidence[one["evidence"]], _evidence_files(one["files"]), _evidence_files(one["possible"]))
             for one in data["evidence"]
         ),
-        _evidence_files(data["others"]),
-        tuple(data["notes"]),
-        data["version"],
+        other_pictures=_evidence_files(data["other_pictures"]),
+        notes=tuple(data["notes"]),
+        version=data["version"],
     )
 
 
-def submission_of(text: str) -> GradedSubmission:
+def graded_submission_from(text: str) -> GradedSubmission:
     """Return what a record says of its submission; the texts of its files are not in it.
 
     Only this part is decoded: all of it takes ten times as long, and some figures of a class read every record.

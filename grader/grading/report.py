@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import Criterion, Evidence
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.rubric import Evidence, Rubric
+from grader.grading.rubric import Rubric
 from grader.problems import Problem
-from grader.source import Edit, Location
+from grader.source import Edits, Location
 
 if TYPE_CHECKING:
     from grader.documents.evidence_files import EvidenceFile
 
+INCOMPLETE_HINTS = "the search for hints ended at its limit: there may be more"
 _NOTHING = Decimal(0)
 
 
@@ -40,14 +41,15 @@ class Hint(NamedTuple):
 
     `message` says it in a sentence, and `at` is where it is. `edits` is empty where the rubric does not want to show
     them. `action` is the change without names and lines of the submission: "negate the roll of the joint of
-    'right_wheel'".
+    'right_wheel'". `shown_by` is the criterion that shows the hint; the others that it fixes name that one.
     """
 
     message: str
     at: Location
     gains: Mapping[str, Decimal]  # criteria with their points
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     action: str = ""
+    shown_by: str = ""
 
 
 class Result(NamedTuple):
@@ -63,7 +65,7 @@ class Result(NamedTuple):
     traceback: str = ""
     manual_mark: ManualMark | None = None
     carried: str = ""
-    hints: tuple[Hint, ...] = ()
+    hint: Hint | None = None
     comment: ManualComment | None = None
 
     @property
@@ -126,8 +128,8 @@ class Report:
     """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
-    piece of evidence asks for. `notes` are sentences on how the submission was read. `score` is that of the criteria,
-    whatever the `grade` is.
+    piece of evidence asks for. `notes` are sentences on how the submission was read. `hints_complete` says whether the
+    search for hints ended before its budget did. `score` is that of the criteria, whatever the `grade` is.
     """
 
     submission: GradedSubmission
@@ -138,19 +140,14 @@ class Report:
     evidence: tuple[EvidenceResult, ...] = ()
     other_pictures: "tuple[EvidenceFile, ...]" = ()
     notes: tuple[str, ...] = ()
+    hints_complete: bool = True
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
 
-    def __post_init__(self) -> None:
-        """Give no points for an adjusted criterion of a submission that could not be read."""
-        if self.submission.unread:
-            results = (
-                result._replace(criterion=replace(result.criterion, adjustment=None))
-                if result.criterion.is_given
-                else result
-                for result in self.results
-            )
-            object.__setattr__(self, "results", tuple(results))
+    @property
+    def all_notes(self) -> tuple[str, ...]:
+        """The notes, and one on hints that are missing."""
+        return self.notes if self.hints_complete else (*self.notes, INCOMPLETE_HINTS)
 
     @property
     def score(self) -> Decimal:
@@ -206,15 +203,14 @@ class Report:
         return sum(result.outcome.status in statuses for result in self.results)
 
 
-class Fix(NamedTuple):
-    """The files of a submission that all proven edits change, None for one that is gone, and the report on the result.
-
-    `why_nothing` says why there are none.
-    """
-
-    files: Mapping[str, bytes | None]
-    report: Report
-    why_nothing: str = ""
+def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
+    """Return results in which no adjustment gives points to a submission that could not be read."""
+    return tuple(
+        result._replace(criterion=replace(result.criterion, adjustment=None))
+        if submission.unread and result.criterion.is_given
+        else result
+        for result in results
+    )
 
 
 def _sum(points: Iterable[Decimal]) -> Decimal:

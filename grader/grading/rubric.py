@@ -3,17 +3,16 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
-from grader.grading.criterion import Adjustment, Carried, Criterion
-from grader.grading.levels import Level
+from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
+from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.toml_rows import TomlRow
@@ -26,46 +25,6 @@ from grader.text import printable_path, shell_quoted
 _URDF = "robot.urdf"
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the submission."""
-
-    id: str
-    title: str
-    needs: str = "urdf"
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling: "task 1 step 8"."""
-
-    id: str
-    part: str
-    title: str
-    names: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Late:
-    """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
-
-    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time
-    zone.
-    """
-
-    percent_per_day: Decimal
-    due: datetime | None = None
-    grace_minutes: Decimal = Decimal(0)
-    floor_percent: Decimal = Decimal(0)
-
-
-class Ignored(NamedTuple):
-    """Mutants of the reference that may lose nothing: patterns of their ids, and why."""
-
-    mutants: tuple[str, ...]
-    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +52,7 @@ class Rubric:
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
     without_package: str = ""
-    hints: Level = "cause"
+    hints: HintLevel = "cause"
     ignored: tuple[Ignored, ...] = ()
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()
@@ -183,28 +142,29 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     valid = Validation(table)
     complain_of(valid.complaints, text, path)
     rubric = valid.rubric
-    criteria = zip(valid.criteria, valid.bound, valid.carried, strict=True)
+    found = enumerate(zip(valid.criteria, valid.bound, valid.carried, strict=True))
+    criteria = (_criterion(position, *rows, answers=answers) for position, rows in found)
     adjusted = {name: Adjustment(**row) for name, row in valid.adjusted.items()}
     return Rubric(
-        rubric["id"],
-        rubric["title"],
-        tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
-        tuple(_adjusted(_criterion(index, *found, answers=answers), adjusted) for index, found in enumerate(criteria)),
-        rubric.get("urdf", _URDF),
-        rubric.get("reference", ""),
-        data,
-        path,
-        rubric.get("package", ""),
-        tuple(Evidence(**row) for row in valid.evidence),
-        Late(**valid.late) if valid.late is not None else None,
-        rubric.get("answers", ""),
-        rubric.get("folders", ()),
-        rubric.get("without_urdf", ""),
-        rubric.get("without_package", ""),
-        rubric.get("hints", "cause"),
-        tuple(Ignored(**row) for row in valid.ignored),
-        _solution(rubric, path),
-        frozenset(_links(arguments for _, arguments in valid.bound)),
+        id=rubric["id"],
+        title=rubric["title"],
+        parts=tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
+        criteria=tuple(_adjusted(row, adjusted) for row in criteria),
+        urdf=rubric.get("urdf", _URDF),
+        reference=rubric.get("reference", ""),
+        data=data,
+        path=path,
+        package=rubric.get("package", ""),
+        evidence=tuple(Evidence(**row) for row in valid.evidence),
+        late=Late(**valid.late) if valid.late is not None else None,
+        answers=rubric.get("answers", ""),
+        folders=rubric.get("folders", ()),
+        without_urdf=rubric.get("without_urdf", ""),
+        without_package=rubric.get("without_package", ""),
+        hints=rubric.get("hints", "cause"),
+        ignored=tuple(Ignored(**row) for row in valid.ignored),
+        solution=_solution(rubric, path),
+        links=frozenset(_links(arguments for _, arguments in valid.bound)),
     )
 
 

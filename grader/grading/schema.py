@@ -7,7 +7,8 @@ from typing import Any
 from grader.checks.check import Check
 from grader.checks.registry import check_names, usable_check
 from grader.checks.toml_types import TomlType, described
-from grader.grading.keys import CRITERION, DEFAULTS, RUBRIC, KeyTable
+from grader.grading.keys import CRITERION, DEFAULTS, RUBRIC
+from grader.grading.toml_rows import KeyTable
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _Schema = dict[str, Any]

@@ -37,14 +37,16 @@ class Subjects:
             urdf = submission.urdf.reading
             self.problems, self.source = urdf.problems, urdf.source
             self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
-            self._known |= {"urdf": submission.urdf.loaded, "robot": self.robot}
+            self._known["urdf"] = submission.urdf.loaded
+        if self.robot is not None:
+            self._known["robot"] = self.robot
 
     def of(self, check: Check, at: Mapping[str, float]) -> list[object]:
         """Return what a check examines, with the joints of the robot at positions in degrees or metres.
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
-        found = [self._known.get(name) or self._missing(name) for name in check.examined]
+        found = [self._known[name] if name in self._known else self._missing(name) for name in check.examined]
         return [self._at(it, at) if at and isinstance(it, Configuration) and it is self.robot else it for it in found]
 
     def pose_text(self, at: Mapping[str, float]) -> str:

@@ -1,10 +1,9 @@
 """Read the tables of a rubric: values are converted, and every mistake is collected with the path of its key."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
-from grader.checks.toml_types import WrongValue
-from grader.grading.keys import KeyTable
+from grader.checks.toml_types import TomlType, WrongValue, simple_type
 from grader.grading.toml_file import TomlPath
 from grader.names import did_you_mean
 from grader.text import cut
@@ -15,6 +14,34 @@ _MAX_BITS = 1000  # of a whole number that is written out
 
 TomlRow = dict[str, Any]
 _NOTHING: Mapping[str, Any] = {}
+
+
+class KeyTable(NamedTuple):
+    """A table of the rubric: what one is called, and its keys."""
+
+    name: str
+    keys: Mapping[str, TomlType]
+    required: tuple[str, ...] = ()
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the table."""
+        return {
+            "type": "object",
+            "properties": {key: dict(value.schema) for key, value in self.keys.items()},
+            "required": list(self.required),
+            "additionalProperties": False,
+        }
+
+    @property
+    def rows(self) -> TomlType:
+        """The type of several such tables."""
+        schema = {"type": "array", "items": self.schema, "minItems": 1}
+        return simple_type(f"one or more [[{self.name}]] tables", schema, _are_tables)
+
+
+def _are_tables(value: Any) -> bool:
+    return isinstance(value, list) and value != [] and all(isinstance(item, dict) for item in value)
 
 
 class TomlRowReader:

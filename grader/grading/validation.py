@@ -9,25 +9,13 @@ from grader.checks.check import LINK_ARGUMENTS, Check
 from grader.checks.registry import check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import (
-    ADJUSTMENT,
-    CARRIED,
-    CRITERION,
-    DEFAULTS,
-    EVIDENCE,
-    IGNORE,
-    LATE,
-    PART,
-    RUBRIC,
-    TEST,
-    KeyTable,
-)
+from grader.grading import keys
+from grader.grading.criterion import TOTAL
 from grader.grading.toml_file import TomlPath
-from grader.grading.toml_rows import TomlRow, TomlRowReader, shown
+from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shown
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
-TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 _MAX_LISTED = 20  # names in one message
 
 BoundCheck = tuple[Check, TomlRow]
@@ -47,39 +35,43 @@ class Validation:
         self.bound: list[BoundCheck] = []
         self.carried: list[BoundCarried | None] = []
         self._find_check, self._check_names = cache(find_check), cache(check_names)
-        self.rubric = self._row((), table, RUBRIC)
+        self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
         self._default_arguments: dict[str, TomlRow] = {}
         self._read_defaults()
-        self.parts = self._rows("part", PART)
-        self.criteria = self._rows("criterion", CRITERION, self._defaults)
-        self.evidence = self._rows("evidence", EVIDENCE)
-        self.late = self._row(("late",), self.rubric["late"], LATE) if "late" in self.rubric else None
+        self.parts = self._rows("part", keys.PART)
+        self.criteria = self._rows("criterion", keys.CRITERION, self._defaults)
+        self.evidence = self._rows("evidence", keys.EVIDENCE)
+        self.late = self._row(("late",), self.rubric["late"], keys.LATE) if "late" in self.rubric else None
         self.ignored = [
-            self._row(("test", "ignore", index), row, IGNORE)
-            for index, row in enumerate(self._row(("test",), self.rubric.get("test", {}), TEST).get("ignore", ()))
+            self._row(("test", "ignore", index), row, keys.IGNORE)
+            for index, row in enumerate(self._row(("test",), self.rubric.get("test", {}), keys.TEST).get("ignore", ()))
         ]
         part_ids, positions = self._positions("part"), self._positions("criterion")
-        self._belongs(("defaults",), self._defaults, part_ids)
-        for index, row in enumerate(self.criteria):
-            where: TomlPath = ("criterion", index)
-            if "part" in self.rubric["criterion"][index]:
-                self._belongs(where, row, part_ids)
-            self._above((*where, "requires"), row, positions)
-            if (bound := self._arguments(where, row)) is not None:
-                self.bound.append(bound)
-                self._examines(where, row, bound[0])
-            self.carried.append(self._carried(where, row, positions))
-            self._is_reserved((*where, "id"), row)
+        self._check_part(("defaults",), self._defaults, part_ids)
+        self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
-            self._belongs(("evidence", index), row, part_ids)
+            self._check_part(("evidence", index), row, part_ids)
         self.adjusted = self._adjusted(positions)
-        self._totals()
+        self._check_totals()
 
     @property
     def complaints(self) -> list[tuple[TomlPath, str]]:
         """The mistakes, each with the path of its key."""
         return self._reader.complaints
+
+    def _check_criteria(self, part_ids: Collection[str], positions: Mapping[str, int]) -> None:
+        for index, row in enumerate(self.criteria):
+            where: TomlPath = ("criterion", index)
+            if "part" in self.rubric["criterion"][index]:
+                self._check_part(where, row, part_ids)
+            self._check_order((*where, "requires"), row, positions)
+            if (bound := self._arguments(where, row)) is not None:
+                self.bound.append(bound)
+                self._check_subject(where, row, bound[0])
+            self.carried.append(self._carried(where, row, positions))
+            if row.get("id") == TOTAL:
+                self._complain((*where, "id"), f"the id {TOTAL!r} is reserved for final marks: choose another one")
 
     def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))
@@ -87,7 +79,7 @@ class Validation:
 
     def _read_defaults(self) -> None:
         """Read the values that criteria have unless they give others, and the default arguments of checks."""
-        defaults = self._row(("defaults",), self.rubric.get("defaults", {}), DEFAULTS)
+        defaults = self._row(("defaults",), self.rubric.get("defaults", {}), keys.DEFAULTS)
         for name, given in defaults.pop("with", {}).items():
             where: TomlPath = ("defaults", "with", name)
             check = self._check(where, name)
@@ -98,7 +90,7 @@ class Validation:
                 self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
         self._defaults = defaults
 
-    def _examines(self, where: TomlPath, row: TomlRow, check: Check) -> None:
+    def _check_subject(self, where: TomlPath, row: TomlRow, check: Check) -> None:
         """Complain of a pose for a check that examines no robot, and of a comparison without a reference."""
         if "at" in row and "robot" not in check.examined:
             self._complain((*where, "at"), f"at poses the robot, but the check {check.name} does not examine it")
@@ -119,13 +111,13 @@ class Validation:
                 self._complain((key, index, "id"), f"the {key} {name!r} is already used")
         return positions
 
-    def _belongs(self, where: TomlPath, row: TomlRow, parts: Collection[str]) -> None:
+    def _check_part(self, where: TomlPath, row: TomlRow, parts: Collection[str]) -> None:
         part = row.get("part")
         if part is not None and part not in parts:
             hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
-    def _above(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
+    def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
         """Complain of ids in a list of a criterion, such as `requires`, that are not those of criteria above it."""
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
@@ -147,14 +139,10 @@ class Validation:
         if "carried" not in row:
             return None
         where = (*where, "carried")
-        carried = self._row(where, row["carried"], CARRIED)
-        self._above((*where, "from"), row, positions)
+        carried = self._row(where, row["carried"], keys.CARRIED)
+        self._check_order((*where, "from"), row, positions)
         bound = self._arguments(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None
-
-    def _is_reserved(self, where: TomlPath, row: TomlRow) -> None:
-        if row.get("id") == TOTAL:
-            self._complain(where, f"the id {TOTAL!r} is reserved for final marks: choose another one")
 
     def _adjusted(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""
@@ -166,7 +154,7 @@ class Validation:
                 message = f"the adjustment of {name} must be a table, not {shown(adjusted[name])}"
                 self._complain(("adjust", name), message)
         return {
-            name: self._row(("adjust", name), row, ADJUSTMENT)
+            name: self._row(("adjust", name), row, keys.ADJUSTMENT)
             for name, row in adjusted.items()
             if isinstance(row, dict)
         }
@@ -211,7 +199,7 @@ class Validation:
             self._complain(where, f"there is no check {name!r}{hint}")
         return check
 
-    def _totals(self) -> None:
+    def _check_totals(self) -> None:
         """Compare declared totals with the sums, where all points are valid."""
         if any("points" not in row for row in self.criteria):
             return

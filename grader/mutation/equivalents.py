@@ -12,7 +12,7 @@ from grader.grading.rubric import Rubric
 from grader.mutation import rewritings
 from grader.mutation.elements import Element as TextElement
 from grader.mutation.elements import elements
-from grader.mutation.rewritings import RewritingRules, Step, words_of_foreign
+from grader.mutation.rewritings import Rewriting, RewritingRules, words_of_foreign
 from grader.mutation.trees import Style, copied
 from grader.mutation.trial import names_in
 from grader.robot.model import Robot
@@ -73,7 +73,7 @@ def _inserted(text: str, content: str) -> str:
     return f"{text[:end]}{_NAMESPACE}{text[end : root.head_end]}{content}{text[root.head_end :]}"
 
 
-_OF_TREES: tuple[Step, ...] = (
+_OF_TREES: tuple[Rewriting, ...] = (
     rewritings.shuffle,
     rewritings.split_joints,
     rewritings.move_frames,

@@ -59,7 +59,7 @@ def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:
 
 
 _MAX_OTHERS = 500  # mutants that are tried only to find out whether a criterion is idle
-Step = Callable[[], None]  # shows that one more mutant is graded
+ShowStep = Callable[[], None]  # shows that one more mutant is graded
 
 
 class MutationTest:
@@ -76,7 +76,7 @@ class MutationTest:
         self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 
-    def run(self, step: Step) -> MutantResults:
+    def run(self, step: ShowStep) -> MutantResults:
         """Grade the mutants and return what became of them."""
         for mutant in self.chosen:
             step()

@@ -7,7 +7,7 @@ from itertools import chain
 from grader.mutation.elements import elements, text_of
 from grader.mutation.mutants import Mutant, MutantEdit, as_mutants, misspelt, mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
-from grader.package.edits.markup_trees import line_span, scalar_span
+from grader.package.edits.trees import line_span, scalar_span
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Source

@@ -6,7 +6,7 @@ from itertools import takewhile
 from math import atan2, degrees, hypot
 from typing import NamedTuple
 
-from grader.checks.outcome import SLACK, Outcome, Value
+from grader.checks.outcome import SLACK, Measured, Outcome
 from grader.grading.report import Report, Result
 from grader.mutation.mutants import Mutant
 from grader.robot.transforms import cross, dot, unit
@@ -56,7 +56,7 @@ def deviation(outcome: Outcome) -> float | None:
     return max(abs(one - other) for one, other in pairs)
 
 
-def _numbers(value: Value) -> tuple[float, ...]:
+def _numbers(value: Measured) -> tuple[float, ...]:
     values = value if isinstance(value, tuple) else (value,)
     numbers = tuple(one for one in values if isinstance(one, int | float) and not isinstance(one, bool))
     return numbers if len(numbers) == len(values) else ()

@@ -37,7 +37,7 @@ class RewritingRules(NamedTuple):
     may_move: Callable[[str], bool]
 
 
-Step = Callable[[Random, Element, RewritingRules], bool]
+Rewriting = Callable[[Random, Element, RewritingRules], bool]
 
 
 def shuffle(random: Random, tree: Element, around: RewritingRules) -> bool:

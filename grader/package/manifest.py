@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.package import catalogue
-from grader.package.xml_file import XmlFault, XmlFile
 from grader.problems import Problem
 from grader.source import Location, Source
+from grader.xml.parsing import XmlFault, XmlFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,14 +2,13 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, field
-from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError, MissingElement
 from grader.files.tree import Tree
-from grader.names import closest, did_you_mean
+from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
 from grader.text import enumerated, was_not_committed
@@ -27,7 +26,6 @@ NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
 _RVIZ_LIMIT = 512 * 1024
 _MAX_LAUNCHES = 10
-_MAX_NAMED = 3  # files that a message names
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
 
@@ -40,9 +38,7 @@ class Package:
     tree: Tree = field(repr=False)
     manifest: "Manifest | None" = field(repr=False)
     packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
-    generated: tuple[str, ...] = field(
-        default=(), repr=False
-    )  # files that a build has copied, by their paths in the submission
+    generated: tuple[str, ...] = field(default=(), repr=False)  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -135,19 +131,6 @@ class Package:
         folder = ", and there is no folder launch" if kind == "launch" and not has_folder else ""
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
         return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
-
-    def pattern_hint(self, pattern: str) -> str:
-        """Return the end of a message on a pattern that matches no file: why, or which files there are."""
-        if "\\" in pattern:
-            return ": separate the parts of a path with /, not with \\"
-        folder, _, name = pattern.rpartition("/")
-        if folder and folder not in self.tree.folders:
-            return f", because there is no folder {folder!r}{did_you_mean(folder, self.tree.folders)}"
-        files = [path for path in self.tree.files if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)]
-        files = files or [path for path in self.tree.files if path.rpartition("/")[0] == folder]
-        if not files:
-            return f", because the folder {folder!r} is empty"
-        return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"
 
     def launch_file(self, name: str) -> str | None:
         """Return the launch file of this name, in any language; else the one with the closest name; else any."""

@@ -1,7 +1,9 @@
 """The problems of a package's files, whatever they are graded on, with their codes and locations."""
 
 from collections.abc import Iterable, Iterator
+from fnmatch import fnmatchcase
 
+from grader.names import did_you_mean
 from grader.package import catalogue
 from grader.package.launch.model import Launch
 from grader.package.launch.places import is_of_one_machine, one_machine_only
@@ -9,8 +11,10 @@ from grader.package.package import RESOURCE_INDEX, Package
 from grader.package.setup_py import Setup
 from grader.problems import Problem
 from grader.source import Location
+from grader.text import enumerated
 
 _MAX_FILES = 5  # launch files, and RViz files
+_MAX_NAMED = 3  # files that a message names
 
 
 def package_problems(package: Package) -> tuple[Problem, ...]:
@@ -42,7 +46,7 @@ def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
     for stop in setup.stops:
         yield Problem(catalogue.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
     for empty in setup.empty:
-        message = f"the pattern {empty.pattern!r} in setup.py matches no file{package.pattern_hint(empty.pattern)}"
+        message = f"the pattern {empty.pattern!r} in setup.py matches no file{why_no_match(package, empty.pattern)}"
         yield Problem(catalogue.EMPTY_GLOB, message, setup.location(empty.at))
     for unknown in setup.unknown:
         message = f"cannot be determined statically: {unknown.reason}"
@@ -73,3 +77,17 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
             yield Problem(catalogue.HARD_CODED, one_machine_only(reference.path), reference.location)
+
+
+def why_no_match(package: Package, pattern: str) -> str:
+    """Return the end of a message on a pattern of setup.py that matches no file: why, or which files there are."""
+    if "\\" in pattern:
+        return ": separate the parts of a path with /, not with \\"
+    folder, _, name = pattern.rpartition("/")
+    if folder and folder not in package.tree.folders:
+        return f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
+    files = [path for path in package.tree.files if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)]
+    files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
+    if not files:
+        return f", because the folder {folder!r} is empty"
+    return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"

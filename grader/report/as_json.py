@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from grader.grading.report import Report, Result
+from grader.grading.report import Hint, Report, Result
 from grader.report.json_data import (
     ADJUSTMENT,
     COUNT,
@@ -63,6 +63,10 @@ def _feedback(result: Result) -> str:
     return result.criterion.feedback if is_failed else ""
 
 
+def _hints(result: Result) -> list[Hint]:
+    return [result.hint] if result.hint is not None else []
+
+
 _RESULT = Record(
     {
         **inner("criterion", each(TEXT, "id part title")),
@@ -76,7 +80,7 @@ _RESULT = Record(
         "carried": (nullable(TEXT), lambda result: result.carried or None),
         "location": (Maybe(_LOCATION), "outcome.location"),
         "feedback": (TEXT, _feedback),
-        "hints": Many(_HINT),
+        "hints": (Many(_HINT), _hints),
         **ADDITIONS.keys,
     },
     ADDITIONS.optional,
@@ -110,13 +114,14 @@ REPORT = Record(
         "grader": (GRADER, lambda report: {"version": report.version}),
         "rubric": RUBRIC,
         "submission": _SUBMISSION,
-        **each(array(TEXT), "notes parts"),
+        "notes": (array(TEXT), "all_notes"),
+        "parts": array(TEXT),
         **SCORE,
         **GRADE.keys,
         "problems": Many(PROBLEM),
         "results": Many(_RESULT),
         "evidence": (Many(_EVIDENCE), "evidence"),
-        "other_pictures": (Many(_EXHIBIT), "other_pictures"),
+        "other_pictures": Many(_EXHIBIT),
     },
     GRADE.optional,
 )

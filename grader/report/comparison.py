@@ -31,7 +31,7 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
 
 def hinted_texts(report: Report) -> dict[str, str]:
     """Return the text of each file that hints change, as it is now."""
-    paths = {edit.path for result in report.results for hint in result.hints for edit in hint.edits}
+    paths = {edit.path for result in report.results if result.hint is not None for edit in result.hint.edits}
     sources = {path: report.submission.source(path) for path in paths}
     return {path: source.text for path, source in sources.items() if source is not None}
 
@@ -42,13 +42,13 @@ def applied_hints(before: Report, texts: Mapping[str, str], after: Report) -> li
     `texts` are those of the files before.
     """
     passed = {result.criterion.id for result in after.results if result.outcome.status == "passed"}
-    hints = dict.fromkeys(
+    hints = [result.hint for result in before.results if result.hint is not None]
+    applied = dict.fromkeys(
         hint.message
-        for result in before.results
-        for hint in result.hints
+        for hint in hints
         if hint.edits and passed.issuperset(hint.gains) and _is_applied(hint.edits, texts, after)
     )
-    return [printable(f"hint applied: {message}") for message in hints]
+    return [printable(f"hint applied: {message}") for message in applied]
 
 
 def _is_applied(edits: Sequence[Edit], texts: Mapping[str, str], after: Report) -> bool:

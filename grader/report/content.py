@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from decimal import Decimal
 from itertools import groupby
 
+from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
-from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report.locations import location_text
 from grader.report.order import earned_text, failures, pending_automatic, sum_text
@@ -119,7 +119,7 @@ def pending_points(report: Report) -> str:
 
 def notes(report: Report) -> list[str]:
     """Return notes on how the submission was read."""
-    return [f"Note: {printable(note)}" for note in report.notes]
+    return [f"Note: {printable(note)}" for note in report.all_notes]
 
 
 def first_ignored(report: Report) -> list[str]:

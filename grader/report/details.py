@@ -27,7 +27,7 @@ class Details(NamedTuple):
 
     `comment` is a grader's comment without points. `answer` is the student's answer to a question, line by line, and
     `model_answer` the instructor's, if the rubric was loaded with its answers. `location` is where to look and
-    `expected` what should be, if the criterion failed; `hints` are changes that make it pass, in printable sentences.
+    `expected` what should be, if the criterion failed; `hint` is a change that makes it pass, in printable sentences.
     """
 
     sentences: tuple[str, ...]
@@ -36,7 +36,7 @@ class Details(NamedTuple):
     location: Location | None
     feedback: str
     expected: str
-    hints: tuple[Hint, ...]
+    hint: Hint | None
     comment: str
 
     @property
@@ -46,8 +46,8 @@ class Details(NamedTuple):
 
     @property
     def advice(self) -> tuple[str, ...]:
-        """What to do: the hints, or the rubric's feedback where there is none."""
-        return tuple(hint.message for hint in self.hints) or tuple(filter(None, [self.feedback]))
+        """What to do: the hint, or the rubric's feedback where there is none."""
+        return tuple(filter(None, [self.hint.message if self.hint is not None else self.feedback]))
 
 
 def result_details(result: Result, report: Report) -> Details:
@@ -65,7 +65,7 @@ def result_details(result: Result, report: Report) -> Details:
         _one_line(criterion.feedback) if is_mistake and has_subject else "",
         # The title of a criterion is never stated alone, because it would read as a fact.
         f"Passes when: {sentence(criterion.title)}" if is_failure(result) and not is_asked else "",
-        _hints(result, report) if is_mistake else (),
+        _hint(result, report) if is_mistake else None,
         sentence(f"Comment{by_name(comment.by)}: {_one_line(comment.text)}") if comment is not None else "",
     )
 
@@ -110,11 +110,13 @@ def sentence(message: str) -> str:
     return text if text.endswith((".", "?")) else f"{text}."
 
 
-def _hints(result: Result, report: Report) -> tuple[Hint, ...]:
-    """Return the hints of a criterion, which say what they fix besides; one that an earlier failure has names that."""
-    found = (failure for failure in failures(report) if failure.id == result.criterion.id) if result.hints else ()
-    full = (hint_of(failure, hint) for failure in found for hint in result.hints)
-    return tuple(hint._replace(message=sentence(hint.message)) for hint in full)
+def _hint(result: Result, report: Report) -> Hint | None:
+    """Return the hint of a criterion, which says what it fixes besides; one that another failure shows names that."""
+    if result.hint is None:
+        return None
+    failure = next(failure for failure in failures(report) if failure.id == result.criterion.id)
+    hint = hint_of(failure, result.hint)
+    return hint._replace(message=sentence(hint.message))
 
 
 def hint_of(failure: FailedCriterion, hint: Hint) -> Hint:

@@ -94,7 +94,7 @@ def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:
         texts = [block(console, Text(": ").join((head, message)), INDENT, Text(), most)]
     texts += _excerpt(details, page) if is_first else ()
     texts += [block(console, Text(details.comment, "bold"), INDENT)] if details.comment else []
-    texts += _hints(failure, details, page)
+    texts += _hint(failure, details, page)
     reasons = [*_reasons(details, failure.result, page)] if not page.is_tight or is_first else []
     page.printed.update(text.plain for text in reasons)
     reasons += () if page.is_tight else _consequence(failure)
@@ -131,17 +131,19 @@ def _excerpt(details: Details, page: Page) -> Iterator[Text]:
         yield excerpt_block(page.console, source, where, INDENT, is_underlined=not page.is_tight)
 
 
-def _hints(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Text]:
-    """Yield the first hint, without its edits if it is long; on a full page all hints, with the lines that change."""
-    for hint in details.hints[: None if page.is_verbose else 1]:
-        whole = block(page.console, Text(hint.message, "bold"), INDENT)
-        is_long = not page.is_verbose and hint.action and whole.plain.count("\n") + 1 >= _MAX_ROWS
-        if is_long:
-            short = hint_of(failure, hint._replace(message=f"{sentence(hint.action)} --verbose shows the edits."))
-            whole = block(page.console, Text(short.message, "bold"), INDENT)
-        yield whole
-        for line in diff_lines(hint.edits, page.report.submission.source) if page.is_verbose else ():
-            yield block(page.console, Text(line, _DIFF_STYLES.get(line[0], "dim")), 2 * INDENT)
+def _hint(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Text]:
+    """Yield the hint, without its edits if it is long; on a full page with the lines that change."""
+    hint = details.hint
+    if hint is None:
+        return
+    whole = block(page.console, Text(hint.message, "bold"), INDENT)
+    is_long = not page.is_verbose and hint.action and whole.plain.count("\n") + 1 >= _MAX_ROWS
+    if is_long:
+        short = hint_of(failure, hint._replace(message=f"{sentence(hint.action)} --verbose shows the edits."))
+        whole = block(page.console, Text(short.message, "bold"), INDENT)
+    yield whole
+    for line in diff_lines(hint.edits, page.report.submission.source) if page.is_verbose else ():
+        yield block(page.console, Text(line, _DIFF_STYLES.get(line[0], "dim")), 2 * INDENT)
 
 
 def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
@@ -149,7 +151,7 @@ def _reasons(details: Details, result: Result, page: Page) -> Iterator[Text]:
 
     With room for it, both.
     """
-    if details.feedback and details.feedback not in page.printed and (page.is_verbose or not details.hints):
+    if details.feedback and details.feedback not in page.printed and (page.is_verbose or details.hint is None):
         yield Text(details.feedback, "italic")
     is_clear = result.outcome.expected is not None or (page.is_tight and bool(details.advice))
     if details.expected and (page.room is Room.EVERYTHING or not is_clear):

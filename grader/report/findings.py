@@ -32,7 +32,7 @@ class Finding(NamedTuple):
     `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost`
     includes the points of criteria that are skipped because of it. `location` is None where the whole submission is
     meant; `fallback` is the location for formats that require one. `fingerprint` does not depend on the number of the
-    line. `hints` are changes that fix it.
+    line. `hint` is a change that fixes it.
     """
 
     rule: str
@@ -41,7 +41,7 @@ class Finding(NamedTuple):
     location: RepositoryLocation | None
     fallback: RepositoryLocation
     lost: Decimal = Decimal(0)
-    hints: tuple[Hint, ...] = ()
+    hint: Hint | None = None
     fingerprint: str = ""
 
     @property
@@ -84,7 +84,7 @@ def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf,
     location = in_repository(where, source_of(where.path), base) if where is not None else None
     level: Level = "note" if result.why_given or is_bonus else "error"
     fallback = location or _fallback(report, base, result)
-    return Finding(failure.id, level, _text(lines, where, base), location, fallback, failure.lost, details.hints)
+    return Finding(failure.id, level, _text(lines, where, base), location, fallback, failure.lost, details.hint)
 
 
 def _undecided_finding(report: Report, base: Base) -> Iterator[Finding]:

@@ -151,11 +151,12 @@ def _details(details: Details, report: Report, shown: set[str], *, answers: bool
         if lines:
             yield f"{title}:"
             yield fence(lines)
-    for hint in details.hints:
+    hint = details.hint
+    if hint is not None:
         yield f"**{escape(hint.message)}**"
         if hint.edits:
             yield fence(diff_lines(hint.edits, report.submission.source), "diff")
-    if details.feedback and not details.hints and details.feedback not in shown:
+    elif details.feedback and details.feedback not in shown:
         shown.add(details.feedback)
         yield f"*{escape(details.feedback)}*"
 

@@ -6,8 +6,8 @@ from itertools import groupby
 from typing import NamedTuple, TypeVar
 
 from grader.checks.manual import MANUAL_CHECKS
+from grader.grading.criterion import worth
 from grader.grading.report import Report, Result
-from grader.grading.worth import worth
 from grader.text import format_points, signed_points
 
 T = TypeVar("T")
@@ -165,19 +165,18 @@ def failures(report: Report) -> tuple[FailedCriterion, ...]:
 
 def _edit(failure: FailedCriterion) -> str:
     """Return what failures have in common that one edit fixes."""
-    hint = next(iter(failure.result.hints), None)
-    return repr((hint.message, hint.at, [*hint.gains])) if hint and not failure.result.why_given else failure.id
+    hint = failure.result.hint
+    return hint.shown_by if hint is not None and not failure.result.why_given else failure.id
 
 
 def _together(some: tuple[FailedCriterion, ...]) -> tuple[FailedCriterion, ...]:
-    """Return failures that one edit fixes: at the edited line first, then of the file, then the costliest."""
+    """Return failures that one edit fixes: the one that shows the hint first, then those of the file, the costliest."""
 
     def rank(failure: FailedCriterion) -> tuple[bool, bool, Decimal]:
-        where, at = failure.result.outcome.location, failure.result.hints[0].at
-        is_there = where is not None and (where.path, where.line) == (at.path, at.line)
-        return not is_there, failure.result.criterion.check.subject != "urdf", -failure.lost
+        is_shown = failure.result.hint is not None and failure.result.hint.shown_by == failure.id
+        return not is_shown, failure.result.criterion.check.subject != "urdf", -failure.lost
 
-    first, *also = sorted(some, key=rank) if len(some) > 1 else some
+    first, *also = sorted(some, key=rank)
     return first._replace(also=tuple(also)), *(one._replace(first=first.id) for one in also)
 
 

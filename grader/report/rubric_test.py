@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from os.path import commonprefix
 
 from grader import __version__
-from grader.grading.worth import worth
+from grader.grading.criterion import worth
 from grader.mutation.result import Loss, Margin, MutantResults, RubricTest, Survivor
 from grader.report.as_json import SCORE
 from grader.report.json_data import (

@@ -7,9 +7,8 @@ from grader.checks.check import Check
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
-from grader.grading.rubric import Part, Rubric
-from grader.grading.worth import worth
+from grader.grading.criterion import Criterion, Part, worth
+from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind

@@ -68,7 +68,7 @@ def _describe(name: str, title: str, text: str, advice: str, level: str, command
 
 
 def _result(finding: Finding, index: int, base: Base) -> dict[str, Any]:
-    fixes = [_fix(hint, base) for hint in finding.hints if _is_replacement(hint, base)]
+    hint = finding.hint
     cost = {"properties": {"points": exact(finding.lost)}} if finding.lost else {}
     return {
         "ruleId": finding.rule,
@@ -77,7 +77,7 @@ def _result(finding: Finding, index: int, base: Base) -> dict[str, Any]:
         "message": {"text": _plain(finding.text)},
         "locations": [{"physicalLocation": _physical(finding.location or finding.fallback)}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
-        **({"fixes": fixes} if fixes else {}),
+        **({"fixes": [_fix(hint, base)]} if hint is not None and _is_replacement(hint, base) else {}),
         **cost,
     }
 

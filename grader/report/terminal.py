@@ -7,8 +7,8 @@ from itertools import groupby
 from rich.console import Console
 from rich.text import Text
 
+from grader.grading.criterion import worth
 from grader.grading.report import Report
-from grader.grading.worth import worth
 from grader.problems import Problem
 from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped

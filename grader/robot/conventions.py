@@ -1,4 +1,8 @@
-"""The frames of a whole robot: whether everything in it is turned or moved alike, in comparison with a reference."""
+"""The frames of a whole robot: whether everything in it is turned or moved alike, in comparison with a reference.
+
+It finds any quarter turn and any move, for a note that each report has, without hints too. `robot.edits.conventions`
+makes the edits of the few conventions that can be corrected in the text, and the units.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -5,8 +5,8 @@ from pathlib import Path
 from grader.bundle.gradescope import autograder_zip
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import GraderError
+from grader.grading.criterion import worth
 from grader.grading.rubric import Rubric, load_rubric
-from grader.grading.worth import worth
 from grader.text import format_points, printable
 from grader.usecases.rubrics import summary
 from grader.usecases.writing import save_bytes

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
 from grader.files.names import ROBOT_ENDINGS
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.text import printable, shell_quoted
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
@@ -21,7 +21,8 @@ from grader.usecases.terminal import ShowFile, Warn
 from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
-    from grader.grading.report import Fix, Report
+    from grader.grading.hints.hinting import Fix
+    from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
@@ -53,7 +54,7 @@ class GradeRequest:
     answers: bool = False
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
     verbose: bool = False
-    hints: Level | None = None  # the most that hints tell; None for what the rubric allows
+    hints: HintLevel | None = None  # the most that hints tell; None for what the rubric allows
     fix: Path | None = None  # where to write the submission with the edits of all hints
 
     @property

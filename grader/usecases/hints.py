@@ -6,10 +6,9 @@ from pathlib import Path
 
 from grader.errors import InputError, OutOfTime
 from grader.files.names import ROBOT_ENDINGS
-from grader.grading.hints.hinting import fixed, hinted
-from grader.grading.hints.record import INCOMPLETE
-from grader.grading.levels import LEVELS, Level
-from grader.grading.report import Fix, Report
+from grader.grading.hints.hinting import Fix, fixed, hinted
+from grader.grading.levels import LEVELS, HintLevel
+from grader.grading.report import INCOMPLETE_HINTS, Report
 from grader.submission.submission import Submission
 from grader.text import enumerated, format_points, printable, printable_path
 from grader.usecases.terminal import Warn
@@ -20,7 +19,7 @@ _FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
 
 
 def add_hints(
-    report: Report, submission: Submission, wanted: Level | None, warn: Warn, *, is_fixed: bool
+    report: Report, submission: Submission, wanted: HintLevel | None, warn: Warn, *, is_fixed: bool
 ) -> tuple[Report, Fix]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are to be written.
 
@@ -85,7 +84,7 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapp
             make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
-    gone += [f"; {INCOMPLETE}"] * (INCOMPLETE in report.notes)
+    gone += [f"; {INCOMPLETE_HINTS}"] * (not report.hints_complete)
     names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
     before, after = format_points(report.score), format_points(fix.report.score)
     score = f"{before} -> {after} of {format_points(report.max_score)} points"

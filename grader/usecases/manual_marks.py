@@ -23,8 +23,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import Student
 from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
-from grader.grading.validation import TOTAL
+from grader.grading.criterion import TOTAL, Criterion
 from grader.report.review import mark_text
 from grader.text import counted_points, enumerated, format_points, printable
 from grader.usecases.terminal import Warn

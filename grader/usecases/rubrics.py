@@ -52,7 +52,7 @@ def summary(rubric: "Rubric") -> str:
 
 
 def _size(rubric: "Rubric") -> str:
-    from grader.grading.worth import worth
+    from grader.grading.criterion import worth
 
     return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
 

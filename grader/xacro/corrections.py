@@ -7,9 +7,9 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader import markup
-from grader.edits import text_of, with_attribute, with_child, with_sibling
+from grader.edits import Proposal, text_of, with_attribute, with_child, with_sibling
 from grader.names import closest
-from grader.source import Correction, Edit, Source
+from grader.source import Edit, Edits, Source
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace, UnknownName, XacroFails
 
@@ -19,7 +19,6 @@ _DEFINING = ("property", "arg", "macro")
 _UNKNOWN = "a name that xacro does not know"
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
-Edits = tuple[Edit, ...]
 Calls = Mapping[tuple[str, int], tuple[str, ScopePlace, Mapping[tuple[str, int], ScopePlace]]]
 
 
@@ -41,23 +40,23 @@ class Corrector:
 
     def corrections(
         self, refusals: Sequence[Refusal], names: Sequence[str], numbers: Sequence[str]
-    ) -> Iterator[Correction]:
+    ) -> Iterator[Proposal]:
         """Yield the edits that may correct refusals; `names` and `numbers` are those that a reference has."""
         for refusal in refusals[:_MAX_NAMES]:
             unknown, lacking = refusal.error.unknown, refusal.error.lacking
             if unknown is not None:
                 for node in (it for tag in _DEFINING for it in self._nodes(tag) if _name_of(it) == unknown.name):
                     edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
-                    yield Correction(edits, f"<{node.tag}> without xacro:", f"write <xacro:{node.tag}>")
+                    yield Proposal(edits, f"<{node.tag}> without xacro:", f"write <xacro:{node.tag}>")
                 for edits in self._respelled(refusal.place, refusal.attribute, unknown):
-                    yield Correction(edits, _UNKNOWN, "correct the name")
+                    yield Proposal(edits, _UNKNOWN, "correct the name")
                 source, start = refusal.place.source.element(0)
                 for xml, cause, action in self._added(source.path, unknown, numbers):
-                    yield Correction((with_child(source, start, xml),), cause, action)
+                    yield Proposal((with_child(source, start, xml),), cause, action)
             what = " and ".join(lacking)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
                 edits = self._given(refusal.place, lacking, value)
-                yield Correction(edits, f"this call gives no value for {what}", f"give {what} a value")
+                yield Proposal(edits, f"this call gives no value for {what}", f"give {what} a value")
         yield from self._calls_of_macros(names)
 
     def _respelled(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
@@ -128,7 +127,7 @@ class Corrector:
         ends = [markup.name_end(source.text, start), *(it.end for it in markup.attributes(source.text, start))]
         return (source.edit(ends[-1], ends[-1], added),)
 
-    def _calls_of_macros(self, names: Sequence[str]) -> Iterator[Correction]:
+    def _calls_of_macros(self, names: Sequence[str]) -> Iterator[Proposal]:
         """Call a macro that is never called; write the prefix of a call that lacks it."""
         called = {name for name, _, _ in self._calls.values()}
         *_, last = [None, *next(iter(self._documents.values())).elements]
@@ -137,13 +136,13 @@ class Corrector:
             cause = f"a call of the macro {name} without xacro:"
             for plain in self._nodes(name):
                 edits = tuple(_tags(plain.place, name, f"xacro:{name}"))
-                yield Correction(edits, cause, "write xacro: before the name of the macro")
+                yield Proposal(edits, cause, "write xacro: before the name of the macro")
             needed = [it for it in node.attributes.get("params", "").split() if "=" not in it]
             is_simple = len(needed) <= 1 and not any(it.startswith("*") for it in needed)
             for value in (names if needed else [""]) if last and is_simple and name not in called else ():
                 given = "".join(f' {it}="{value}"' for it in needed)
                 edit = with_sibling(*last.place.source.element(last.place.tag), f"<xacro:{name}{given}/>")
-                yield Correction((edit,), f"the macro {name} is never called", f"call the macro {name}")
+                yield Proposal((edit,), f"the macro {name} is never called", f"call the macro {name}")
 
     def _nodes(self, tag: str = "") -> Iterator[XacroNode]:
         for document in self._documents.values():
@@ -183,11 +182,11 @@ def _tags(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
             yield source.edit(start + closing.start(), end, f"</{new}>")
 
 
-def well_formed(source: Source) -> Iterator[Correction]:
+def well_formed(source: Source) -> Iterator[Proposal]:
     """Yield the edit that declares the prefix xacro."""
     text = source.text
     if "xmlns:xacro" not in text and "xacro:" in text:
         _, start = source.element(0)
         end = markup.name_end(text, start)
         edit = source.edit(start, end, text[start:end] + _NAMESPACE)
-        yield Correction((edit,), "the prefix xacro, which is not declared", "declare the prefix xacro")
+        yield Proposal((edit,), "the prefix xacro, which is not declared", "declare the prefix xacro")

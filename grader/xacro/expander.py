@@ -8,12 +8,11 @@ from grader.source import Location
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
-from grader.xacro.functions import document_functions
+from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
-from grader.xacro.yaml_values import read_yaml_values
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged

@@ -72,8 +72,8 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
     text = _decoded(data, budget)
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
-    assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.assumed]
-    return _nodes(parse_xml(recovered.xml), source, budget) if recovered.xml else None, assumed
+    assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.differences]
+    return _nodes(parse_xml(recovered.recovered), source, budget) if recovered.recovered else None, assumed
 
 
 def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:

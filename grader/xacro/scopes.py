@@ -10,7 +10,7 @@ from grader.static_python.closed_values import ExpressionFails, Undetermined, Va
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
 Evaluate = Callable[[str, "XacroScope"], Value]
-Report = Callable[[ExpressionFails | Undetermined, "ScopePlace", str], object]
+ReportFailure = Callable[[ExpressionFails | Undetermined, "ScopePlace", str], object]
 
 
 _MAX_CALLS = 20  # that a location names
@@ -143,7 +143,7 @@ class XacroScope:
             scope.properties.pop(name, None)
             scope = scope.parent
 
-    def value(self, name: str, evaluate: Evaluate, report: Report) -> Value:
+    def value(self, name: str, evaluate: Evaluate, report: ReportFailure) -> Value:
         """Return the value of a name that this scope binds itself."""
         found = self.properties[name]
         if found.failure is not None:

@@ -13,8 +13,8 @@ from grader.xacro.scopes import (
     Definition,
     Key,
     Known,
-    Report,
     Reported,
+    ReportFailure,
     ScopePlace,
     UnknownName,
     XacroFails,
@@ -46,7 +46,7 @@ class Texts:
         self,
         arguments: dict[str, str | None],
         budget: Budget,
-        report: Report,
+        report: ReportFailure,
         own: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from grader import markup
-from grader.source import Edit, Source
+from grader.source import Edit, Edits, Source
 from grader.xacro.scopes import Definition, Key, ScopePlace, XacroScope
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
@@ -32,6 +32,15 @@ class Written(NamedTuple):
         return self._replace(start=self.start + start, text=self.text[start:end])
 
 
+class Use(NamedTuple):
+    """A use of a text: the scope in which it is evaluated, what it is and should be, and the macro calls around it."""
+
+    scope: XacroScope
+    old: str
+    new: str
+    calls: tuple[tuple[str, ScopePlace], ...] = ()
+
+
 class TextChange(NamedTuple):
     """A text that becomes another one."""
 
@@ -39,7 +48,7 @@ class TextChange(NamedTuple):
     new: str
 
 
-def edits_of(changes: Iterable[TextChange]) -> tuple[Edit, ...] | None:
+def edits_of(changes: Iterable[TextChange]) -> Edits | None:
     """Return the edits that make changes, one for each attribute; None where two of them overlap."""
     attributes: dict[tuple[str, int], list[TextChange]] = {}
     for change in dict.fromkeys(changes):

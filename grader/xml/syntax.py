@@ -6,7 +6,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader.edits import Proposal, composed
-from grader.source import Edit, Source
+from grader.source import Edits, Source
 from grader.xml.operations import WAYS, Change, Operation, Operations
 from grader.xml.pieces import ParserMark, PieceScan, Rules, scan
 
@@ -39,7 +39,7 @@ def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Pro
 
 
 def _joined(source: Source, ways: list[Way]) -> Proposal:
-    edits: tuple[Edit, ...] = ()
+    edits: Edits = ()
     text = source.text
     for way in ways:
         own = Source(source.path, text)

@@ -2,15 +2,120 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import NamedTuple
 
-from grader.xml.element_values import FoundElement, Scalar, are_there, attribute, is_same, steps_of, text_of, texts_at
 from grader.xml.parsing import Element, Unresolved
 
-Value = Scalar | list[Scalar]
+Scalar = str | float | bool
+
+_MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
+_SLACK = 1e-12  # a tolerance includes its end
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+AttributeValue = Scalar | list[Scalar]
 
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
+
+
+class FoundElement(NamedTuple):
+    """A text in an element: that of an attribute, or the element's own."""
+
+    text: str
+    element: Element
+    attribute: str | None = None
+
+
+def name_of(element: Element) -> str:
+    """Return the name of an element as it is written, with its prefix."""
+    return _written(str(element.tag), element)
+
+
+def _written(name: str, element: Element) -> str:
+    space, _, local = name.removeprefix("{").rpartition("}")
+    if not space:
+        return local
+    prefix = next((prefix for prefix, uri in element.nsmap.items() if prefix and uri == space), "")
+    return f"{space if not prefix or _MADE_UP.fullmatch(prefix) else prefix}:{local}"
+
+
+def steps_of(path: str) -> list[str]:
+    """Return the names in a slash-separated path; an empty path is the element itself."""
+    return [step for step in path.split("/") if step not in ("", ".")]
+
+
+def elements_at(element: Element, steps: Sequence[str]) -> list[Element]:
+    """Return the elements at a path in an element, in document order."""
+    found = [element]
+    for step in steps:
+        found = [child for parent in found for child in parent if name_of(child) == step]
+    return found
+
+
+def texts_at(element: Element, path: str) -> list[FoundElement]:
+    """Return the texts at a path in an element: of attributes where it ends with @name, else of elements."""
+    *steps, last = steps_of(path) or ["."]
+    if not last.startswith("@"):
+        return [FoundElement(_text(found), found) for found in elements_at(element, steps_of(path))]
+    values = ((found, attribute(found, last[1:])) for found in elements_at(element, steps))
+    return [FoundElement(value, found, last[1:]) for found, value in values if value is not None]
+
+
+def attribute(element: Element, name: str) -> str | None:
+    """Return the value of an attribute by its name as it is written; None where the element has none."""
+    plain = element.get(name)
+    if plain is not None or ":" not in name:
+        return plain
+    return next((str(value) for key, value in element.items() if _written(str(key), element) == name), None)
+
+
+def _text(element: Element) -> str:
+    return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
+
+
+def is_same(text: str, expected: Scalar, tolerance: float) -> bool:
+    """Return whether a text is an expected value: numbers and lists are compared as numbers, true and 1 are equal."""
+    wanted = text_of(expected)
+    one, other = text.strip().lower(), wanted.strip().lower()
+    if "true" in (one, other) or "false" in (one, other):
+        return one == other if one not in _BOOLEANS else _BOOLEANS[one] == _BOOLEANS.get(other)
+    actual, numbers = numbers_of(text), numbers_of(wanted)
+    if actual and numbers:
+        pairs = zip(actual, numbers, strict=False)
+        return len(actual) == len(numbers) and all(abs(a - b) <= tolerance + _SLACK for a, b in pairs)
+    return text.split() == wanted.split()
+
+
+def text_of(value: Scalar) -> str:
+    """Return a value as XML writes it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value if isinstance(value, str) else f"{value:.12g}"
+
+
+def numbers_of(text: str) -> list[float]:
+    """Return the numbers that a text consists of; nothing for any other text."""
+    try:
+        values = [float(piece) for piece in text.split()]
+    except ValueError:
+        return []
+    return values if "_" not in text and all(map(isfinite, values)) else []  # Python reads 1_000 as a number
+
+
+def are_there(texts: Sequence[str], expected: Sequence[Scalar], tolerance: float) -> bool:
+    """Return whether each expected value is a different one of the texts, in any order."""
+    taken: dict[int, int] = {}  # the text of each index is for the expected value of an index
+
+    def place(wanted: int, tried: set[int]) -> bool:
+        for index, text in enumerate(texts):
+            if index not in tried and is_same(text, expected[wanted], tolerance):
+                tried.add(index)
+                if index not in taken or place(taken[index], tried):
+                    taken[index] = wanted
+                    return True
+        return False
+
+    return all(place(wanted, set()) for wanted in range(len(expected)))
 
 
 class WantedElement(NamedTuple):
@@ -19,7 +124,7 @@ class WantedElement(NamedTuple):
     tag: str
     attributes: Mapping[str, Scalar]
     path: str
-    values: Mapping[str, Value]
+    values: Mapping[str, AttributeValue]
     tolerance: float
 
     @property
@@ -66,7 +171,7 @@ class WantedElement(NamedTuple):
         wanted = value if isinstance(value, list) else [value]
         return any(is_same(readable(found.text), one, self.tolerance) for one in wanted)
 
-    def _has(self, element: Element, key: str, value: Value) -> bool:
+    def _has(self, element: Element, key: str, value: AttributeValue) -> bool:
         texts = [readable(found.text) for found in texts_at(element, key)]
         return are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
 

@@ -12,10 +12,10 @@ import pytest
 from grader.checks.check import Subject, describe
 from grader.checks.outcome import Outcome, Status
 from grader.errors import MissingElement
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.reference import ReferenceSolution
-from grader.grading.rubric import Part, Rubric
+from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.source import Location

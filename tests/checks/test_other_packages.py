@@ -13,9 +13,9 @@ from grader.checks import registry
 from grader.checks.check import describe
 from grader.checks.outcome import Outcome, passed
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
-from grader.grading.rubric import Part, Rubric
+from grader.grading.rubric import Rubric
 from grader.grading.schema import rubric_schema
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 
 from grader.cli.app import run as in_process
-from grader.grading.record import submission_of, to_record
+from grader.grading.record import graded_submission_from, to_record
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import grader, urdf
 from tests.command_line import run
@@ -216,7 +216,7 @@ def test_a_record_keeps_evidence(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     report = json.loads((tmp_path / "reports" / "Ash.json").read_text())
     assert report["evidence"] == as_json(tmp_path / "class" / "Ash")["evidence"]
-    assert submission_of(to_record(SAMPLES["pictures-only"].grade())).lacks == ("URDF", "package")
+    assert graded_submission_from(to_record(SAMPLES["pictures-only"].grade())).lacks == ("URDF", "package")
 
 
 @pytest.mark.parametrize(("key", "pending"), [("", 1), ("failed", 1), ("manual", 6)])

@@ -290,7 +290,7 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     ("place", "lost"),
     [
         ("grader.package.edits.candidates.package_names", ()),
-        ("grader.grading.hints.look.targets_of", ("base-green",)),
+        ("grader.grading.hints.state_edits.targets_of", ("base-green",)),
         ("grader.grading.hints.search.HintSearch._load", ()),
         ("grader.grading.hints.search.HintSearch._combine", ()),
     ],

@@ -10,11 +10,11 @@ import pytest
 from grader.checks.check import describe
 from grader.checks.outcome import Outcome, failed, pending
 from grader.errors import MissingElement
-from grader.grading.criterion import Carried, Criterion
+from grader.grading.criterion import Carried, Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.record import from_record, to_record
 from grader.grading.report import Report
-from grader.grading.rubric import Part, Rubric
+from grader.grading.rubric import Rubric
 from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission

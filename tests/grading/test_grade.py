@@ -18,10 +18,10 @@ from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.placement import centre_at, frame_at
 from grader.checks.tree import held_by, urdf_loads
 from grader.errors import InputError, MissingElement
-from grader.grading.criterion import Criterion
+from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.report import Report
-from grader.grading.rubric import Part, Rubric
+from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh
 from grader.robot.reader import Reading

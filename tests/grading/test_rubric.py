@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box
 from grader.errors import GraderError, InputError, RubricError
-from grader.grading.rubric import Part, Rubric, find_rubric, load_rubric, shipped_rubrics
+from grader.grading.criterion import Part
+from grader.grading.rubric import Rubric, find_rubric, load_rubric, shipped_rubrics
 from tests.examples import examples
 
 GOOD = """\

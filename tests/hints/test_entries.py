@@ -11,7 +11,8 @@ from tests.samples import SAMPLES
 def test_an_earlier_edit_is_named_by_the_entry_that_shows_it(name: str) -> None:
     """Not by a criterion that is listed below another one with the same edit."""
     found = failures(hinted(SAMPLES[name].grade(), SAMPLES[name].open(), "edit").report)
-    texts = [hint.message.partition("`")[0] for failure in found if not failure.first for hint in failure.result.hints]
+    hints = (failure.result.hint for failure in found if not failure.first)
+    texts = [hint.message.partition("`")[0] for hint in hints if hint is not None]
     references = [text for text in texts if text.startswith(("After", "Make"))]
     named = {
         failure.result.criterion.id

@@ -52,16 +52,14 @@ def hinted(report: Report | None = None) -> Report:
     xyz = Edit(where, 99, 15, 'xyz="0 0 0.05"', 'xyz="0 0 0.1"')
     other = Edit("notes.txt", 1, 1, "", "a new file\n")
     points = {result.criterion.id: result.criterion.points for result in report.results}
-    hints: dict[str, tuple[Hint, ...]] = {}
+    hints: dict[str, Hint] = {}
     for names, message, edits in (
         (AXLE, 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73)', (rpy,)),
         (LIFT, "Raise the base by 50 mm", (xyz, other)),
     ):
-        hint = Hint(
-            message, Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}, edits
-        )
-        hints |= dict.fromkeys(names, (hint,))
-    results = tuple(result._replace(hints=hints.get(result.criterion.id, ())) for result in report.results)
+        at, gains = Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}
+        hints |= dict.fromkeys(names, Hint(message, at, gains, edits, shown_by=names[0]))
+    results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results)
 
 

@@ -92,8 +92,8 @@ def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> R
     outcome = old.outcome
     where = Location(path(), 1, 2) if outcome.location is not None else None
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
-    hints = tuple(known.setdefault(hint.message, _hint(hint, words, path)) for hint in old.hints)
-    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where), hints=hints)
+    hint = known.setdefault(old.hint.message, _hint(old.hint, words, path)) if old.hint is not None else None
+    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where), hint=hint)
 
 
 def _hint(old: Hint, words: Words, path: Words) -> Hint:

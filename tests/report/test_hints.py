@@ -1,14 +1,15 @@
 """Hints: each format shows the proven change in place of the feedback, once, and its edits where the format has a place for them."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
-from grader.grading.report import Hint, ManualMark
+from grader.grading.report import ManualMark, Result
 from grader.report.findings import findings
 from grader.report.formats import Format, render
 from grader.report.locations import Base, diff_lines
-from grader.source import Edit, Location, Source
+from grader.source import Edit, Source
 from tests.report.readers import READERS, read_as_github, read_markdown, read_sarif
 from tests.report.reports import AXLE, hinted
 from tests.samples import ROOT
@@ -16,6 +17,10 @@ from tests.samples import ROOT
 CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73). Also fixes right-wheel-axis, -1.'
 AGAIN = f"Fixed by the same edit as {AXLE[0]}."
 MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+
+
+def _with_hint(results: tuple[Result, ...], **changes: Any) -> tuple[Result, ...]:
+    return tuple(it._replace(hint=it.hint._replace(**changes)) if it.hint is not None else it for it in results)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in READERS if kind is not Format.JSON])
@@ -30,16 +35,10 @@ def test_every_format_shows_a_hint_once(kind: Format) -> None:
 
 
 def test_the_whole_report_has_hint_and_feedback() -> None:
-    """`--verbose` leaves nothing out; the short report shows the first hint only."""
-    report = hinted()
-    more = Hint("Turn the visual instead", Location("my_robot.urdf", 73, 1), {})
-    results = tuple(result._replace(hints=(*result.hints, more) if result.hints else ()) for result in report.results)
-    short, whole = (
-        render(replace(report, results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
-    )
-    for words in ("Turn the visual instead.", "Use the left wheel's rpy and axis unchanged"):
-        assert words not in " ".join(short.split())
-        assert words in " ".join(whole.split())
+    """`--verbose` leaves nothing out; the short report shows the hint only."""
+    words = "Use the left wheel's rpy and axis unchanged"
+    for verbose in (False, True):
+        assert (words in " ".join(render(hinted(), Format.TERMINAL, verbose=verbose).split())) == verbose
 
 
 def test_a_hint_is_never_cut() -> None:
@@ -47,15 +46,10 @@ def test_a_hint_is_never_cut() -> None:
     report = hinted()
     change = "Change " + " ".join(f"part{number}" for number in range(20))
     results = tuple(
-        result._replace(
-            outcome=result.outcome._replace(message="wrong " * 200),
-            hints=(result.hints[0]._replace(message=change),),
-        )
-        if result.hints
-        else result
+        result._replace(outcome=result.outcome._replace(message="wrong " * 200)) if result.hint is not None else result
         for result in report.results
     )
-    text = render(replace(report, results=results), Format.TERMINAL)
+    text = render(replace(report, results=_with_hint(results, message=change)), Format.TERMINAL)
     assert f"{change}." in " ".join(text.split())
     assert "wrong\u2026" in text
 
@@ -64,10 +58,7 @@ def test_a_hint_without_room_is_described() -> None:
     """What it changes; the lines that change are in the whole report."""
     report = hinted()
     change = "Change " + " ".join(f"part{number}" for number in range(80))
-    results = tuple(
-        result._replace(hints=tuple(hint._replace(message=change, action="negate the roll") for hint in result.hints))
-        for result in report.results
-    )
+    results = _with_hint(report.results, message=change, action="negate the roll")
     short, whole = (
         render(replace(report, results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
     )
@@ -134,22 +125,20 @@ def test_sarif_fixes_apply() -> None:
 def test_sarif_has_no_fix_that_it_cannot_express() -> None:
     """A file in an archive is no file of the repository, and no file is renamed; the message has the hint all the same."""
     renamed = Edit("launch/a.py", 1, 1, "", "", renamed="launch/a.launch.py")
-    hint = Hint("Rename the file", Location("launch/a.py", 1, 1), {}, (renamed,))
     report = hinted()
-    others = tuple(result._replace(hints=(hint,) if result.hints else ()) for result in report.results)
+    others = _with_hint(report.results, edits=(renamed,))
     for given, base in ((report, Base(archive="lab.zip")), (replace(report, results=others), Base())):
         run = read_sarif(render(given, Format.SARIF, base))
         assert not any("fixes" in result for result in run["results"])
-        assert any(finding.hints for finding in findings(given, base))
-    assert diff_lines(hint.edits, lambda _: None) == ["--- /dev/null", "+++ launch/a.launch.py"]
+        assert any(finding.hint for finding in findings(given, base))
+    assert diff_lines((renamed,), lambda _: None) == ["--- /dev/null", "+++ launch/a.launch.py"]
 
 
 def test_a_region_of_several_lines_ends_in_the_last_one() -> None:
     """Columns count from the last line break of the old text."""
     edit = Edit("my_robot.urdf", 3, 5, "<a>\n  <b/>", "<c/>")
     report = hinted()
-    hint = Hint("Simplify", Location("my_robot.urdf", 3, 5), {}, (edit,))
-    results = tuple(result._replace(hints=(hint,) if result.hints else ()) for result in report.results)
+    results = _with_hint(report.results, edits=(edit,))
     (fix,) = next(
         result["fixes"]
         for result in read_sarif(render(replace(report, results=results), Format.SARIF))["results"]

@@ -98,7 +98,7 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         yield Fact("carried", (result.why_given, f'"carried":"{result.carried}"'), name)
     elif (
         status == "failed"
-        and not result.hints
+        and result.hint is None
         and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot"))
     ):
         yield Fact("feedback", (criterion.feedback,), name)

@@ -8,9 +8,8 @@ from typing import Any
 from grader.checks.measures.fact import Fact, Facts, Omission, Solution, shown
 from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
-from grader.xml.element_values import name_of
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import readable
+from grader.xml.wanted_element import name_of, readable
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _OF_CONTINUOUS = ("@effort", "@velocity")
@@ -22,7 +21,7 @@ _NAMED_BY = ("reference", "name", "filename", "type")
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _MAX_LISTED = 4  # values in a title
 
-Values = dict[str, Any]
+ElementValues = dict[str, Any]
 
 
 def elements(solution: Solution) -> Facts:
@@ -59,7 +58,7 @@ def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Facts:
 
 def _facts_in(element: Element) -> Iterator[Fact]:
     """Yield a fact for the plain values in an element, and one for each child that has elements or attributes."""
-    plain: Values = {}
+    plain: ElementValues = {}
     deep: list[Element] = []
     for child in _children(element):
         if _children(child) or child.attrib:
@@ -72,7 +71,7 @@ def _facts_in(element: Element) -> Iterator[Fact]:
         yield _fact(element, name_of(child), values_of(child), _label(element, child))
 
 
-def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
+def _fact(element: Element, path: str, values: ElementValues, label: str) -> Fact:
     arguments: dict[str, Any] = {"tag": name_of(element)}
     is_joint = element.tag == "joint"
     attributes = {str(key): str(value) for key, value in element.attrib.items() if not is_joint or key == "name"}
@@ -83,7 +82,7 @@ def _fact(element: Element, path: str, values: Values, label: str) -> Fact:
     return Fact(label, "", _title(element, path, values), "element_present", arguments, about=about)
 
 
-def _title(element: Element, path: str, values: Values) -> str:
+def _title(element: Element, path: str, values: ElementValues) -> str:
     """Return a title: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
     owner = f"<{name_of(element)}>{f' of {_name(element)}' if _name(element) else ''}"
     listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
@@ -92,9 +91,9 @@ def _title(element: Element, path: str, values: Values) -> str:
     return f"{owner} has <{path}>{f' with {listed}' if listed else ''}"
 
 
-def values_of(element: Element, path: str = "") -> Values:
+def values_of(element: Element, path: str = "") -> ElementValues:
     """Return all attributes and texts in an element by their paths; of repeated ones a list."""
-    found: Values = {}
+    found: ElementValues = {}
     for key, text in element.attrib.items():
         _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
@@ -106,7 +105,7 @@ def values_of(element: Element, path: str = "") -> Values:
     return found
 
 
-def _add(found: Values, key: str, value: Any) -> None:
+def _add(found: ElementValues, key: str, value: Any) -> None:
     """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
     if isinstance(value, str) and is_of_one_machine(value):
         return

@@ -18,7 +18,7 @@ from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
-from grader.grading.hints.record import with_hints
+from grader.grading.hints.record import add_stored_hints
 from grader.grading.record import from_record
 from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import Rubric
@@ -114,7 +114,7 @@ class Grades:
         rubric = self.rubric(grade.rubric)
         report = from_record(self.book.record(grade.result), rubric, SubmissionSources(grade.files, rubric))
         hints = self.book.first("SELECT hints FROM hint WHERE result = ?", grade.result)
-        report = with_hints(report, hints[0]) if hints is not None else report
+        report = add_stored_hints(report, hints[0]) if hints is not None else report
         results = _with_marks(report, self._manual_marks(grade), self._comments(grade))
         return replace(report, results=results)
 
@@ -189,5 +189,5 @@ def _with_marks(
     for criterion in report.rubric.criteria:
         if criterion.id in marks:
             result = results.get(criterion.id) or Result(criterion, not_submitted)
-            results[criterion.id] = result._replace(manual_mark=marks[criterion.id], hints=())
+            results[criterion.id] = result._replace(manual_mark=marks[criterion.id], hint=None)
     return tuple(results[criterion.id] for criterion in report.rubric.criteria if criterion.id in results)

@@ -13,10 +13,11 @@ from grader.classroom.gradebook.graded_students import manual_units
 from grader.classroom.gradebook.result import units_of
 from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.hints.record import StoredHint, hints_from_record
-from grader.grading.record import submission_of
+from grader.grading.hints.record import hints_from_record, own_edits
+from grader.grading.record import graded_submission_from
+from grader.grading.report import Hint
 from grader.grading.rubric import Rubric
-from grader.source import Edit
+from grader.source import Edit, Edits
 
 _MAX_FIXES = 20
 _QUERY = """
@@ -59,7 +60,7 @@ def lossy_submissions(book: Gradebook, rubric: Rubric) -> list[LossySubmission]:
         failed = {position for position, status in statuses.items() if status == "failed"}
         if failed.isdisjoint(of_robot) and failed.isdisjoint(of_package):
             continue
-        submission = submission_of(book.record(row["result"]))
+        submission = graded_submission_from(book.record(row["result"]))
         is_package_wrong = not submission.is_single and not failed.isdisjoint(of_package)
         if is_package_wrong or not failed.isdisjoint(of_robot):
             files = ("file", row["urdf"]) if submission.is_single and row["urdf"] else ("digest", row["digest"])
@@ -118,7 +119,7 @@ class CommonFix:
     students: tuple[str, ...]
     criteria: tuple[str, ...]
     points: Decimal
-    example: tuple[Edit, ...]
+    example: Edits
 
     @property
     def count(self) -> int:
@@ -129,32 +130,30 @@ class CommonFix:
 def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     """Return the changes that most students need, the most frequent first, as far as hints have been searched."""
     needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
-    examples: dict[tuple[str, tuple[str, ...]], tuple[LossySubmission, StoredHint, tuple[StoredHint, ...]]] = {}
+    examples: dict[tuple[str, tuple[str, ...]], tuple[LossySubmission, Hint, tuple[Hint, ...]]] = {}
     marks = manual_units(book)
     for submission, example, hints in _searched(book, rubric):
         given = {row.id for row in rubric.criteria if marks[submission.student].get(row.id) == units_of(row.points)}
-        for stored in hints:
-            action, gained = stored.hint.action, tuple(stored.hint.gains)
+        for hint in hints:
+            action, gained = hint.action, tuple(hint.gains)
             if action and not given.issuperset(gained):
                 needed.setdefault(action, {}).setdefault(submission.files.key, gained)
-                examples.setdefault((action, gained), (example, stored, hints))
+                examples.setdefault((action, gained), (example, hint, hints))
     fixes = []
     for action, gains in needed.items():
         kinds = Counter(gains.values())
         gained = min(kinds, key=lambda names: (-kinds[names], names))
-        example, stored, hints = examples[action, gained]
-        edits = tuple(_nameless(edit, example, rubric) for edit in stored.own_edits(hints))
-        fixes.append(CommonFix(action, tuple(gains), gained, sum(stored.hint.gains.values(), Decimal(0)), edits))
+        example, hint, hints = examples[action, gained]
+        edits = tuple(_nameless(edit, example, rubric) for edit in own_edits(hint, hints))
+        fixes.append(CommonFix(action, tuple(gains), gained, sum(hint.gains.values(), Decimal(0)), edits))
     return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
 
 
-def _searched(
-    book: Gradebook, rubric: Rubric
-) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[StoredHint, ...]]]:
+def _searched(book: Gradebook, rubric: Rubric) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[Hint, ...]]]:
     """Yield submissions, each with the first that has the same robot and the same failures, and with its hints."""
     submissions = lossy_submissions(book, rubric)
     first = {one.robot: one for one in reversed(submissions) if one.hints is not None}
-    hints = {robot: hints_from_record(one.hints or "[]") for robot, one in first.items()}
+    hints = {robot: hints_from_record(one.hints) for robot, one in first.items() if one.hints is not None}
     for submission in submissions:
         if submission.robot in first:
             yield submission, first[submission.robot], hints[submission.robot]

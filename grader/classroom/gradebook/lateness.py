@@ -9,7 +9,8 @@ from decimal import Decimal
 from math import ceil
 
 from grader.errors import InputError
-from grader.grading.rubric import Late, Rubric
+from grader.grading.criterion import Late
+from grader.grading.rubric import Rubric
 from grader.text import counted
 
 _DAY = timedelta(days=1)

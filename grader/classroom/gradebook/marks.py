@@ -10,7 +10,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import points_from_units, storable, units_of
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
-from grader.grading.validation import TOTAL
+from grader.grading.criterion import TOTAL
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
 

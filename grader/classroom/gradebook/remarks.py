@@ -5,7 +5,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, current_marks
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.grading.validation import TOTAL
+from grader.grading.criterion import TOTAL
 from grader.text import by_name, counted_points, enumerated
 
 

@@ -9,8 +9,8 @@ from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import criterion_points, points_from_units
 from grader.errors import InputError
+from grader.grading.criterion import TOTAL
 from grader.grading.rubric import Rubric
-from grader.grading.validation import TOTAL
 from grader.text import shell_quoted
 
 _STATES = """

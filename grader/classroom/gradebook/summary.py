@@ -13,7 +13,7 @@ from grader.classroom.gradebook.hints import CommonFix, common_fixes
 from grader.classroom.gradebook.identical import IdenticalWork, identical_work
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.files.names import ROBOT_ENDINGS
-from grader.grading.record import submission_of
+from grader.grading.record import graded_submission_from
 from grader.grading.rubric import Rubric
 
 _QUERY = "SELECT result, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
@@ -32,7 +32,7 @@ def count_evidence_only(book: Gradebook, rubric: Rubric) -> Counter[str]:
         for result, urdf, files in list(book.rows(_QUERY, rubric.sha256))
         if not urdf or not (_is_single(files) or package - book.outcomes(result).keys())
     ]
-    lacking = (submission_of(book.record(result)).lacks[:1] for result in found)
+    lacking = (graded_submission_from(book.record(result)).lacks[:1] for result in found)
     return Counter(kind for kinds in lacking for kind in kinds if kind in graded)
 
 

@@ -12,9 +12,9 @@ from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import rubric_from
 from grader.errors import InputError
+from grader.grading.hints.record import NO_HINTS
 from grader.grading.rubric import Rubric
 
-_NONE = "[null]"  # of a search that was not complete
 _NO_DOCUMENTS = "hints are about the URDF and the package"
 
 Group = Callable[[LossySubmission], tuple[str, ...]]  # what submissions have in common of which one is searched
@@ -53,7 +53,7 @@ def _proven_hints(one: LossySubmission, rubric: Rubric) -> str | None:
 def _lost(submission: LossySubmission, error: Exception) -> SearchedHints:
     """Return that there are no hints: searched again if another task may be the cause that the search was lost."""
     is_own_fault = not isinstance(error, WorkerError) or error.is_own_fault
-    return SearchedHints(submission.content, _NONE if is_own_fault else None, "errored")
+    return SearchedHints(submission.content, NO_HINTS if is_own_fault else None, "errored")
 
 
 class ClassHintSearch:

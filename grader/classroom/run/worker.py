@@ -17,7 +17,7 @@ from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import is_another_robot, robot_of
-from grader.grading.report import Report, Result
+from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
 from grader.robot.normal_form import robot_hash
 from grader.submission.submission import Submission
@@ -134,10 +134,11 @@ def undecided_result(context: ClassContext, task: Task, result: GradingResult) -
     message = reason if status == "errored" else f"{reason}; needs manual grading"
     chosen = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
     criteria = [criterion for criterion in rubric.criteria if criterion.part in chosen]
-    results = tuple(Result(criterion, Outcome(status, message)) for criterion in criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
     unread = reason if result.verdict == "unreadable" else ""
-    report = Report(GradedSubmission(name, unread=unread), rubric, chosen, results)
+    submission = GradedSubmission(name, unread=unread)
+    results = without_gifts((Result(criterion, Outcome(status, message)) for criterion in criteria), submission)
+    report = Report(submission, rubric, chosen, results)
     return result.with_report(report, context.dictionary)
 
 

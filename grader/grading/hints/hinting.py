@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.grade import grade
-from grader.grading.hints.record import INCOMPLETE
 from grader.grading.hints.search import FoundHint, HintSearch
-from grader.grading.hints.trials import Edits, Trials, costs_of
+from grader.grading.hints.trials import Trials, costs_of
 from grader.grading.hints.words import message
-from grader.grading.levels import Level
+from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
-from grader.grading.report import Fix, Hint, Report, Result
+from grader.grading.report import Hint, Report, Result
 from grader.robot.edits.draft import Draft
-from grader.source import Location
+from grader.source import Edits, Location
 from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
 from grader.text import enumerated
@@ -24,19 +23,26 @@ if TYPE_CHECKING:
     from grader.package.package import Package
 
 
-class Hinted(NamedTuple):
-    """A report with hints, the edits of all hints that fit together, and the types of exceptions that cost other hints.
-
-    `is_complete` says whether the search ended before its budget did.
-    """
+class HintedReport(NamedTuple):
+    """A report with hints, the edits of all that fit together, and the types of exceptions that cost other hints."""
 
     report: Report
     edits: Edits
     faults: list[str]
-    is_complete: bool = True
 
 
-def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: bool = False) -> Hinted:
+class Fix(NamedTuple):
+    """The files of a submission that all proven edits change, None for one that is gone, and the report on the result.
+
+    `why_nothing` says why there are none.
+    """
+
+    files: Mapping[str, bytes | None]
+    report: Report
+    why_nothing: str = ""
+
+
+def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edits: bool = False) -> HintedReport:
     """Return a report with proven hints for criteria that failed; `keep_edits` keeps edits that the level hides."""
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
@@ -44,22 +50,26 @@ def hinted(report: Report, submission: Submission, level: Level, *, keep_edits: 
     search = HintSearch(trials, _draft(solution), lambda: _package(solution)).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
+
+    def shown_by(found: FoundHint) -> str:
+        return _entry(found, shown, results, costs)
+
     hints: dict[str, Hint] = {}
     for name, found in shown.items():
         with trials.isolated():
-            text = message(found, level, submission, lambda earlier: _entry(earlier, shown, results, costs))
-            hints[name] = _hint(found, text, keeps_edits=keep_edits or level == "edit")
+            text = message(found, level, submission, shown_by)
+            hints[name] = _hint(found, text, shown_by(found), keeps_edits=keep_edits or level == "edit")
     causes = search.causes if level in ("cause", "edit") else {}
     with_hints = [_explained(result, hints.get(result.criterion.id), causes) for result in report.results]
-    notes = report.notes if search.is_complete or submission.is_costly else (*report.notes, INCOMPLETE)
-    report = replace(report, results=tuple(with_hints), notes=notes)
-    return Hinted(report, search.final.edits, trials.faults, search.is_complete)
+    is_complete = search.is_complete or submission.is_costly
+    report = replace(report, results=tuple(with_hints), hints_complete=is_complete)
+    return HintedReport(report, search.final.edits, trials.faults)
 
 
-def fixed(found: Hinted, submission: Submission) -> Fix:
+def fixed(found: HintedReport, submission: Submission) -> Fix:
     """Return the files with all proven edits that fit together, graded again."""
     report, why_nothing = found.report, "no edit that was tried gains points"
-    if not found.is_complete:
+    if not report.hints_complete:
         why_nothing = "the search for edits ended at its limit before it found one"
     if found.faults:
         why_nothing = "the search for edits failed"
@@ -73,7 +83,7 @@ def fixed(found: Hinted, submission: Submission) -> Fix:
 def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]]) -> Result:
     """Return a result with its hint; without one, its message says what is wrong at several places."""
     if hint is not None:
-        return result._replace(hints=(hint,))
+        return result._replace(hint=hint)
     wrong = causes.get(result.criterion.id)
     if not wrong or not result.is_lost:
         return result
@@ -96,10 +106,10 @@ def _entry(
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
 
 
-def _hint(found: FoundHint, text: str, *, keeps_edits: bool) -> Hint:
+def _hint(found: FoundHint, text: str, shown_by: str, *, keeps_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
-    return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action)
+    return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action, shown_by)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:

@@ -1,12 +1,11 @@
 """Repair a URDF step by step until ROS 2 loads it: each step makes ROS 2 read on, or reject or drop less."""
 
 from collections.abc import Iterable, Iterator
-from decimal import Decimal
 from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.trials import Edits, State, Trials, joined
+from grader.grading.hints.trials import State, Trials, joined
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
@@ -14,6 +13,7 @@ from grader.robot.edits.pieces import STRUCTURE
 from grader.robot.edits.problem_edits import misplaced, pieces_for, repairable
 from grader.robot.model import Robot
 from grader.robot.reader import Reading
+from grader.source import Edits
 from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
 from grader.xml.pieces import remaining
@@ -23,6 +23,7 @@ _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
 _MAX_VALUES = 40  # edits of one step that are graded
 _MAX_CANDIDATES = 150  # edits of one step that are read
+_MAX_MOVED = 6  # elements that are moved elsewhere
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
@@ -103,9 +104,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
     draft = Draft.of(reading)
     if draft is not None:
         difference = RobotDifference(draft, reference or draft)
-        yield from (
-            Proposal(*correction) for correction in draft.source.corrections(difference.names, difference.numbers)
-        )
+        yield from draft.corrections(difference.names, difference.numbers)
         problems = repairable(reading.problems)
         own = (pieces_for(difference, problem) for problem in problems)
         lines = {problem.location.line for problem in problems}
@@ -115,7 +114,7 @@ def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]
             if piece.rank == STRUCTURE
             or (piece.element is not None and draft.line(draft.owner(piece.element)) in lines)
         ]
-        for piece in chain(misplaced(difference), chain.from_iterable(own), near):
+        for piece in chain(islice(misplaced(difference), _MAX_MOVED), chain.from_iterable(own), near):
             for way, edits in enumerate(draft.ways(piece.sets)[:2] if piece.sets else [piece.edits]):
                 yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
@@ -142,13 +141,9 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     for left, proposal in near:
         after = trials.applied(state, proposal.edits)
         if after is not None and not after.lost:
-            rank = (left[0] < 0, _score(after), tuple(-count for count in left), -proposal.way, -proposal.size)
+            rank = (left[0] < 0, after.score, tuple(-count for count in left), -proposal.way, -proposal.size)
             ranked.append((rank, LoadingStep(proposal, state, after)))
     return max(ranked, key=lambda found: found[0])[1] if ranked else None
-
-
-def _score(state: State) -> Decimal:
-    return sum((result.points for result in state.results.values()), Decimal(0))
 
 
 def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:

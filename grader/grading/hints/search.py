@@ -2,8 +2,9 @@
 
 From small to large: a `Set` is a value of one element, a `Piece` what one mistake needs, with its words, and a
 `Proposal` one way to write a piece into the files, as edits of their texts. A `State` is the submission with some
-edits, a `Look` at it says what pieces would change, measured on its `Model` without any text. What `Trials` prove by
-grading again becomes a `FoundHint`, and in a report a `Hint`. `Fix` are all of them together, as files.
+edits; `StateEdits` are the pieces that may help it, tried by a `QuickGrading` without any text, of which `EditChoice`
+takes the best. What `Trials` prove by grading again becomes a `FoundHint`, and in a report a `Hint`. `Fix` are all of
+them together, as files.
 """
 
 from collections.abc import Callable, Mapping
@@ -13,11 +14,12 @@ from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.choice import Choice
-from grader.grading.hints.trials import Edits, NoTrialsLeft, Results, State, Trials, costs_of, gained, joined, together
+from grader.grading.hints.choice import EditChoice
+from grader.grading.hints.trials import NoTrialsLeft, Results, State, Trials, as_one, costs_of, gained, joined
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
+from grader.source import Edits
 from grader.submission.editing import creates
 from grader.submission.urdf import Read
 
@@ -48,7 +50,7 @@ class HintSearch:
         """`reference` and `package` are the robot and the package of the rubric's reference solution."""
         self.trials = trials
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        self._choice = Choice(trials, reference, package)
+        self._choice = EditChoice(trials, reference, package)
         self._reference = reference
         robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
         # One with as many links may be the lab's, with other names.
@@ -115,7 +117,7 @@ class HintSearch:
         is_each = len(repairs) > 1 and [self._add(it, it.edits) for it in repairs if it.edits] == [True] * len(repairs)
         known = {name for found in self.found for name in found.gains}
         if set(gained(self.trials.start.results, self.final.results)) - known:
-            whole, after = (_UNION, tuple(self.found)) if is_each else (together(repairs, self.final.edits), ())
+            whole, after = (_UNION, tuple(self.found)) if is_each else (as_one(repairs, self.final.edits), ())
             self._add(whole, self.final.edits, after=after)
 
     def _by_cost(self, results: Results) -> list[str]:

@@ -1,18 +1,20 @@
-"""Solve for numbers: which number of a robot, with which value, brings what a criterion measures to what it expects."""
+"""Solve for numbers: which number of a robot, with which value, brings what a criterion measures to what it expects.
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+By Newton's method on the numbers of one slot: the residual is what is measured less what is expected, and a column of
+the Jacobian says how it changes with one number.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from itertools import islice
 from math import hypot, isfinite, pi
-from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.grading.hints.model import Model
+from grader.grading.hints.slots import Slot
+from grader.grading.hints.state_edits import QuickGrading
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Draft, Set, child_of
-from grader.robot.edits.numbers import Values, plausible, rounded, values_of, written
+from grader.robot.edits.numbers import Values, plausible, rounded
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
-from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, TAGS
 
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
 _STEP = 1e-4
@@ -21,64 +23,15 @@ _FLAT, _WILD = 1e-6, 1e3  # slopes that are none, and that are a leap
 _DIGITS = range(2, 7)
 _SHORT = 3  # decimals of a number that a person would write
 _MAX_SLOTS = 60
-_ADDED = ("origin", "axis")  # elements that a person adds to give them a value
 
-
-class Slot(NamedTuple):
-    """Numbers of one element: an attribute, or all attributes with one number each."""
-
-    owner: Element
-    tag: str
-    attributes: tuple[str, ...]
-    values: Values
-    unit: str
-
-    def sets(self, values: Values, text: Callable[[Values], str] = written) -> tuple[Set, ...]:
-        """Return what is set to give the numbers these values."""
-        if len(self.attributes) == 1:
-            return (Set(self.owner, self.tag, self.attributes[0], text(values)),) if values != self.values else ()
-        pairs = zip(self.attributes, values, self.values, strict=True)
-        return tuple(Set(self.owner, self.tag, name, text((value,))) for name, value, old in pairs if value != old)
-
-
-def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[Slot]:
-    """Yield the numbers of the joints that move links, and of what links show."""
-    links = _known(map(draft.link, shown))
-    parts = [part for own in links for part in own.iterchildren("visual", "inertial")]
-    colours = (draft.material(used.get("name") or "") for part in parts for used in part.iterchildren("material"))
-    for owner in (*_known(map(draft.joint_of, moved)), *parts, *_known(colours)):
-        tags = ("origin",) if owner.get("type") in ("fixed", "floating") else _ADDED
-        for tag in (tag for tag in tags if tag in CHILDREN[str(owner.tag)]):
-            yield from _slots(owner, tag)
-        for element in owner.iterdescendants(*(tag for tag in TAGS if tag not in _ADDED)):
-            yield from _slots(element, "")
-
-
-def _known(found: Iterable[Element | None]) -> Iterator[Element]:
-    return (element for element in found if element is not None)
-
-
-def _slots(owner: Element, tag: str) -> Iterator[Slot]:
-    """Yield the numbers of an element, or of its child (perhaps missing): those of a vector, else all together."""
-    element, known = child_of(owner, tag) if tag else owner, TAGS[tag or str(owner.tag)].attributes
-    names = [name for name, one in known.items() if one.parts]
-    vectors = [name for name in names if len(known[name].parts) > 1]
-    for those in (*([name] for name in vectors), [name for name in names if name not in vectors]):
-        given: dict[str, Values] = {}
-        for name in those:
-            default = "1 0 0" if (tag, element) == ("axis", None) else known[name].default
-            values = values_of(element.get(name, default) if element is not None else default)
-            given |= {name: values} if len(values) == len(known[name].parts) else {}
-        if given:
-            unit = known[next(iter(given))].unit
-            yield Slot(owner, tag, tuple(given), tuple(value for values in given.values() for value in values), unit)
+Residuals = Callable[[Values], Values | None]  # what is measured less what is expected, with other numbers
 
 
 class Solver:
     """Searches the values with which one criterion measures what it expects."""
 
-    def __init__(self, model: Model, difference: RobotDifference, name: str, outcome: Outcome) -> None:
-        self._model, self._difference, self._name = model, difference, name
+    def __init__(self, quick: QuickGrading, difference: RobotDifference, name: str, outcome: Outcome) -> None:
+        self._quick, self._difference, self._name = quick, difference, name
         self._outcome = outcome
         measured, expected = _vector(outcome.measured), _vector(outcome.expected)
         is_each = measured is not None and expected is not None and len(expected) == 1
@@ -105,33 +58,30 @@ class Solver:
                     yield self._difference.of_sets(slot.sets(values), SOLVED if is_short and is_one else FITTED)
 
     def _values(self, slot: Slot) -> Iterator[Values]:
-        known_residuals: dict[Values, Values | None] = {slot.values: self._start}
+        @cache
+        def residual_of(values: Values) -> Values | None:
+            return self._start if values == slot.values else self._residual(slot, values)
 
-        def ask(values: Values) -> Values | None:
-            if values not in known_residuals:
-                known_residuals[values] = self._residual(slot, values)
-            return known_residuals[values]
-
-        columns = [self._column(ask, slot.values, index) for index in range(len(slot.values))]
+        columns = [self._jacobian_column(residual_of, slot.values, index) for index in range(len(slot.values))]
         touched = [index for index, column in enumerate(columns) if column is None or any(column)]
         if not touched:
             return
-        if _is_turned(slot):
+        if _is_nonlinear(slot):
             for values in plausible(slot.unit, slot.values):
-                if self._is_exact(ask(values)):
+                if self._is_exact(residual_of(values)):
                     yield values
-        start = ask(slot.values)
+        start = residual_of(slot.values)
         if start is None:
             return
         known = {index: column for index in touched if (column := columns[index]) is not None}
         subsets = [(index,) for index in known] + ([tuple(known)] if len(known) > 1 else [])
         for subset in subsets:
-            solved = self._solved(ask, slot.values, start, {index: known[index] for index in subset})
+            solved = self._solved(residual_of, slot.values, start, {index: known[index] for index in subset})
             if solved is not None:
                 yield solved
 
     def _solved(
-        self, ask: Callable[[Values], Values | None], old: Values, start: Values, columns: Mapping[int, Values]
+        self, residual_of: Residuals, old: Values, start: Values, columns: Mapping[int, Values]
     ) -> Values | None:
         """Return values that leave no residual: by Newton's method, then with as few digits as possible."""
         values, residual = old, start
@@ -144,34 +94,35 @@ class Solver:
             )
             if not all(map(isfinite, values)):
                 return None
-            after = ask(values)
+            after = residual_of(values)
             if after is None or hypot(*after) > 0.9 * hypot(*residual):
-                return self._short(ask, old, values) if self._is_exact(after) else None
+                return self._short(residual_of, old, values) if self._is_exact(after) else None
             residual = after
             if self._is_exact(after) and hypot(*after) < 1e-9:
                 break
-            columns = {index: column for index in columns if (column := self._column(ask, values, index)) is not None}
+            found = {index: self._jacobian_column(residual_of, values, index) for index in columns}
+            columns = {index: column for index, column in found.items() if column is not None}
             if not columns:
                 return None
-        return self._short(ask, old, values) if self._is_exact(residual) else None
+        return self._short(residual_of, old, values) if self._is_exact(residual) else None
 
-    def _short(self, ask: Callable[[Values], Values | None], old: Values, values: Values) -> Values | None:
+    def _short(self, residual_of: Residuals, old: Values, values: Values) -> Values | None:
         for digits in _DIGITS:
             short = tuple(
                 before if abs(before - value) < _STEP / 10 else value
                 for before, value in zip(old, rounded(values, digits), strict=True)
             )
-            if self._is_exact(ask(short)):
+            if self._is_exact(residual_of(short)):
                 return short
-        return values if max(map(abs, values)) < 0.01 and self._is_exact(ask(values)) else None
+        return values if max(map(abs, values)) < 0.01 and self._is_exact(residual_of(values)) else None
 
-    def _column(self, ask: Callable[[Values], Values | None], values: Values, index: int) -> Values | None:
+    def _jacobian_column(self, residual_of: Residuals, values: Values, index: int) -> Values | None:
         """Return how what is measured changes with one of the values; None where it cannot be told."""
         size = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
-        before = ask(values)
+        before = residual_of(values)
         found: list[Values] = []
         for step in (size, -size):  # a channel of a colour ends at 1
-            after = ask(tuple(value + step if other == index else value for other, value in enumerate(values)))
+            after = residual_of(tuple(value + step if other == index else value for other, value in enumerate(values)))
             if before is not None and after is not None:
                 found.append(tuple((b - a) / step for a, b in zip(before, after, strict=True)))
                 if max(map(abs, found[-1])) < _WILD:
@@ -180,8 +131,8 @@ class Solver:
         return tuple(value if abs(value) > _FLAT else 0.0 for value in column) if column is not None else None
 
     def _residual(self, slot: Slot, values: Values) -> Values | None:
-        sets = self._difference.with_twins(slot.sets(values, _precisely))
-        return self._difference_of(self._model.results(sets, (self._name,))[self._name].outcome)
+        sets = self._difference.with_twins(slot.sets(values, lambda values: " ".join(map(repr, values))))
+        return self._difference_of(self._quick.results(sets, (self._name,))[self._name].outcome)
 
     def _difference_of(self, outcome: Outcome) -> Values | None:
         actual, expected = _vector(outcome.measured), self._expected
@@ -193,11 +144,7 @@ class Solver:
         return residual is not None and all(abs(value) <= self._exact for value in residual)
 
 
-def _precisely(values: Values) -> str:
-    return " ".join(map(repr, values))
-
-
-def _is_turned(slot: Slot) -> bool:
+def _is_nonlinear(slot: Slot) -> bool:
     """Return whether numbers do not change what is measured in proportion: angles, and the directions of axes."""
     return slot.unit in ("rad", "1")
 

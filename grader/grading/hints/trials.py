@@ -11,18 +11,17 @@ from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.robot.edits.pieces import SOLVED
-from grader.source import Edit
+from grader.source import Edit, Edits
 from grader.submission.editing import content, edited_files, with_files, with_urdf
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 Results = Mapping[str, Result]
-Edits = tuple[Edit, ...]
 
-_TEXT_STEPS = 2  # that it costs more to read a text than elements that are changed
 _MAX_STEPS = 3000  # of one submission
+# What it costs to read a text, and what a package costs in addition; to read changed elements costs one step.
+_TEXT_STEPS, _PACKAGE_STEPS = 2, 4
 _HARMFUL = ("rejects", "drops", "undetermined")
-_PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
 
 
 class NoTrialsLeft(Exception):
@@ -39,6 +38,16 @@ class State(NamedTuple):
     edits: Edits
     results: Results
     lost: str = ""
+
+    @property
+    def score(self) -> Decimal:
+        """The points of all criteria."""
+        return sum((result.points for result in self.results.values()), Decimal(0))
+
+    @property
+    def lost_points(self) -> Decimal:
+        """The points that mistakes cost."""
+        return sum((result.criterion.points for result in self.results.values() if result.is_lost), Decimal(0))
 
     @property
     def failed(self) -> list[str]:
@@ -83,7 +92,7 @@ class Trials:
         edited = self._from_scratch(state, edits) if whole else self.edited(state, edits)
         if edited is None:
             return None
-        self._spend(edited)
+        self._charge_reading(edited)
         if _new_problems(state.submission, edited):
             return None
         before = state.results if against is None else against
@@ -97,7 +106,7 @@ class Trials:
 
     def edited(self, state: State, edits: Edits) -> Submission | None:
         """Return the submission with edits of a state, not graded; None where they do not fit. Raises NoTrialsLeft."""
-        self._spend(state.submission)
+        self._charge_reading(state.submission)
         files = edited_files(state.submission, edits)
         if files is None:
             return None
@@ -105,21 +114,21 @@ class Trials:
         is_robot = all(_is_of_robot(path, state.submission) for path in files)
         if isinstance(state.submission.urdf, Read) and is_robot and not is_moved:
             return with_urdf(state.submission, files)
-        self.left -= _PACKAGE_STEPS
+        self.charge(_PACKAGE_STEPS)
         return self._from_scratch(state, edits)
 
     def _from_scratch(self, state: State, edits: Edits) -> Submission | None:
-        self._spend(state.submission)
+        self._charge_reading(state.submission)
         files = edited_files(state.submission, edits)
         try:
             return with_files(state.submission, files) if files is not None else None
         except InputError:
             return None
 
-    def _spend(self, submission: Submission) -> None:
-        self.spend(_TEXT_STEPS * (1 + submission.cost))
+    def _charge_reading(self, submission: Submission) -> None:
+        self.charge(_TEXT_STEPS * (1 + submission.cost))
 
-    def spend(self, steps: int) -> None:
+    def charge(self, steps: int) -> None:
         """Charge steps. Raises NoTrialsLeft."""
         self.left -= steps
         if self.left < 0:
@@ -188,7 +197,7 @@ def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]
     return tuple(found)
 
 
-def together(proposals: Sequence[Proposal], edits: Edits) -> Proposal:
+def as_one(proposals: Sequence[Proposal], edits: Edits) -> Proposal:
     """Return several proposals as one, with these edits: those of the first one come first."""
     causes = dict.fromkeys(proposal.cause for proposal in proposals)
     actions = dict.fromkeys(proposal.action for proposal in proposals)

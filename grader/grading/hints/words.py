@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 
+from grader.edits import Expanded
 from grader.grading.hints.search import FoundHint
-from grader.grading.levels import Level
-from grader.source import Edit, Location, Source
+from grader.grading.levels import HintLevel
+from grader.source import Edit, Location
 from grader.submission.editing import content, creates
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
@@ -15,7 +16,7 @@ _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: FoundHint, level: Level, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
+def message(found: FoundHint, level: HintLevel, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
     """Return the hint in a sentence, which need not name the URDF. `entry` is where an earlier one is shown."""
     own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
     earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
@@ -25,7 +26,8 @@ def message(found: FoundHint, level: Level, submission: Submission, entry: Calla
         changes = _moves(own, submission) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
         changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
         source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
-        text = enumerated(changes, _MAX_NAMED + 1) + (_calls(own, source) if source is not None else "")
+        text = enumerated(changes, _MAX_NAMED + 1)
+        text += _calls(own, source, submission.path) if isinstance(source, Expanded) else ""
     elif level == "cause":
         text = f"check {_places(own, submission)}: {found.proposal.cause}"
     else:
@@ -53,10 +55,10 @@ def _places(edits: list[Edit], submission: Submission) -> str:
     return "; ".join(texts) or "which files are missing"
 
 
-def _calls(edits: list[Edit], source: Source) -> str:
+def _calls(edits: list[Edit], source: Expanded, main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
     calls = dict.fromkeys(call for edit in edits for call in source.calls(edit))
-    macros = {macro: [_at(place, source.path) for name, place in calls if name == macro] for macro, _ in calls}
+    macros = {macro: [_at(place, main) for name, place in calls if name == macro] for macro, _ in calls}
     uses = [
         f"the macro {macro} is called in {enumerated(places, _MAX_NAMED)}"
         for macro, places in macros.items()

@@ -5,12 +5,12 @@ import re
 from collections.abc import Iterator
 
 from grader.package.edits.python_file import PythonFile, called
-from grader.source import Edit, Source
+from grader.source import Edits, Source
 
 _CAT = re.compile(r"\bcat(?=\s)")
 
 
-def with_xacro(source: Source) -> Iterator[tuple[Edit, ...]]:
+def with_xacro(source: Source) -> Iterator[Edits]:
     """Yield the edits of a launch file that read the robot with xacro instead of open or cat."""
     for found in _CAT.finditer(source.text):
         yield (source.edit(found.start(), found.end(), "xacro"),)

@@ -2,8 +2,9 @@
 
 import shlex
 
+from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import Context
-from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
+from grader.package.launch.substitutions import COMMAND_LINE, resolve
 from grader.static_python.values import Call, Value
 
 

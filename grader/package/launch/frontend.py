@@ -5,11 +5,10 @@ from dataclasses import dataclass, field
 import yaml
 
 from grader.package.launch.model import Findings, LaunchFault
-from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Location, Source
 from grader.static_python.parse import START, Position
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _MAX_DEPTH = 40
 _MAX_ENTITIES = 5_000

@@ -4,9 +4,10 @@ import re
 
 from grader.names import did_you_mean
 from grader.package.launch.command_words import command_words, pieces
+from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, StartedNode
 from grader.package.launch.places import SHARE
-from grader.package.launch.substitutions import PART_UNKNOWN, resolve
+from grader.package.launch.substitutions import resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).

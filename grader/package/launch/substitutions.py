@@ -1,13 +1,12 @@
 """The values of launch's substitutions, with the defaults of the launch arguments."""
 
 import posixpath
-import re
-import shlex
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
+from grader.package.launch.commands import command_output
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.closed import evaluate
@@ -16,10 +15,8 @@ from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBud
 from grader.static_python.parse import START
 from grader.static_python.values import MAX_TEXT, Call, Unknown, Value, as_text
 
-PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
-_MAX_DEPTH = 40
-_WORK = 10_000  # of an expression
+_MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
 _PACKAGE_FOLDERS = (
@@ -33,25 +30,21 @@ def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
     context.steps_left[0] -= 1
     if depth > _MAX_DEPTH or context.steps_left[0] < 0:
         return Unknown("a substitution is too deeply nested", START)
+    found: Resolved | None = None
+    reason = "the text of this value is known only at run time"
     match value:
         case Contents() | Unknown():
-            return value
+            found = value
         case str() | int() | float() | PurePosixPath():
-            text = as_text(value)
-            return text if text is not None else Unknown("a number is too long", START)
+            found, reason = as_text(value), "a number is too long"
+        case [part]:
+            found = resolve(part, context, depth + 1)
         case list() | tuple():
-            return _joined(value, context, depth)
+            texts = _texts(value, context, depth)
+            found = "".join(texts) if isinstance(texts, list) else texts
         case Call():
-            return _Substitution(value, context, depth).value()
-        case _:
-            return Unknown("the text of this value is known only at run time", START)
-
-
-def _joined(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> Resolved:
-    if len(parts) == 1:
-        return resolve(parts[0], context, depth + 1)
-    texts = _texts(parts, context, depth)
-    return "".join(texts) if isinstance(texts, list) else texts
+            found = _Substitution(value, context, depth).value()
+    return found if found is not None else Unknown(reason, START)
 
 
 def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> list[str] | Unknown:
@@ -69,20 +62,6 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
     return texts
 
 
-def _printed(words: list[str]) -> Contents | None:
-    """Return the contents of the one file that xacro or cat prints; None for any other command."""
-    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
-    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
-    if program not in ("xacro", "cat", "type") or "-o" in words or len(files) != 1:
-        return None
-    if not files[0] or PART_UNKNOWN in files[0]:
-        return None
-    if program != "xacro":
-        return Contents(files[0], "cat")
-    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
-    return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))
-
-
 @dataclass(slots=True)
 class _Substitution:
     """A call of a substitution, or of a function that Python, xacro or ament_index has for the same purpose."""
@@ -94,11 +73,8 @@ class _Substitution:
     def value(self) -> Resolved:
         """Return the text that the call gives, or the contents of a file."""
         name = self.call.name.rpartition(".")[2]
-        method = _METHODS.get(name)
-        if method is not None:
-            return method(self)
-        if self.call.name == COMMAND_LINE:
-            return self.resolve(self.call.args) if self.call.args else ""
+        if name in _METHODS:
+            return _METHODS[name](self)
         if name.endswith("LaunchDescriptionSource"):
             return self.argument("launch_file_path", "location")
         if name in BOOLEAN_SUBSTITUTIONS:
@@ -151,10 +127,9 @@ class _Substitution:
         return tuple((name, value if isinstance(value, str) else None) for name, value in values.items())
 
     def needs_texts(self, message: str, count: int | None = None) -> None:
-        """Add an error if a function of Python gets a substitution, which has no text before the launch runs."""
+        """Add an error if a function of Python gets a substitution: without .perform or .find it has no text yet."""
         names = [value.name for value in self.call.args[:count] if isinstance(value, Call)]
-        performed = (".perform", ".find")  # methods that return a string
-        if any(name.startswith(("launch.", "launch_ros.")) and not name.endswith(performed) for name in names):
+        if any(it.startswith(("launch.", "launch_ros.")) and not it.endswith((".perform", ".find")) for it in names):
             self.context.add_error(message, self.call.at)
 
     def path(self, parts: Value) -> Resolved:
@@ -198,33 +173,19 @@ class _Substitution:
         """Return the contents of the file that a command prints, for xacro and cat."""
         parts = self.call.argument(0, "command")
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
-        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
-        unknown = [text for text in texts if isinstance(text, Unknown)]
-        if glued := re.match(r"(xacro|cat)(?=/)", command):
-            message = f"a space is missing between {glued[1]} and the path: write '{glued[1]} '"
-            self.context.add_error(message, self.call.at)
-            unknown.insert(0, Unknown(message, self.call.at))
-            command = f"{glued[1]} {command[glued.end() :]}"
-        try:
-            words = shlex.split(command)
-        except ValueError:
-            message = "the quotes in this command are not closed"
-            self.context.add_error(message, self.call.at)
-            return Unknown(message, self.call.at)
-        unknown.append(Unknown("the output of this command is known only at run time", self.call.at))
-        return _printed(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words) or unknown[0]
+        return command_output(texts, self.context, self.call.at)
 
     def expression(self) -> Resolved:
         """Return the value of a Python expression that contains plain values only."""
         text = self.argument("expression")
+        unknown = Unknown("the value of this expression is known only at run time", self.call.at)
         if not isinstance(text, str):
-            reason = "the value of this expression is known only at run time"
-            return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
+            return text if isinstance(text, Unknown) else unknown
         budget = Budget(_WORK)
         try:
             return text_of(evaluate(text, _builtin, budget))
         except (ExpressionFails, Undetermined, OutOfBudget):
-            return Unknown("the value of this expression is known only at run time", self.call.at)
+            return unknown
         finally:
             self.context.steps_left[0] -= budget.used
 
@@ -238,6 +199,7 @@ def _builtin(name: str) -> Value:
 _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
     **dict.fromkeys(_OF_OWNER, lambda substitution: substitution.resolve(substitution.call.owner)),
     **dict.fromkeys(_PACKAGE_FOLDERS, _Substitution.package_folder),
+    COMMAND_LINE.rpartition(".")[2]: lambda substitution: substitution.resolve(substitution.call.args or ""),
     "TextSubstitution": lambda substitution: substitution.argument("text"),
     "PathSubstitution": lambda substitution: substitution.argument("path"),
     "ParameterValue": lambda substitution: substitution.argument("value"),

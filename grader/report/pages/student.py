@@ -25,7 +25,7 @@ from grader.text import format_points, printable
 
 
 class Card(NamedTuple):
-    """The content of a criterion: `points` or what it costs, and `hints` with the lines of their diffs.
+    """The content of a criterion: `points` or what it costs, and `diff` has the changed lines of its hint.
 
     `feedback` is the rubric's advice, and `skipped` what is skipped because of it.
     """
@@ -34,7 +34,7 @@ class Card(NamedTuple):
     points: str
     details: Details
     source: list[SourceLine]
-    hints: tuple[tuple[str, list[str]], ...]
+    diff: list[str]
     skipped: str = ""
     feedback: str = ""
 
@@ -99,7 +99,7 @@ def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[Criteri
 def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -> Card:
     """Return a failed criterion, with what is skipped because of it, and feedback once, only without hints."""
     card = _card(failure.result, report)
-    feedback = "" if card.hints or card.details.feedback in printed else card.details.feedback
+    feedback = "" if card.details.hint is not None or card.details.feedback in printed else card.details.feedback
     printed.add(feedback)
     skipped = skipped_text(failure.id, failure.skipped) if failure.skipped else ""
     return card._replace(points=failure.cost, skipped=skipped, feedback=feedback)
@@ -109,8 +109,8 @@ def _card(result: Result, report: Report) -> Card:
     details, source_of = result_details(result, report), report.submission.source
     where = details.location
     lines = source_lines(where, source_of) if where is not None else []
-    hints = tuple((hint.message, diff_lines(hint.edits, source_of)) for hint in details.hints)
-    return Card(result, earned_text(result), details, lines, hints)
+    diff = diff_lines(details.hint.edits, source_of) if details.hint is not None else []
+    return Card(result, earned_text(result), details, lines, diff)
 
 
 def _others(report: Report) -> dict[str, object]:

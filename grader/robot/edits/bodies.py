@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Edits, Set, child_of, empty_element
+from grader.robot.edits.draft import empty_element
+from grader.robot.edits.elements import Set, child_of
 from grader.robot.edits.numbers import number
 from grader.robot.edits.pieces import KNOWN, Piece
 from grader.robot.frames import placed_by
@@ -16,6 +17,7 @@ from grader.robot.inertia import MassProperties, turned, uniform_solid, with_vol
 from grader.robot.model import Link, Mesh
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import IDENTITY
+from grader.source import Edits
 from grader.xml.parsing import Element
 
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")

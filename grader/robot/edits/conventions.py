@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from math import pi
 
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Draft, Set, child_of, end_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.numbers import Values, rounded, values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.model import Box

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from grader.difference import Node, Step
-from grader.robot.edits.draft import child_of, end_of
+from grader.robot.edits.elements import child_of, end_of
 from grader.robot.edits.pieces import normal
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS

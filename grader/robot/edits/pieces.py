@@ -1,10 +1,12 @@
 """Pieces of edits: what is set or changed, named by what is wrong with it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.robot.edits.draft import Draft, Edits, Set, child_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of
 from grader.robot.edits.numbers import Values, named, values_of
+from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
@@ -104,6 +106,12 @@ class PieceMaker:
             rank = FITTED
         piece = self.piece(first.owner, words.cause, words.action, sets=self.with_twins(sets), rank=rank, tag=first.tag)
         return piece._replace(is_mistake=words.is_mistake)
+
+    def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+        """Yield the pieces that set each value alone, and all together."""
+        yield from (self.of_sets([one]) for one in sets)
+        if len(sets) > 1:
+            yield self.of_sets(sets)
 
     def with_twins(self, sets: Sequence[Set]) -> tuple[Set, ...]:
         """Return values of a visual's origin or shape with those of the collision (and inertial) that was the same."""

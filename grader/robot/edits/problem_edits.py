@@ -7,16 +7,15 @@ from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.edits.difference import RobotDifference, renamed
-from grader.robot.edits.draft import Draft, Set, child_of, end_of
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.pieces import ENDS, Piece, unique
 from grader.robot.edits.readable import is_readable, readable
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, JOINT_TYPES, REQUIRED, TAGS, missing_element
 
 _MAX_PIECES = 40  # for one problem
-_MAX_NAMES = 4
-_MAX_ELEMENTS, _MAX_MOVED = 3000, 6
-_MAX_PROBLEMS = 60
+_MAX_NAMES, _MAX_PROBLEMS, _MAX_ELEMENTS = 4, 60, 3000
 _KEPT = ("robot", "origin", "axis", "parent", "child", "geometry", *CHILDREN["geometry"])  # what no edit removes
 
 
@@ -32,10 +31,6 @@ def repairable(problems: tuple[Problem, ...]) -> list[Problem]:
 
 def misplaced(difference: RobotDifference) -> Iterator[Piece]:
     """Yield the moves of elements that ROS 2 ignores where they are: a joint in a link, an origin beside the visual."""
-    return islice(_misplaced(difference), _MAX_MOVED)
-
-
-def _misplaced(difference: RobotDifference) -> Iterator[Piece]:
     draft = difference.draft
     for element in islice(draft.root.iter(), 1, _MAX_ELEMENTS):
         tag, parent = str(element.tag), element.getparent()
@@ -127,11 +122,10 @@ def _missing(difference: RobotDifference, element: Element) -> Iterator[Piece]:
         if child == "limit":
             yield difference.of_sets([Set(element, "", "type", "continuous")])
         inside = [it for it in element if it.tag in CHILDREN.get(child, ())]
-        text = missing_element(child)
         if inside:
             edits = draft.wrap(inside[0], child)
             yield difference.piece(element, f"a shape outside <{child}>", f"put the shape into <{child}>", edits)
-        elif text is not None:
+        elif (text := missing_element(child)) is not None:
             edits = draft.insert(element, text)
             yield difference.piece(element, f"the <{child}> of {{}} is missing", f"add the <{child}> of {{}}", edits)
     if tag == "material":
@@ -141,7 +135,7 @@ def _missing(difference: RobotDifference, element: Element) -> Iterator[Piece]:
 def _missing_material(difference: RobotDifference, element: Element) -> Iterator[Piece]:
     """Define the materials of the reference's link, or give an element its colour."""
     like = difference.reference.link(difference.draft.link_of(element))
-    if like is not None and (edits := difference.materials(like)):
+    if like is not None and (edits := difference.additions.materials(like)):
         cause, action = "a material that is not defined", "define the material under <robot>"
         yield difference.piece(element, cause, action, edits)
     elif like is not None:
@@ -216,11 +210,11 @@ def _missing_link(
     """Give a link that the reference does not have the name that a joint names, or add a link of that name."""
     draft = difference.draft
     unknown = [name for name in links if not difference.reference.robot.has_link(name)]
-    for name in dict.fromkeys(filter(None, (closest(given, unknown), *loose))):
-        if name in unknown:
-            cause, action = "the name of a link", "correct the name of the link"
-            yield difference.piece(joint, cause, action, sets=renamed(draft, name, given), link=given)
+    free = (name for name in loose if name in unknown)
+    for name in dict.fromkeys(filter(None, (closest(given, unknown), *free))):
+        cause, action = "the name of a link", "correct the name of the link"
+        yield difference.piece(joint, cause, action, sets=renamed(draft, name, given), link=given)
     like = difference.reference.link(given)
-    text = difference.text(like) if like is not None else f'<link name="{given}"/>'
+    text = difference.additions.text(like) if like is not None else f'<link name="{given}"/>'
     cause, action = "the link of a joint is missing", "add the link that the joint names"
     yield difference.piece(joint, cause, action, draft.append(text), link=given)

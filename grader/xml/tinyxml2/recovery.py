@@ -3,9 +3,9 @@
 import re
 from typing import Literal, NamedTuple
 
+from grader.problems import Kind
 from grader.text import enumerated
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import NoteDifference
 from grader.xml.tinyxml2.tags import MalformedTagError, ReadTag, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import CHILDREN
@@ -33,12 +33,27 @@ _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/li
 _MAX_ASSUMED = 20
 
 
-class Recovered(NamedTuple):
-    """The first <robot> as XML, with the offset of each of its start tags; empty if no link of it can be read."""
+class NoteDifference(NamedTuple):
+    """A difference from XML, an error, or what was assumed about one, at a character offset."""
+
+    kind: Kind
+    message: str
+    offset: int
+
+
+class Scan(NamedTuple):
+    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
+
+    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML
+    has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
+    text in elements, too.
+    """
 
     xml: bytes
     offsets: list[int]
-    assumed: list[NoteDifference]
+    first_tag: int
+    differences: list[NoteDifference]
+    recovered: bytes = b""
 
 
 class Recovery:
@@ -51,8 +66,8 @@ class Recovery:
         self._assumed: list[NoteDifference] = []
         self._open: list[ReadTag] = []
 
-    def run(self) -> Recovered:
-        """Read the first robot."""
+    def run(self) -> Scan:
+        """Return the first robot as `recovered`, and what was assumed; nothing if no link of it can be read."""
         position, text = 0, self._text.partition("\0")[0]
         while len(self._assumed) < _MAX_ASSUMED and len(self._open) <= _MAX_DEPTH:
             if (start := text.find("<", position)) < 0:
@@ -75,8 +90,8 @@ class Recovery:
         while self._open:
             self._end()
         if not any(xml.startswith("<link") for xml in self._xml):
-            return Recovered(b"", [], [])
-        return Recovered("".join(self._xml).encode(), self._offsets, self._assumed)
+            return Scan(b"", [], 0, [])
+        return Scan(b"", self._offsets, 0, self._assumed, "".join(self._xml).encode())
 
     def _tag(self, start: int) -> tuple[ReadTag | None, int]:
         """Return the tag at an offset, and the offset after it; a broken one with the attributes that can be read."""

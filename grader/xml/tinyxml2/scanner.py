@@ -2,12 +2,10 @@
 
 import re
 from functools import cached_property
-from typing import NamedTuple
 
 from grader.problems import Kind
 from grader.xml import catalogue
-from grader.xml.tinyxml2.difference import NoteDifference
-from grader.xml.tinyxml2.recovery import Recovery
+from grader.xml.tinyxml2.recovery import NoteDifference, Recovery, Scan
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, ReadTag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
 
@@ -19,21 +17,6 @@ _NAMESPACE = re.compile(r"xmlns:([^\s=]+)")
 _MAX_DEPTH = 500  # TINYXML2_MAX_ELEMENT_DEPTH; the document itself is the first level
 _MAX_WRITTEN_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ERRORS = 20
-
-
-class Scan(NamedTuple):
-    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
-
-    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML
-    has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
-    text in elements, too.
-    """
-
-    xml: bytes
-    offsets: list[int]
-    first_tag: int
-    differences: list[NoteDifference]
-    recovered: bytes = b""
 
 
 class Scanner:
@@ -59,7 +42,7 @@ class Scanner:
         if self._errors:
             errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
             recovered = Recovery(self._text).run()
-            return Scan(b"", recovered.offsets, first_tag, [*errors, *recovered.assumed], recovered.xml)
+            return recovered._replace(first_tag=first_tag, differences=[*errors, *recovered.differences])
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:

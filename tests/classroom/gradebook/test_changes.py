@@ -18,9 +18,8 @@ from grader.classroom.gradebook.snapshots import last_two
 from grader.classroom.students import Student
 from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
-from grader.grading.criterion import Adjustment
+from grader.grading.criterion import TOTAL, Adjustment
 from grader.grading.rubric import Rubric, read_rubric
-from grader.grading.validation import TOTAL
 from tests.classroom.gradebooks import graded_as, lab, lab_text, mark, record_run
 from tests.examples import examples
 

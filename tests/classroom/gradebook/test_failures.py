@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.outcome import Outcome, Value
+from grader.checks.outcome import Measured, Outcome
 from grader.classroom.gradebook.graded_students import Failure, grouped
 from grader.classroom.gradebook.result import GradingResult, StoredOutcome
 from grader.grading.graded_submission import GradedSubmission
@@ -18,7 +18,7 @@ from tests.samples import LAB6
 CRITERION = next(row for row in LAB6.criteria if row.id == "left-wheel-forward")
 
 
-def failure(message: str, measured: Value = None, expected: Value = None, unit: str | None = "m") -> Failure:
+def failure(message: str, measured: Measured = None, expected: Measured = None, unit: str | None = "m") -> Failure:
     """Return the failure that a gradebook stores and gives back."""
     outcome = Outcome("failed", message, measured, expected, None if measured is None else 0.002, unit)
     return failure_of(outcome)
@@ -96,6 +96,6 @@ def test_nothing_is_lost_and_no_group_is_too_wide(failures: Mapping[Failure, int
 
 
 @pytest.mark.parametrize("value", [True, 3])
-def test_flags_and_counts_are_numbers(value: Value) -> None:
+def test_flags_and_counts_are_numbers(value: Measured) -> None:
     """They are compared like any other number."""
     assert counts(failure("one", value), failure("two", value)) == [("one", 2)]

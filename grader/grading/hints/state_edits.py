@@ -1,6 +1,6 @@
-"""A look at a state: the pieces that may help a criterion, and the lost criteria that pass with each."""
+"""The edits that may help a state, as pieces, and the lost criteria that pass with each."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -9,29 +9,69 @@ from typing import TYPE_CHECKING
 from grader.edits import Proposal
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
-from grader.grading.hints.model import Model
+from grader.grading.deciding import decide
 from grader.grading.hints.targets import Targets, targets_of
 from grader.grading.hints.trials import State, Trials
+from grader.grading.report import Result
 from grader.grading.subjects import named_links
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.draft import Draft, Set
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set
 from grader.robot.edits.numbers import values_of, written
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.kinematics import Configuration
+from grader.robot.reader import read_robot
+from grader.source import Location, Source
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
+from grader.xml.parsing import XmlDocument
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
 
-class Look:
-    """A state that is looked at: its pieces, and the lost criteria that pass with each."""
+class _Nowhere(Source):
+    """The text of no file: elements that are changed have no place."""
+
+    def tag(self, index: int, attribute: str | None = None) -> Location:
+        del index, attribute
+        return Location(self.path, 1, 1)
+
+    def element(self, tag: int) -> tuple[Source, int]:
+        del tag
+        return self, 0
+
+
+class QuickGrading:
+    """What criteria measure with other values in the elements of a state's robot, without a change of its text."""
+
+    def __init__(self, trials: Trials, state: State, draft: Draft) -> None:
+        self._trials, self._state, self._draft = trials, state, draft
+        self._source = _Nowhere("", "")
+        self._cost = 1 + len(draft.robot.links) // 40
+
+    def results(self, sets: Iterable[Set], wanted: Collection[str]) -> dict[str, Result]:
+        """Return the results of criteria with other values, charged to the trials. Raises NoTrialsLeft."""
+        self._trials.charge(self._cost)
+        submission = self._state.submission
+        urdf = submission.urdf
+        assert isinstance(urdf, Read)
+        with self._draft.supposing(sets):
+            unresolved = urdf.reading.unresolved
+            document = XmlDocument(self._draft.root, self._source, [], 0, unresolved, is_expanded=urdf.is_expanded)
+            reading = read_robot(document)
+            changed = replace(submission, urdf=urdf._replace(reading=reading))
+            return {result.criterion.id: result for result in decide(self._trials.rubric, changed, wanted)}
+
+
+class StateEdits:
+    """The pieces that may help a state, and the lost criteria that pass with each."""
 
     def __init__(
         self, trials: Trials, state: State, reference: Draft | None, package: "Callable[[], Package | None]"
     ) -> None:
         self.trials, self.state, self.reference = trials, state, reference
+        self.lost = state.failed
         self._package = package
         urdf = state.submission.urdf
         self.draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
@@ -39,10 +79,10 @@ class Look:
         self._kept: list[Piece] = []  # whose ids are known
 
     @cached_property
-    def model(self) -> Model:
-        """The robot, to ask what criteria measure."""
+    def quick(self) -> QuickGrading:
+        """What criteria measure with other values."""
         assert self.draft is not None
-        return Model(self.trials, self.state, self.draft)
+        return QuickGrading(self.trials, self.state, self.draft)
 
     @cached_property
     def difference(self) -> RobotDifference:
@@ -56,10 +96,8 @@ class Look:
         if self.draft is None:
             return []
         with self.trials.isolated():
-            found = [
-                Piece(it.cause, it.action, "", (), it.edits)
-                for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)
-            ]
+            corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
+            found = (Piece(it.cause, it.action, "", (), it.edits) for it in corrections)
             return [*found, *self.difference.pieces]
         return []
 
@@ -85,12 +123,13 @@ class Look:
         found = (piece for piece in self.pieces if is_all or piece.link in links)
         return sorted(found, key=lambda piece: piece.rank)
 
-    def passing(self, piece: Piece, wanted: Sequence[str]) -> frozenset[str]:
-        """Return the wanted criteria that pass with a piece, as far as a quick look tells."""
+    def passing(self, piece: Piece, wanted: Sequence[str] = ()) -> frozenset[str]:
+        """Return the wanted criteria, else the lost ones, that pass with a piece; its text changes only if needed."""
         if id(piece) not in self._passing:
             self._kept.append(piece)
+            wanted = wanted or self.lost
             if piece.sets:
-                results = self.model.results(piece.sets, wanted).values()
+                results = self.quick.results(piece.sets, wanted).values()
                 found = frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
             else:
                 found = self.trials.passing(self.state, piece.edits, wanted)

@@ -1,0 +1,123 @@
+"""The source of an expanded xacro file: where each element comes from, and the edits of what it comes from."""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from grader.markup import element_end
+from grader.source import Edit, Edits, Location, Source
+from grader.xacro.expander import Expander
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import XacroScope
+
+if TYPE_CHECKING:
+    from grader.edits import Proposal
+    from grader.xacro.edits import Rewriter
+
+_READING_OF_SHORT = 1_500  # parts
+
+
+class ExpandedSource(Source):
+    """The text of a xacro file; its start tags are the expanded elements. Methods that make edits import them late."""
+
+    def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
+        super().__init__(source.path, source.text)
+        self._nodes, self._expander, self._work = nodes, expander, work
+
+    def tag(self, index: int, attribute: str | None = None) -> Location:
+        """Return the location in the source of an expanded element, or of an attribute if it has it."""
+        node = self._nodes[index]
+        moved = node.moved.get(attribute) if attribute is not None else None
+        return node.place.at(attribute) if moved is None else moved.at("value")
+
+    def next_tag(self, index: int, name: str) -> int:
+        """Return the index of the first expanded element of this name after another one; that one if there is none."""
+        others = range(index + 1, len(self._nodes))
+        return next((other for other in others if self._nodes[other].tag == name), index)
+
+    @property
+    def documents(self) -> Mapping[str, XacroNode]:
+        """The files that it was expanded from, as they are written, by their paths: this one first."""
+        return self._expander.files.documents
+
+    @property
+    def includes(self) -> Mapping[tuple[str, int], list[str]]:
+        """The files that were included, by the path of the file and the index of the tag that include them."""
+        return self._expander.files.followed
+
+    @property
+    def open_reason(self) -> str:
+        """Why something could not be expanded; empty if everything was."""
+        return next((found.reason for found in self._expander.undetermined), "")
+
+    @property
+    def cost(self) -> int:
+        """How much longer this takes to expand and to read than a short file."""
+        return super().cost + self._work // _READING_OF_SHORT
+
+    def element(self, tag: int) -> tuple[Source, int]:
+        """Return the text, perhaps of an included file, with an expanded element, and the offset of its start tag."""
+        place = self._nodes[tag].place
+        return place.source.element(place.tag)
+
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
+        """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
+        first = self._nodes[next(iter(wanted))]
+        moved = first.moved.get(attribute)
+        from grader.xacro.written import Use
+
+        if moved is not None:
+            old, new = next(iter(wanted.values()))
+            return self._rewriter.ways(moved, "value", [Use(moved.scope or XacroScope(), old, new)])
+        uses = []
+        for tag in self.siblings(next(iter(wanted))):
+            node = self._nodes[tag]
+            text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
+            old, new = wanted.get(tag, (text, text))
+            uses.append(Use(node.place.scope or XacroScope(), old, new, node.place.calls or ()))
+        return self._rewriter.ways(first.place, attribute, uses)
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the expanded elements that come from the same place of the source."""
+        place = self._nodes[tag].place
+        return self._by_place[place.source.path, place.tag]
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, int], list[int]]:
+        found: dict[tuple[str, int], list[int]] = {}
+        for index, node in enumerate(self._nodes):
+            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return found
+
+    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> "list[Proposal]":
+        """Return edits that may correct XML that is not well-formed, undefined names, and calls of macros."""
+        from grader.xacro.corrections import Corrector, Refusal, well_formed
+
+        refusals = [Refusal(*refused) for refused in self._expander.refused]
+        corrector = Corrector(self.documents, self._expander.uses, self._expander.files.others)
+        found = (*well_formed(Source(self.path, self.text)), *corrector.corrections(refusals, names, numbers))
+        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
+
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
+        found: tuple[int, tuple[tuple[str, Location], ...]] = (-1, ())
+        for name, body, calls in self._expander.uses.values():
+            source, start = body.source.element(body.tag)
+            if source.path == edit.path and start <= source.offset(edit.line, edit.column) < element_end(
+                source.text, start
+            ):
+                found = max(found, (start, tuple((name, call.at()) for call in calls.values())), key=lambda it: it[0])
+        return found[1]
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element inserted in the one with this index: in a macro, with parameters in names."""
+        from grader.xacro.written import with_parameters
+
+        scope = self._nodes[tag].place.scope
+        return with_parameters(xml, scope) if scope is not None else xml
+
+    @cached_property
+    def _rewriter(self) -> "Rewriter":
+        from grader.xacro.edits import Rewriter
+
+        return Rewriter(self._expander.texts)
