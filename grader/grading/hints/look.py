@@ -53,15 +53,13 @@ class Look:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The difference to the reference."""
-        if self.draft is None:
-            return []
-        with self.trials.isolated():
-            found = [
-                Piece(it.cause, it.action, "", (), it.edits)
-                for it in self.draft.source.corrections(self.difference.names, self.difference.numbers)
-            ]
-            return [*found, *self.difference.pieces]
-        return []
+        found: list[Piece] = []
+        if self.draft is not None:
+            with self.trials.isolated():
+                corrections = self.draft.source.corrections(self.difference.names, self.difference.numbers)
+                found = [Piece(it.cause, it.action, "", (), it.edits) for it in corrections]
+                found += self.difference.pieces
+        return found
 
     def with_links(self, criterion: Criterion) -> Criterion:
         """Return a criterion with the names of the links that selectors mean, where each means one."""
