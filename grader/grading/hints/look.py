@@ -108,8 +108,7 @@ class Look:
         """Yield the edits of the text that a piece stands for."""
         assert self.draft is not None
         for way, edits in enumerate(self.draft.ways(piece.sets) if piece.sets else [piece.edits]):
-            if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
+            yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
     def of_package(self, criterion: Criterion) -> list[Proposal]:
         """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""

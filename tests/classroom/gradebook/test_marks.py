@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
-from grader.classroom.gradebook.marks import TAKE_BACK, criterion_of, read_points
+from grader.classroom.gradebook.marks import TAKE_BACK, account, criterion_of, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
@@ -117,6 +117,18 @@ def test_a_criterion_without_points() -> None:
     assert read_points("0", nothing.id, nothing.points) == 0
     with pytest.raises(InputError, match="is worth 0 to 0 points, not 1"):
         read_points("1", nothing.id, nothing.points)
+
+
+def test_a_container_may_have_no_account(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The audit then names nobody."""
+
+    def fail() -> str:
+        raise KeyError("getpwuid(): uid not found: 1234")
+
+    monkeypatch.setattr("getpass.getuser", lambda: "robo")
+    assert account() == "robo"
+    monkeypatch.setattr("getpass.getuser", fail)
+    assert account() == ""
 
 
 def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:
