@@ -1,4 +1,4 @@
-"""One line for each outcome of the cases of the checks, and for one outcome of each wording among the samples."""
+"""One line for each outcome of the cases of the checks, and for each wording of outcomes and notes of the samples."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -27,15 +27,21 @@ def outcomes_of_cases() -> Iterator[str]:
 
 
 def outcomes_of_samples() -> Iterator[str]:
-    """Yield what failed or needs manual grading in the samples, each wording once."""
+    """Yield what failed or needs manual grading in the samples, and what is noted about them, each wording once."""
     seen = set()
     for name, sample in SAMPLES.items():
-        for result in sample.grade().results:
-            outcome, check = result.outcome, result.criterion.check.name
-            wording = (check, outcome.status, _DATA.sub("", outcome.message))
-            if outcome.status in ("failed", "pending") and wording not in seen:
+        report = sample.grade()
+        rows = [
+            (f"{result.criterion.check.name} {result.outcome.message}", row(result.criterion.id, result.outcome))
+            for result in report.results
+            if result.outcome.status in ("failed", "pending")
+        ]
+        rows += [(note, f"note: {note}") for note in report.notes]
+        for text, line in rows:
+            wording = _DATA.sub("", text)
+            if wording not in seen:
                 seen.add(wording)
-                yield row(f"{name}: {result.criterion.id}", outcome)
+                yield f"{name}: {line}"
 
 
 def row(name: str, outcome: Outcome) -> str:
