@@ -1,6 +1,6 @@
 """What the checks find in the tests of this folder is approved: each wording once, with all its data.
 
-`pytest tests/checks --approve` approves what they find now; read the diff before you commit it.
+`python tests/golden/update.py` runs the tests with `--approve`, which approves what they find now.
 """
 
 from collections.abc import Iterator
@@ -25,8 +25,8 @@ def approved(request: pytest.FixtureRequest) -> Iterator[None]:
     """Compare what the checks found in a test with what is approved, but for examples that another version may not find."""
     FOUND.clear()
     yield
-    name = request.node.nodeid.rpartition("/checks/")[2]
-    if not request.config.getoption("--approve"):
+    name = request.node.nodeid.removeprefix("tests/checks/")
+    if not request.config.getoption("--approve", default=False):
         assert [row for row in _APPROVED.get(name, ()) if row not in FOUND.values()] == []
     elif not hasattr(request.function, "hypothesis"):
         for key, row in FOUND.items():
@@ -40,7 +40,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """Write what fails or cannot be decided, and is not in the cases or samples."""
-    if session.config.getoption("--approve"):
+    if session.config.getoption("--approve", default=False):
         texts = [(_GOLDEN / f"outcomes-of-{name}.txt").read_text(encoding="utf-8") for name in ("cases", "samples")]
         known = {wording(row) for text in texts for row in text.splitlines()}
         new = {key: row for key, row in _NEW.items() if key not in known and len(row) < _MAX_LENGTH}
