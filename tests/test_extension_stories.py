@@ -32,10 +32,7 @@ SAMPLE = """CASES = (
         appearance.shows_cube,
         {"link": "base", "distance": 0.2, "tolerance": 0.002},
         passing=scene(link("base", visual(box(0.2, 0.2, 0.2)))),
-        pass_message="'base' shows a box 0.2 0.2 0.2 m",
         failing=scene(link("base", visual(box(0.2, 0.2, 0.3)))),
-        fail_message="'base' shows a box 0.2 0.2 0.3 m; it should be 0.2 0.2 0.2 m (x, y, z)",
-        at="size=",
         edges={"tolerance": lambda off: scene(link("base", visual(box(0.2, 0.2, 0.2 + off))))},
         mesh_status="failed",
     ),
@@ -118,9 +115,17 @@ def test_a_new_check(project: Path) -> None:
         family.write(CHECK)
     replace(project / "grader/checks/registry.py", "CHECKS = (\n", 'CHECKS = (\n    "appearance.shows_cube",\n')
     replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
+    python(project, "tests/golden/update.py")
     python(project, "docs/make.py")
     add_to_changelog(project, "The check `shows_cube`.")
-    passes(project, "tests/test_registry.py", "tests/test_architecture.py", "tests/test_docs.py", "tests/checks")
+    passes(
+        project,
+        "tests/test_registry.py",
+        "tests/test_architecture.py",
+        "tests/test_docs.py",
+        "tests/checks",
+        "tests/golden",
+    )
 
 
 def test_a_new_rubric(project: Path) -> None:

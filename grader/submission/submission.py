@@ -167,7 +167,7 @@ class Submission:
         match self.urdf:
             case Read(reading=reading):
                 if reading.robot is None and reading.undetermined:
-                    raise NotDecided(reading.undetermined, reading.undetermined)
+                    raise NotDecided(reading.undetermined)
                 return reading
             case Unreadable(reason=reason):
                 raise NotDecided(reason, "the URDF cannot be read")

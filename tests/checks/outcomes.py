@@ -1,7 +1,7 @@
 """Helpers that run a check on a robot or a submission: alone, as a criterion of a rubric, or if something is missing."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
@@ -11,14 +11,14 @@ import pytest
 
 from grader.checks.check import Subject, describe
 from grader.checks.outcome import Outcome, Status
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.reference import ReferenceSolution
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
-from grader.source import Location
+from grader.source import LazyLocation, Location
 from grader.submission.opening import read_submission
 from grader.submission.submission import Lab, Submission
 from tests.checks.robots import ARM, PATH, Scene
@@ -30,12 +30,55 @@ Finding = tuple[Status, str, Location | None]
 Lack = tuple[str, str, str, Location | None]
 
 ANYTHING = "..."  # a message that a test does not look at
+FOUND: dict[str, str] = {}  # what the checks found in this test: a row by its wording
+_DATA = re.compile(r"'[^']*'|\"[^\"]*\"|[-\d.]+|\S*/\S*")  # names in quotes, numbers and paths
 _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
 def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
     """Return the outcome of a check."""
-    return check(*(_subject(name, of) for name in describe(check).examined), **arguments)
+    subjects = [_subject(name, of) for name in describe(check).examined]
+    try:
+        outcome = check(*subjects, **arguments)
+    except (MissingElement, NotDecided) as error:
+        found = row(check.__name__, {"message": str(error), **vars(error)})
+        FOUND.setdefault(wording(found), found)
+        raise
+    return _recorded(check, outcome)
+
+
+def _recorded(check: AnyCheck, outcome: Outcome) -> Outcome:
+    found = row(check.__name__, outcome._asdict())
+    FOUND.setdefault(wording(found), found)
+    return outcome
+
+
+def wording(found: str) -> str:
+    """Return what a row says after its name and status, without the data of one robot."""
+    return _DATA.sub("", found.partition("message ")[2])
+
+
+def row(name: str, fields: Mapping[str, object]) -> str:
+    """Return the fields of an outcome or an error in one line, but those that are empty."""
+    return f"{name}: " + "; ".join(
+        f"{key} {_shown(value)}" for key, value in fields.items() if value not in (None, "", ())
+    )
+
+
+def _shown(value: object) -> str:
+    match value:
+        case Location():
+            return f"{value.path}:{value.line}:{value.column}"
+        case LazyLocation():
+            return _shown(value.resolve())
+        case tuple():
+            return f"({', '.join(map(_shown, value))})"
+        case Mapping():
+            return f"{{{', '.join(f'{key}: {_shown(one)}' for key, one in value.items())}}}"
+        case float():
+            return f"{round(value, 9) + 0.0:.6g}"
+        case _:
+            return str(value).replace("\n", "\\n")
 
 
 def finds(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Finding:
@@ -64,7 +107,7 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
     submission = _subject("submission", of)
     assert isinstance(submission, Submission)
-    return grade(replace(rubric, solution=_Solution()), submission).results[0].outcome
+    return _recorded(check, grade(replace(rubric, solution=_Solution()), submission).results[0].outcome)
 
 
 class _Solution(ReferenceSolution):

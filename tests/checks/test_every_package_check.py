@@ -8,11 +8,10 @@ from grader.checks.check import About, describe
 from grader.checks.outcome import Outcome, passed
 from grader.package.package import Package
 from tests.checks.outcomes import ask, graded, missing
-from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase
+from tests.checks.package_cases import PACKAGE_CASES, PackageCase
 from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
 
 every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
-every_pending_case = pytest.mark.parametrize("case", PENDING_CASES, ids=[case.name for case in PENDING_CASES])
 
 # Contents that no file of a package should have, and that must not break a check.
 ODD = {
@@ -30,34 +29,12 @@ ODD = {
 
 
 @every_case
-def test_the_passing_submission_passes(case: PackageCase) -> None:
-    """A check passes a correct submission, says what it found, and has no location."""
-    outcome = ask(case.check, case.passing, **case.arguments)
-    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.pass_message, None)
-
-
-@every_case
-def test_the_failing_submission_fails(case: PackageCase) -> None:
-    """A check fails an incorrect submission, says what it found, and points into the file."""
-    outcome = ask(case.check, case.failing, **case.arguments)
-    assert (outcome.status, outcome.message) == ("failed", case.fail_message)
-    assert outcome.location == (None if case.at is None else case.failing.location_of(*case.at))
-
-
-@every_pending_case
-def test_manual_checks_are_pending(case: PendingCase) -> None:
-    """A check that needs manual grading shows what was found, or says that nothing was."""
-    found, nothing = (ask(case.check, submitted, **case.arguments) for submitted in (REFERENCE, case.without))
-    at_location = None if case.at is None else REFERENCE.location_of(*case.at)
-    assert (found.status, found.message, found.location) == ("pending", case.found, at_location)
-    assert (nothing.status, nothing.message, nothing.location) == ("pending", case.not_found, None)
-
-
-@every_case
 def test_a_grade_run_finds_the_same(case: PackageCase) -> None:
-    """A check has the same result as a criterion of a rubric."""
-    for submitted in (case.passing, case.failing):
-        assert graded(case.check, submitted, **case.arguments) == ask(case.check, submitted, **case.arguments)
+    """A check passes a correct submission and fails an incorrect one, alone and as a criterion of a rubric."""
+    for submitted, status in ((case.passing, "passed"), (case.failing, "failed")):
+        outcome = ask(case.check, submitted, **case.arguments)
+        assert outcome.status == status
+        assert graded(case.check, submitted, **case.arguments) == outcome
 
 
 @every_case

@@ -17,6 +17,10 @@ Y_FORWARD = (
     ("0.6 0.4 0.2", "0.4 0.6 0.2"), ("0.15 0 0.225", "0 0.15 0.225"), ("0.2 0 -0.05", "0 0.2 -0.05"),
     ('-0.15 0.2 0" rpy="-1.57 0 0', '-0.2 -0.15 0" rpy="0 -1.57 0'), ('-0.15 -0.2 0" rpy="-1.57 0 0', '0.2 -0.15 0" rpy="0 -1.57 0'),
 )  # fmt: skip
+EXTRA = (
+    "</robot>",
+    '<link name="flag"/><joint name="f" type="fixed"><parent link="lidar"/><child link="flag"/></joint></robot>',
+)
 GREEN = ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')
 
 
@@ -33,9 +37,10 @@ def graded(text: str, folder: Path) -> tuple[int, list[str]]:
     [
         (CENTRE, 52, "everything is moved by 0 0 -0.1 m relative to the handout: one decision, 18 points"),
         (Y_FORWARD, 42, "everything is turned by 90 degrees about z relative to the handout: one decision, 28 points"),
+        ((*CENTRE, EXTRA), 52, "everything is moved by 0 0 -0.1 m relative to the handout: one decision, 18 points"),
         ((*CENTRE, GREEN), 46, "everything is moved by 0 0 -0.1 m relative to the handout: one decision, 18 points"),
     ],
-    ids=["centre", "y forward", "another mistake beside it"],
+    ids=["centre", "y forward", "another link beside it", "another mistake beside it"],
 )
 def test_one_decision_is_named_once(pairs: tuple[tuple[str, str], ...], score: int, text: str, tmp_path: Path) -> None:
     """The note says how everything differs, and how many points this decision costs; the points are lost all the same."""

@@ -211,9 +211,10 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
     assert done.stderr == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
 
 
-def test_a_search_that_failed_has_its_own_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("step", ["run", "_rounds"])
+def test_a_search_that_failed_has_its_own_sentence(step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`--fix` does not say that there is nothing to fix."""
-    monkeypatch.setattr(HintSearch, "run", lambda self: self.nothing)
+    monkeypatch.setattr(HintSearch, step, lambda self: self.nothing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 
@@ -272,6 +273,8 @@ def test_a_missing_resource_index_costs_no_other_hint(tmp_path: Path) -> None:
     [created] = found["setup-installs-urdf"]
     assert created["message"].startswith("Create the empty file `my_robot/resource/my_robot`")
     assert [edit["path"] for edit in created["edits"]] == ["my_robot/resource/my_robot"]
+    [created] = hints(sample, "--hints", "place")["setup-installs-urdf"]
+    assert created["message"] == "Check which files are missing."
     (tmp_path / "fixed").mkdir()
     assert run(("grade", sample, "--fix", tmp_path / "fixed")).returncode == 1
     assert (tmp_path / "fixed/my_robot/resource/my_robot").read_bytes() == b""

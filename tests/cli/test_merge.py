@@ -39,7 +39,7 @@ def put(path: Path, key: str, criterion: str, entry: Entry, by: str, minute: int
     """Add an entry at a minute."""
     with Gradebook(path) as book:
         grade = Grades(book).find(key)
-        mark = Mark(0, entry, by, f"2026-11-20T12:{minute:02}:00+00:00", grade.result)
+        mark = Mark(entry, by, f"2026-11-20T12:{minute:02}:00+00:00", grade.result)
         insert_mark(book, grade.id, criterion, mark, by)
 
 
@@ -239,7 +239,7 @@ def test_both_gradebooks_may_be_in_use(top: Path) -> None:
     """Another process has them open, B with a write that is not yet in the file itself."""
     with Gradebook(top / "a.db") as one, Gradebook(top / "b.db") as other:
         grade = Grades(other).find("ash")
-        insert_mark(other, grade.id, "essay", Mark(0, points("3"), "Lee", result=grade.result), "Lee")
+        insert_mark(other, grade.id, "essay", Mark(points("3"), "Lee", result=grade.result), "Lee")
         assert merge(top).returncode == 0
         assert Grades(one).find("ash").score == 9
 

@@ -99,6 +99,15 @@ def test_a_mimic_joint_that_xacro_leaves_open_is_not_posed(tmp_path: Path, open_
     assert "2/2" in graded(tmp_path, given, ARM, *map(str, command))[1]
 
 
+def test_a_joint_whose_type_xacro_leaves_open_is_not_posed(tmp_path: Path) -> None:
+    """It may turn or slide, so its position has no unit: the criterion needs manual grading."""
+    robot = ARM.replace('type="prismatic"', 'type="$(env X)"', 1)
+    (tmp_path / "open.xacro").write_text(robot.replace("<robot", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'))
+    command = ("grade", str(tmp_path / "open.xacro"), "--rubric", str(tmp_path / "arm.toml"))
+    code, text = graded(tmp_path, "at = { slide = 0.1 }\nwith = { xyz = [0, 0, 0.5] }\n", ARM, *command)
+    assert (code, "–/2" in text, "X is known only at run time" in text) == (1, True, True)
+
+
 @pytest.mark.parametrize(
     ("position", "message"),
     [

@@ -8,8 +8,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent))
 
-from tests.command_line import run
+import pytest
+
+from tests.command_line import ROOT, run
 from tests.golden.cases import GOLDEN
+from tests.golden.outcomes import FILES, ROWS
 
 if __name__ == "__main__":
     for case in GOLDEN:
@@ -17,3 +20,6 @@ if __name__ == "__main__":
         case.file.write_bytes(done.stdout)
         if done.returncode != case.exit_code:
             print(f"{case.name}: exit code {done.returncode}, not {case.exit_code}")
+    for name, rows in ROWS.items():
+        FILES[name].write_text("".join(f"{row}\n" for row in rows()), encoding="utf-8")
+    pytest.main([str(ROOT / "tests/checks"), "-q", "-n0", "--approve"])

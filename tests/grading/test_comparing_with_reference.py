@@ -35,6 +35,10 @@ EXAMPLES = re.findall(r"```toml\n(.*?)```", (ROOT / "docs/checks.md").read_text(
 # What is wrong with the reference, by what is done to the folder of the rubric, and a part of the message.
 BROKEN: dict[str, tuple[Callable[[Path], object], str]] = {
     "missing": (lambda folder: (folder / "arm/robot.urdf").unlink(), "arm"),
+    "another file": (
+        lambda folder: (folder / "arm/robot.urdf").rename(folder / "arm/notes.txt").write_text("nothing"),
+        "cannot be compared with: no URDF",
+    ),
     "not a URDF": (lambda folder: (folder / "arm/robot.urdf").write_text("nothing"), "cannot be compared with"),
     "xacro without a robot": (
         lambda folder: (folder / "arm/robot.urdf").write_text("<robot>${x}<robot"),

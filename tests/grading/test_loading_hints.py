@@ -173,3 +173,15 @@ def test_no_hint_loses_a_point(tmp_path: Path) -> None:
             after = results_of(written(tmp_path, repaired_text(submission, found)))
             assert all(after[name].outcome.status == "passed" for name in found.gains), text
             assert all(after[name].points >= result.points for name, result in before.items()), text
+
+
+def test_a_chain_of_repairs_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What the first steps repair is kept; of the edits of one step a few are compared."""
+    text = REFERENCE.replace("</robot>", "", 1).replace('rgba="', 'rgba="1 ', 1)
+    submission = written(tmp_path, text)
+    trials = Trials(LAB6, submission, results_of(submission))
+    full, _ = repaired(trials, REFERENCE_DRAFT)
+    monkeypatch.setattr("grader.grading.hints.loading._MAX_STEPS", 1)
+    monkeypatch.setattr("grader.grading.hints.loading._MAX_VALUES", 1)
+    first, _ = repaired(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT)
+    assert (len(first), len(full)) == (1, 2)

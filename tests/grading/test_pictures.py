@@ -11,6 +11,7 @@ import pytest
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
+from grader.checks.tree import urdf_loads
 from grader.documents.pictures import EmbeddedPicture
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import may_have_pictures, pictures_of
@@ -237,6 +238,18 @@ def test_a_file_that_is_gone_is_named() -> None:
     criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[evidence_shown], {"names": ["a"]})
     (found,) = pictures_of(Result(criterion, Outcome("pending", "?", ("b.png",))), submission)
     assert str(found) == "b.png: it is no longer in the submission"
+
+
+def test_a_document_in_place_of_a_robot_shows_all_its_pictures() -> None:
+    """No heading is that of a criterion of the robot; a document whose pictures take too long to read is named."""
+    submission = Submitted({"lab.docx": word("# Task 1: Step 8", STEP_8, STEP_18)}).submission
+    criterion = Criterion("it", "It", "task1", Decimal(1), CHECKS[urdf_loads], {})
+    result = Result(criterion, Outcome("pending", "?", ("lab.docx",)))
+    assert len(pictures_of(result, submission)) == 2
+    assert submission.readable_documents is not None
+    submission.readable_documents._seconds = 0.0
+    (found,) = pictures_of(result, submission)
+    assert str(found).startswith("lab.docx: lab.docx was not read: the Word and PDF files take longer than ")
 
 
 def test_documents_that_are_not_read_are_named() -> None:

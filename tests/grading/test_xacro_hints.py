@@ -1,13 +1,17 @@
 """Mistakes in xacro robots: the edit of the xacro with which everything passes again is found and proven."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 
 from grader.edits import edited
+from grader.errors import InputError
+from grader.files.tree import Tree
 from grader.grading.grade import grade
 from grader.grading.hints.search import HintSearch
 from grader.grading.hints.trials import Trials
+from grader.grading.report import Result
 from grader.robot.edits.draft import Draft
 from grader.source import Edit
 from grader.submission.editing import overlaid
@@ -24,11 +28,15 @@ WHEEL = "my_robot/urdf/wheel.xacro"
 URDF = "my_robot/urdf/my_robot.urdf"
 
 
+def results_of(submission: Submission) -> dict[str, Result]:
+    """Return the results of a submission by criterion."""
+    return {result.criterion.id: result for result in grade(LAB6, submission).results}
+
+
 def search(submission: Submission) -> HintSearch:
     """Return the finished search for edits of a submission."""
-    results = {result.criterion.id: result for result in grade(LAB6, submission).results}
     assert isinstance(REFERENCE.urdf, Read)
-    return HintSearch(Trials(LAB6, submission, results), Draft.of(REFERENCE.urdf.reading)).run()
+    return HintSearch(Trials(LAB6, submission, results_of(submission)), Draft.of(REFERENCE.urdf.reading)).run()
 
 
 def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
@@ -111,6 +119,18 @@ def test_raw_xacro_with_another_mistake() -> None:
     assert not found.final.failed
     assert {edit.path for edit in found.final.edits} == {"my_robot.urdf"}
     assert 'xyz="${base_length/4} 0 ${base_height + wheel_width/2}"' in texts(found.final.edits)
+
+
+def test_edits_after_which_nothing_can_be_read() -> None:
+    """They lead to no state, as a submission that is too large by one of them."""
+    submission, _ = mutant(WHEEL, "wheel_radius / 2", "wheel_radius / 3")
+
+    def refuse(tree: Tree) -> Submission:
+        raise InputError(f"{tree.name} is too large")
+
+    edit = search(submission).found[0].edits[0]
+    trials = Trials(LAB6, replace(submission, reopen=refuse), results_of(submission))
+    assert trials.applied(trials.start, (edit,), whole=True) is None
 
 
 LAUNCH = "my_robot/launch/my_robot_rviz.launch.py"

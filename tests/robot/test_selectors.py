@@ -7,7 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement, NotDecided
+from grader.grading.hints.targets import selected as linked
 from grader.robot.joint_elements import Mimic
+from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.selectors import selected_link
 from grader.robot.tree import parent_joints
@@ -51,6 +53,7 @@ def test_a_moving_joint_that_is_not_there_is_missing(name: str) -> None:
     with pytest.raises(MissingElement) as caught:
         selected(robot(*ARM), name)
     assert str(caught.value) == f"there is no {name}: the longest chain has 2 moving joints"
+    assert linked(Configuration(robot(*ARM)), name) == name  # of which no hint can be about a link
 
 
 def test_a_mimic_joint_does_not_count() -> None:

@@ -340,3 +340,11 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
             assert theirs < own.distance < 0.0, pair
             parted = moved(pair[3], NEAR - own.distance, own.direction)
             assert oracle.distance(a, pair[1], b, parted) >= 0.0, pair
+
+
+def test_a_search_that_ends_early_bounds_the_distance(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rounding errors may keep it from an end: the direction that was found by then separates the shapes, too."""
+    poses = at(0.0, 0.0, 0.0, (0.3, 0.2, 0.1)), at(0.9, 0.8, 0.7, (1.0, 0.5, 0.2))
+    exact = separation(CHASSIS, poses[0], WHEEL, poses[1]).distance
+    monkeypatch.setattr("grader.robot.separation._MAX_STEPS", 1)
+    assert 0.0 < separation(CHASSIS, poses[0], WHEEL, poses[1]).distance < exact

@@ -40,11 +40,11 @@ class Mark(NamedTuple):
     for.
     """
 
-    id: int
     entry: Entry
     by: str
     at: str = ""
     result: int | None = None
+    id: int = 0
 
     @property
     def points(self) -> Decimal | None:
@@ -73,7 +73,7 @@ class NewerMarkError(Exception):
 
 
 def add_mark(
-    book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str = "", *, shown: int | None = None
+    book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, *, shown: int | None = None
 ) -> AddedMark:
     """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
@@ -89,26 +89,26 @@ def add_mark(
         )
     with _writing(book):
         before = _seen(book, grade, criterion, entry, by, shown)
-        mark = Mark(0, entry, by, result=grade.result)
+        mark = Mark(entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
             mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
 def restore_mark(
-    book: Gradebook, grade: StudentGrade, criterion: str, mark: Mark | Entry, by: str = "", *, shown: int
+    book: Gradebook, grade: StudentGrade, criterion: str, mark: Mark | Entry, by: str, *, shown: int
 ) -> AddedMark:
     """Add an entry that repeats an earlier mark, with its name and result, or an entry that withdraws the newest one.
 
     The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
     """
-    mark = Mark(0, mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
+    mark = Mark(mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
     with _writing(book):
         before = _seen(book, grade, criterion, mark.entry, by, shown)
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
-def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str = "") -> Mark:
+def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> Mark:
     """Undo the newest mark, and return it: add an entry that repeats the mark before it, or withdraws the only one.
 
     Raises InputError if there is no mark.
@@ -186,7 +186,7 @@ def mark_of(row: Mapping[str, Any]) -> Mark:
     """Return a row of the table of marks."""
     points = None if row["points"] is None else points_from_units(row["points"])
     entry = Entry(row["kind"], points, row["comment"])
-    return Mark(row["id"], entry, row["grader_name"], row["at"], row["result"])
+    return Mark(entry, row["grader_name"], row["at"], row["result"], row["id"])
 
 
 def account() -> str:

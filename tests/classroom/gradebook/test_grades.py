@@ -111,7 +111,7 @@ def test_a_mark_of_a_criterion_that_the_rubric_no_longer_has(tmp_path: Path) -> 
         for key in ("anna", "ben", "emil"):
             put(book, key)
         put(book, "anna", "picture")
-        add_mark(book, Grades(book).find("emil"), "total", Entry("points", Decimal(3)))
+        add_mark(book, Grades(book).find("emil"), "total", Entry("points", Decimal(3)), "")
         record_run(book, other, [graded_as(other, key, "ppp??") for key in ("anna", "emil", "fay")])
         assert notices(book) == {"anna": why, "ben": "graded with an earlier version of the rubric"}
         assert attention(Grades(book)).total == 2
@@ -150,7 +150,7 @@ def test_a_final_mark_on_an_unreadable_submission_is_listed(entry: Entry, tmp_pa
         for signs in ("?????", "?ff??"):
             record_run(book, LAB, [graded_as(LAB, "anna", signs, reason="no zip")._replace(digest="")])
             if signs == "?????":
-                add_mark(book, Grades(book).find("anna"), "total", entry)
+                add_mark(book, Grades(book).find("anna"), "total", entry, "")
                 assert notices(book) == {}
         assert notices(book) == {"anna": "final mark or excuse given before the submission changed"}
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from datetime import UTC, datetime
 from decimal import Decimal
 from pathlib import Path
 
@@ -12,7 +13,16 @@ from hypothesis import strategies as st
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
-from grader.classroom.gradebook.marks import TAKE_BACK
+from grader.classroom.gradebook.marks import (
+    TAKE_BACK,
+    WITHDRAWN,
+    AddedMark,
+    Entry,
+    NewerMarkError,
+    account,
+    add_mark,
+    undo_mark,
+)
 from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
@@ -118,6 +128,62 @@ def test_a_criterion_without_points() -> None:
     assert read_points("0", nothing.id, nothing.points) == 0
     with pytest.raises(InputError, match="is worth 0 to 0 points, not 1"):
         read_points("1", nothing.id, nothing.points)
+
+
+def test_a_container_may_have_no_account(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The audit then names nobody."""
+
+    def fail() -> str:
+        raise KeyError("getpwuid(): uid not found: 1234")
+
+    monkeypatch.setattr("getpass.getuser", lambda: "robo")
+    assert account() == "robo"
+    monkeypatch.setattr("getpass.getuser", fail)
+    assert account() == ""
+
+
+ROWS = [  # kind, points, comment, author, name in reports, run of the result
+    ("points", 10_000, "one root", "Kim", "Kim", 1),
+    ("points", 10_000, "two roots", "robo", "Kim", 1),  # a comment keeps the points, their grader and their result
+    ("excused", None, "", "Lee", "Lee", 2),
+    ("excused", None, "ill", "Kim", "Lee", 2),
+    ("withdrawn", None, "", "robo", "", 2),
+    ("comment", None, "late", "robo", "", 2),  # there are no points to keep
+    ("withdrawn", None, "", "Kim", "", 2),  # undone: the mark before it counts again
+    ("second", 20_000, "", "Kim", "Kim", 2),
+    ("second", 30_000, "", "Kim", "Kim", 2),
+    ("second", 40_000, "", "Lee", "Lee", 2),
+]
+
+
+def test_every_entry_is_a_row_of_the_audit(standings: Grades, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It says who made it, whose name reports show, and which result it is about; a newer entry that was not seen refuses it."""
+    monkeypatch.setattr("getpass.getuser", lambda: "robo")
+    book = standings.book
+
+    def add(entry: Entry, by: str, shown: int | None = None) -> AddedMark:
+        return add_mark(book, Grades(book).find("anna"), "essay", entry, by, shown=shown)
+
+    first = add(Entry("points", Decimal(1), "one root"), "Kim")
+    record_run(book, LAB, [graded_as(LAB, "anna", "ppp??", "again")])
+    second = add(Entry("comment", None, "two roots"), "", shown=first.id)
+    assert (first.before, second.before and second.before.comment) == (None, "one root")
+    for entry, by in (
+        (Entry("excused"), "Lee"), (Entry("comment", None, "ill"), "Kim"), (WITHDRAWN, ""), (Entry("comment", None, "late"), ""),
+    ):  # fmt: skip
+        newest = add(entry, by)
+    with pytest.raises(NewerMarkError) as caught:
+        add(Entry("points", Decimal(2)), "Lee", shown=first.id)
+    assert caught.value.mark.id == newest.id
+    assert undo_mark(book, Grades(book).find("anna"), "essay", "Kim").comment == "late"
+    own = add(Entry("second", Decimal(2)), "Kim", shown=newest.id)
+    add(Entry("second", Decimal(3)), "Kim", shown=own.id)
+    with pytest.raises(NewerMarkError):
+        add(Entry("second", Decimal(4)), "Kim", shown=own.id)
+    assert add(Entry("second", Decimal(4)), "Lee", shown=0).before is None
+    rows = "SELECT kind, points, comment, author, grader_name, run FROM mark JOIN submission ON mark.result = submission.result"
+    assert [tuple(row) for row in book.rows(f"{rows} ORDER BY mark.id")] == ROWS
+    assert {datetime.fromisoformat(at).tzinfo for (at,) in book.rows("SELECT at FROM mark")} == {UTC}
 
 
 def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:
