@@ -1,276 +1,308 @@
-"""Measurements behind the speed claims: `python benchmarks/run.py`. Quote the ratios; absolute times are the machine's.
+"""Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test,oracle,bench]'`.
 
-Quote the ratios; absolute times depend on the machine. Every pair is timed alternately, A
-B A B, so that a machine whose speed drifts favours neither.
+All figures are ratios of alternatives that run in turn; absolute times depend on the machine. What is timed, ours and
+theirs, must end with the expected exit code and print an expected word. `--against FOLDER` also runs each command of
+ours with the checkout in that folder, and prints how much faster this one is.
 """
 
-import contextlib
-import io
-import os
-import statistics
-import subprocess
+import argparse
+import json
+import math
+import shutil
 import sys
 import tempfile
-import time
-from collections.abc import Callable
-from importlib import import_module
-from importlib.metadata import PackageNotFoundError, distribution
-from importlib.util import find_spec
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.metadata import distribution
 from pathlib import Path
+from typing import NamedTuple
 
-from lxml import etree
+from class_generator import make_class
+from timing import Command, in_turn, ratio
+from warm import PACKAGE, ROOT, URDF
 
-from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
-from grader.report.as_json import render_json
-from grader.report.formats import Format
-from grader.robot.kinematics import Configuration
-from grader.robot.reader import read_urdf
-from grader.submission.opening import open_submission, read_submission
-from grader.submission.surroundings import Surroundings
-from grader.xacro.expansion import expand
-
-ROOT = Path(__file__).resolve().parent.parent
-WORKSPACE = ROOT / "submissions" / "reference"
-PACKAGE = WORKSPACE / "roscourse_sim_ws" / "src" / "my_robot"
-URDF = PACKAGE / "urdf" / "my_robot.urdf"
-ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
-XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
-BARE = "import typer, lxml, numpy, rich"
-BARE_USED = "import typer, lxml.etree, numpy, rich.console"
-CLASSROOM = {
-    **dict.fromkeys(("CLASSROOM", "ASSIGNMENT", "USERNAME", "COMMIT_URL", "RELEASE_URL"), "lab6"),
-    "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3",
+_HERE = Path(__file__).resolve().parent
+_MISTAKES = ROOT / "submissions" / "several-mistakes" / "my_robot.urdf"
+_IMPORTS = "import typer, lxml.etree, numpy, rich.console; print('imported')"
+_READERS = {
+    "pinocchio": "import pinocchio as p; m = p.buildModelFromUrdf({0!r}); p.forwardKinematics(m, m.createData(), p.neutral(m)); print(m.nframes)",
+    "yourdfpy": "import yourdfpy; print(len(yourdfpy.URDF.load({0!r}, load_meshes=False).link_map))",
+    "urdf_parser_py": "from urdf_parser_py.urdf import URDF; print(len(URDF.from_xml_file({0!r}).links))",
 }
-CHAIN = (10, 100, 1_000, 10_000)
+# What some fields of the table mean that a reader cannot guess.
+_LOOP = 'for f in "$1"/*.urdf; do "$0" "$f" >/dev/null || exit 1; done; echo all'
 
 
-def main() -> None:
-    """Print every figure of the page."""
-    whole_process()
-    whole_packages()
-    all_formats()
-    warm_grading()
-    warm_packages()
-    warm_xacro()
-    inspecting()
-    forward_kinematics()
+class Row(NamedTuple):
+    """A figure: what is compared, the ratio, and its goal (a number, with `<` or `>`)."""
+
+    figure: str
+    value: float
+    goal: str = ""
+    unit: str = ""
+
+    def __str__(self) -> str:
+        """Return the row of the table."""
+        return f"| {self.figure} | {self.value:.2f}{self.unit} | {self.goal} |"
 
 
-def whole_process(runs: int = 15) -> None:
-    """Compare the whole process with importing its dependencies in a bare interpreter."""
-    python, module = sys.executable, [sys.executable, "-m", "grader"]
+@dataclass(frozen=True)
+class Bench:
+    """Where the inputs are made, how many rounds run, and the checkout to compare with."""
+
+    top: Path
+    rounds: int
+    before: Path | None = None
+    is_all: bool = False
+
+    def grader(
+        self, *arguments: str | Path, code: int = 0, word: str = "", root: Path = ROOT, prepare: Callable[[], object] = bool
+    ) -> Command:
+        """Return a command of ours."""
+        words = (sys.executable, "-P", "-m", "grader", *arguments)
+        return Command(words, code, word, {"PYTHONPATH": str(root)}, prepare)
+
+    def compare(self, **commands: Command) -> dict[str, list[float]]:
+        """Return the times of commands that run in turn; of ours also those of the other checkout, as `NAME before`."""
+        runs = dict(commands)
+        if self.before is not None:
+            for name, command in commands.items():
+                if "grader" in command.words and name != "again":  # its gradebook is of this version
+                    runs[f"{name} before"] = command._replace(environment={"PYTHONPATH": str(self.before)})
+        times = in_turn({name: command.seconds for name, command in runs.items()}, self.rounds)
+        for name in commands:
+            if f"{name} before" in times:
+                print(f"  {name}: {ratio(times[f'{name} before'], times[name]):.2f} times as fast as before", flush=True)
+        return times
+
+    def class_of(self, count: int) -> Path:
+        """Return a class of this many URDFs, generated on first use."""
+        folder = self.top / f"class-{count}"
+        if not folder.exists():
+            for _ in make_class(folder, count, seed=count):
+                pass
+        return folder
+
+    def batch(self, count: int, *options: str | Path, book: Path | None = None, word: str = "graded") -> Command:
+        """Return the grading of a class, into a new gradebook by default."""
+        path = book or self.top / "book.db"
+        prepare = (lambda: path.unlink(missing_ok=True)) if book is None else bool
+        return self.grader("batch", self.class_of(count), "--gradebook", path, *options, word=word, prepare=prepare)
+
+    @cached_property
+    def warm(self) -> dict[str, list[float]]:
+        """The times of gradings in a running process, of several such processes."""
+        times: dict[str, list[float]] = {}
+        script = Command((sys.executable, _HERE / "warm.py", "5"), environment={"PYTHONPATH": str(ROOT)})
+        for _ in range(max(1, self.rounds // 5)):
+            for name, values in json.loads(script.output()).items():
+                times.setdefault(name, []).extend(values)
+        return times
+
+
+def cold(bench: Bench) -> Iterator[Row]:
+    """Compare a whole `grade` with what a course would write instead, and with interpreters that only import."""
+    python, urdf = sys.executable, {"URDF": str(URDF)}
+    folder = bench.top / "autograders"
+    shutil.copytree(_HERE / "autograders", folder, dirs_exist_ok=True)
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    asserts = {
+        name: Command((python, "-m", "pytest", "-q", "-p", "no:cacheprovider", folder / f"test_{name}.py"), 0, "6 passed", urdf)
+        for name in ("urdf_parser_py", "yourdfpy")
+    }
+    times = bench.compare(
+        grade=bench.grader("grade", URDF, word="70/70"),
+        json=bench.grader("grade", URDF, "--format", "json", word='"score"'),
+        imports=Command((python, "-c", _IMPORTS), word="imported"),
+        bare=Command((python, "-c", "print('nothing')"), word="nothing"),
+        **asserts,
+    )
+    for name, goal in (("urdf_parser_py", "> 5"), ("yourdfpy", "> 12")):
+        yield Row(f"cold `grade`, times as fast as pytest with six asserts on {name}", ratio(times[name], times["grade"]), goal)
+    yield Row("cold `grade` against bare imports of its libraries", ratio(times["grade"], times["imports"]), "< 0.75")
+    yield Row("cold `grade --format json` against the same", ratio(times["json"], times["imports"]), "< 0.6")
+    yield Row("cold `grade` against an interpreter that starts and ends", ratio(times["grade"], times["bare"]))
+
+
+def readers(bench: Bench) -> Iterator[Row]:
+    """Compare a whole `inspect` with other programs that read the same URDF."""
     commands = {
-        "bare imports": [python, "-c", BARE],
-        "bare imports, submodules": [python, "-c", BARE_USED],
-        "grade": [*module, "grade", str(URDF)],
-        "grade --format json": [*module, "grade", str(URDF), "--format", "json"],
-        "inspect": [*module, "inspect", str(URDF)],
-        "--help": [*module, "--help"],
-        "--version": [*module, "--version"],
+        name: Command((sys.executable, "-W", "ignore", "-c", text.format(str(URDF))), word="6" if name != "pinocchio" else "1")
+        for name, text in _READERS.items()
     }
-    times = in_turn({name: process(command) for name, command in commands.items()}, runs)
-    table("The whole process", times, "bare imports", f"python -c '{BARE}'")
-
-
-def whole_packages(runs: int = 15) -> None:
-    """Compare processes that grade a package, a workspace with answers and pictures, and its zip with the URDF alone."""
-    module = [sys.executable, "-m", "grader"]
-    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in submitted.items()}, runs)
-    table("Whole submissions as a whole process", times, "the URDF alone", "grade my_robot.urdf")
-
-
-def all_formats(runs: int = 25) -> None:
-    """Compare a run that saves every format with one that saves one, for a submission with mistakes and one without."""
-    for name in ("several-mistakes", "reference"):
-        command = [sys.executable, "-m", "grader", "grade", str(ROOT / "submissions" / name)]
-        with tempfile.TemporaryDirectory() as folder:
-            saves = {kind: f"{kind}={Path(folder, kind)}" for kind in Format}
-            commands = {
-                "one format": [*command, "--save", saves[Format.JSON]],
-                "all formats": [*command, *(word for save in saves.values() for word in ("--save", save))],
-            }
-            environment = {**process_environment(), **CLASSROOM}
-            times = in_turn({key: process(words, environment) for key, words in commands.items()}, runs)
-        table(f"All {len(saves)} formats of {name}", times, "one format", "--save json=FILE")
-
-
-def warm_packages(runs: int = 15) -> None:
-    """Compare opening and grading a whole submission in a running process with the URDF in it alone."""
-    rubric = load_rubric("lab6")
-
-    def grading(path: Path) -> Callable[[], object]:
-        return lambda: grade(rubric, open_submission(str(path), rubric.lab))
-
-    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)
-    table("Whole submissions, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
-
-
-def warm_xacro(runs: int = 15) -> None:
-    """Compare grading a robot in xacro with grading the URDF that xacro makes of it, in a running process."""
-    rubric, data = load_rubric("lab6"), XACRO.read_bytes()
-    expanded = expand(data, XACRO.name, Surroundings().workspace(), {}).root
-    assert expanded is not None
-    plain = etree.tostring(expanded, pretty_print=True)
-
-    def grading(data: bytes, path: str) -> Callable[[], object]:
-        return lambda: grade(rubric, read_submission(data, identity="a", path=path))
-
-    files = {"the expanded URDF": (plain, "my_robot.urdf"), "xacro": (data, XACRO.name)}
-    times = in_turn({name: repeated(grading(*file), 50) for name, file in files.items()}, runs)
-    table("xacro, warm, bytes to report", times, "the expanded URDF", "grade my_robot.urdf")
-
-
-def warm_grading(runs: int = 25) -> None:
-    """Compare grading in a running process with lxml's own parse of the same bytes."""
-    rubric, data = load_rubric("lab6"), URDF.read_bytes()
-
-    def grade_once() -> None:
-        grade(rubric, read_submission(data, identity="a", path="my_robot.urdf"))
-
-    def to_json() -> None:
-        render_json(grade(rubric, read_submission(data, identity="a", path="my_robot.urdf")))
-
-    times = in_turn(
-        {
-            "lxml.etree.fromstring": repeated(lambda: etree.fromstring(data), 1_000),
-            "read_urdf": repeated(lambda: read_urdf(data), 100),
-            "grade, bytes to report": repeated(grade_once, 50),
-            "grade, bytes to JSON": repeated(to_json, 50),
-            **{name: repeated(run, 50) for name, run in other_parsers(data)},
-        },
-        runs,
+    times = bench.compare(
+        inspect=bench.grader("inspect", URDF, "--format", "json", word="base_footprint"),
+        check_urdf=Command((_check_urdf(), URDF), word="Successfully", environment=_LIBRARIES),
+        **commands,
     )
-    table(f"Warm, the reference of {len(data)} bytes", times, "lxml.etree.fromstring", "lxml.etree.fromstring")
+    for name in ("check_urdf", *_READERS):
+        yield Row(f"cold `inspect`, times as fast as {name}", ratio(times[name], times["inspect"]))
 
 
-def inspecting(runs: int = 10) -> None:
-    """Compare inspect as a whole process with other readers of URDF, if they are installed."""
-    commands = {"grader inspect": process([sys.executable, "-m", "grader", "inspect", str(URDF), "--format", "json"])}
-    program = check_urdf()
-    if program is not None:
-        environment = {**os.environ, "LD_LIBRARY_PATH": str(program.parent.parent / "lib")}
-        commands["check_urdf"] = process([str(program), str(URDF)], environment)
-    scripts = {
-        "pinocchio": "import pinocchio as p; m = p.buildModelFromUrdf({0!r}); p.forwardKinematics(m, m.createData(), p.neutral(m))",
-        "yourdfpy": "import yourdfpy; yourdfpy.URDF.load({0!r}, load_meshes=False)",
-        "urdf_parser_py": "from urdf_parser_py.urdf import URDF; URDF.from_xml_string(open({0!r}, 'rb').read())",
-    }
-    for name, script in scripts.items():
-        if find_spec(name) is not None:
-            commands[name] = process([sys.executable, "-W", "ignore", "-c", script.format(str(URDF))])
-    table("inspect as a whole process", in_turn(commands, runs), "grader inspect", "grader inspect")
+def warm(bench: Bench) -> Iterator[Row]:
+    """Compare gradings in a running process with lxml's parse of the same bytes, and with each other."""
+    times = bench.warm
+    for figure, above, below, goal in (
+        ("warm, bytes to report, against lxml's parse", "bytes to report", "lxml", "< 15"),
+        ("package, warm, against its URDF", "package", "path to report", "< 4"),
+        ("zip, warm, against its URDF", "zip", "path to report", ""),
+        ("xacro, warm, against its expanded URDF", "xacro", "expanded", "< 2"),
+    ):
+        yield Row(figure, ratio(times[above], times[below]), goal)
 
 
-def forward_kinematics() -> None:
-    """Measure every pose of a chain of revolute joints, read once and solved anew."""
-    print("\nForward kinematics, every link's pose in the root")
-    for count in CHAIN:
-        reading = read_urdf(chain(count), "chain.urdf")
-        assert reading.robot is not None
-        robot = reading.robot
-        names = [link.name for link in robot.links]
-        positions = {joint.name: 0.1 for joint in robot.joints}
-
-        def solve() -> None:
-            configuration = Configuration(robot, positions)
-            for name in names:
-                configuration.pose(name)
-
-        best = min(once(solve) for _ in range(max(3, 3_000 // count)))
-        print(f"  {count:>6} links  {best * 1e3:9.3f} ms  {best / count * 1e6:6.2f} us a link")
-
-
-def chain(count: int) -> bytes:
-    """Return the URDF of a chain of this many links."""
-    lines = (
-        f'<link name="l{index}"/><joint name="j{index}" type="continuous"><parent link="l{index - 1}"/>'
-        f'<child link="l{index}"/><origin xyz="0.1 0 0.01" rpy="0.1 0.2 0.3"/><axis xyz="0 1 0"/></joint>'
-        for index in range(1, count)
+def hints(bench: Bench) -> Iterator[Row]:
+    """Compare a cold `grade` of a URDF with mistakes with and without hints."""
+    arguments = ("grade", _MISTAKES, "--hints")
+    times = bench.compare(
+        hints=bench.grader(*arguments, "edit", code=1, word="Change `"), none=bench.grader(*arguments, "none", code=1, word="42/70")
     )
-    return "\n".join(['<robot name="chain">', '<link name="l0"/>', *lines, "</robot>"]).encode()
+    yield Row("several mistakes with hints, cold, against without", ratio(times["hints"], times["none"]), "< 1.25")
 
 
-def other_parsers(data: bytes) -> list[tuple[str, Callable[[], object]]]:
-    """Measure urdf_parser_py in the same process, if it is installed."""
-    if find_spec("urdf_parser_py") is None:
-        return []
-    parser = import_module("urdf_parser_py.urdf").URDF
-
-    def parse() -> None:
-        with contextlib.redirect_stderr(io.StringIO()):
-            parser.from_xml_string(data)
-
-    return [("urdf_parser_py, parse only", parse)]
-
-
-def check_urdf() -> Path | None:
-    """Measure urdfdom's own program, if the test extra is installed."""
-    try:
-        return Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
-    except PackageNotFoundError:
-        return None
-
-
-def process(command: list[str], environment: dict[str, str] | None = None) -> Callable[[], float]:
-    """Run a whole process and return its time in seconds."""
-    variables = process_environment() if environment is None else environment
-
-    def run() -> float:
-        return once(lambda: subprocess.run(command, capture_output=True, env=variables, check=False))
-
-    return run
+def batch(bench: Bench) -> Iterator[Row]:
+    """Compare `batch` of 600 URDFs with a shell loop over check_urdf, and with itself in other ways."""
+    count, done = 600, bench.top / "done.db"
+    bench.batch(count, book=done).seconds()
+    reports = bench.top / "reports"
+    times = bench.compare(
+        two=bench.batch(count, "--jobs", "2"),
+        one=bench.batch(count, "--jobs", "1"),
+        again=bench.batch(count, book=done, word="unchanged"),
+        reports=bench.batch(count, "--reports", reports)._replace(
+            prepare=lambda: (shutil.rmtree(reports, ignore_errors=True), (bench.top / "book.db").unlink(missing_ok=True))
+        ),
+        loop=Command(("sh", "-c", _LOOP, _check_urdf(), _readable(bench, count)), word="all", environment=_LIBRARIES),
+    )
+    yield Row(f"`batch` of {count}, two workers, times as fast as a loop over check_urdf", ratio(times["loop"], times["two"]), "> 3")
+    yield Row("two workers, times as fast as one", ratio(times["one"], times["two"]), "> 1.9")
+    yield Row("the unchanged class again, times as fast", ratio(times["two"], times["again"]), "> 20")
+    yield Row("`batch --reports` against without", ratio(times["reports"], times["two"]), "< 2")
 
 
-def process_environment() -> dict[str, str]:
-    """Return the environment of a process that finds its bytecode ready, as an installed package does."""
-    environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    return environment
+def rubric_test(bench: Bench) -> Iterator[Row]:
+    """Time 500 mutants of two generated rubrics."""
+    for links, goal in ((11, "< 5"), (82, "< 60")):
+        urdf, rubric = bench.top / f"arm-{links}.urdf", bench.top / f"arm-{links}.toml"
+        urdf.write_text(arm(links))
+        bench.grader("rubric", "new", rubric, "--from", urdf, "--force").seconds()
+        count = rubric.read_text().count("[[criterion]]")
+        seconds = bench.grader("rubric", "test", rubric, "--mutants", "500", word="mutants").seconds()
+        yield Row(f"`rubric test`, 500 mutants, {links} links, {count} criteria", seconds, goal, " s")
 
 
-def repeated(run: Callable[[], object], count: int) -> Callable[[], float]:
-    """Return a function that runs several times and returns the seconds for each."""
-
-    def batch() -> float:
-        start = time.perf_counter()
-        for _ in range(count):
-            run()
-        return (time.perf_counter() - start) / count
-
-    return batch
-
-
-def once(run: Callable[[], object]) -> float:
-    """Return the seconds that a call takes."""
-    start = time.perf_counter()
-    run()
-    return time.perf_counter() - start
+def memory(bench: Bench) -> Iterator[Row]:
+    """Compare the peak memory of the whole process tree of two classes."""
+    large = 100_000 if bench.is_all else 10_000
+    peaks = []
+    for count in (1_000, large):
+        command = bench.batch(count)
+        command.prepare()
+        peaks.append(command.peak_memory())
+    yield Row(f"peak memory of a batch of {large:,} against 1,000", peaks[1] / peaks[0], "< 1.1")
 
 
-def in_turn(runs: dict[str, Callable[[], float]], count: int) -> dict[str, list[float]]:
-    """Run this many rounds of all measurements in turn, after a round that is not measured."""
-    times: dict[str, list[float]] = {name: [] for name in runs}
-    for number in range(count + 1):
-        for name, run in runs.items():
-            seconds = run()
-            if number:
-                times[name].append(seconds)
-    return times
+def growth(bench: Bench) -> Iterator[Row]:
+    """Fit the exponent of the cost between two sizes of an input: 1 is linear."""
+    sizes = {"submissions": (2_000, 20_000 if not bench.is_all else 100_000), "links": (2_000, 20_000), "files": (1_000, 10_000), "criteria": (100, 1_000)}
+    base = min(bench.grader("grade", URDF).processor_seconds() for _ in range(5))
+    for kind, (small, large) in sizes.items():
+        low, high = (_INPUTS[kind](bench, size).processor_seconds() - base for size in (small, large))
+        exponent = math.log(high / max(low, base / 10)) / math.log(large / small)
+        yield Row(f"exponent of the time for {kind}, {small:,} to {large:,}", exponent, "< 1.1")
 
 
-def table(title: str, times: dict[str, list[float]], base: str, base_words: str) -> None:
-    """Print medians and minima, and each as a multiple of the base's."""
-    print(f"\n{title} (1 = {base_words})")
-    median, least = statistics.median(times[base]), min(times[base])
-    for name, values in times.items():
-        middle, best = statistics.median(values), min(values)
-        print(
-            f"  {name:<28} median {middle * 1e3:9.3f} ms  {middle / median:6.2f} x   least {best * 1e3:9.3f} ms"
-            f"  {best / least:6.2f} x"
-        )
+def _links(bench: Bench, count: int) -> Command:
+    path = bench.top / f"chain-{count}.urdf"
+    path.write_text(arm(count))
+    return bench.grader("grade", path, "--max-size", "100000000", "--hints", "none", code=1, word="3/70")
+
+
+def _files(bench: Bench, count: int) -> Command:
+    folder = bench.top / f"files-{count}"
+    shutil.copytree(PACKAGE, folder, dirs_exist_ok=True)
+    for number in range(count):
+        (folder / f"notes-{number}.txt").write_text("nothing")
+    return bench.grader("grade", folder, "--hints", "none", code=0, word="90/")
+
+
+def _criteria(bench: Bench, count: int) -> Command:
+    path = bench.top / f"criteria-{count}.toml"
+    rows = "".join(
+        f'[[criterion]]\nid = "c{number}"\npart = "all"\ntitle = "Link {number}"\npoints = 1\nabout = "The base"\ncheck = "shows_box"\nwith = {{ link = "base_link", size = [0.6, 0.4, 0.2], tolerance = 0.002 }}\n'
+        for number in range(count)
+    )
+    path.write_text(f'id = "many"\ntitle = "Many"\nurdf = "my_robot.urdf"\npoints = {count}\n[[part]]\nid = "all"\ntitle = "All"\npoints = {count}\n{rows}')
+    return bench.grader("grade", URDF, "--rubric", path, word=f"{count}/{count}")
+
+
+def _submissions(bench: Bench, count: int) -> Command:
+    return bench.batch(count)
+
+
+_INPUTS: dict[str, Callable[[Bench, int], Command]] = {
+    "submissions": _submissions, "links": _links, "files": _files, "criteria": _criteria,
+}  # fmt: skip
+
+
+def arm(links: int) -> str:
+    """Return the URDF of a chain of revolute joints, each link with a shape, a body and an inertia."""
+    body = '<geometry><cylinder radius="0.05" length="0.2"/></geometry>'
+    parts = [
+        f'<link name="link_{number}"><visual><origin xyz="0 0 0.1"/>{body}</visual>'
+        f'<collision><origin xyz="0 0 0.1"/>{body}</collision><inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
+        '<inertia ixx="0.004" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="0.00125"/></inertial></link>'
+        for number in range(links)
+    ]
+    parts += [
+        f'<joint name="joint_{number}" type="{"revolute" if number <= 7 else "fixed"}"><parent link="link_{number - 1}"/>'
+        f'<child link="link_{number}"/><origin xyz="0 0 0.2" rpy="{0.1 * (number % 3)} 0 0.2"/><axis xyz="0 {number % 2} 1"/>'
+        '<limit lower="-1.5" upper="1.5" effort="10" velocity="2"/></joint>'
+        for number in range(1, links)
+    ]
+    return "\n".join(['<robot name="arm">', *parts, "</robot>"])
+
+
+def _readable(bench: Bench, count: int) -> Path:
+    """Return the files of a class, each replaced by the reference's size of file if ROS 2 refuses it."""
+    folder = bench.top / f"readable-{count}"
+    if not folder.exists():
+        folder.mkdir()
+        data = URDF.read_bytes()
+        for path in sorted(bench.class_of(count).rglob("*.urdf")):
+            (folder / path.name).write_bytes(data)
+    return folder
+
+
+def _check_urdf() -> Path:
+    return Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
+
+
+_LIBRARIES = {"LD_LIBRARY_PATH": str(_check_urdf().parent.parent / "lib")}
+FIGURES: dict[str, Callable[[Bench], Iterator[Row]]] = {
+    "cold": cold, "readers": readers, "warm": warm, "hints": hints, "batch": batch, "rubric-test": rubric_test,
+    "memory": memory, "growth": growth,
+}  # fmt: skip
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description="Print every speed that the project claims.")
+    parser.add_argument("figures", nargs="*", metavar="FIGURE", help=f"any of: {', '.join(FIGURES)}; default: all")
+    parser.add_argument("--rounds", type=int, default=11)
+    parser.add_argument("--against", type=Path, metavar="FOLDER", help="another checkout to compare with")
+    parser.add_argument("--all", action="store_true", help="classes of 100,000 too")
+    given = parser.parse_args(arguments)
+    unknown = sorted(set(given.figures) - set(FIGURES))
+    if unknown:
+        parser.error(f"there is no figure {', '.join(unknown)}")
+    print("| figure | measured | goal |\n|---|---|---|")
+    with tempfile.TemporaryDirectory() as top:
+        bench = Bench(Path(top), given.rounds, given.against, given.all)
+        for name in given.figures or FIGURES:
+            for row in FIGURES[name](bench):
+                print(row, flush=True)
 
 
 if __name__ == "__main__":

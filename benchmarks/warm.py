@@ -1,0 +1,78 @@
+"""Time gradings in a running process, and print the seconds of each round as JSON: `python benchmarks/warm.py [ROUNDS]`.
+
+Each result is checked once before the clock starts. `run.py` makes ratios of them.
+"""
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from lxml import etree
+from timing import in_turn, repeated
+
+from grader.grading.grade import grade
+from grader.grading.report import Report
+from grader.grading.rubric import load_rubric
+from grader.submission.opening import open_submission, read_submission
+from grader.submission.workspace import Surroundings
+from grader.xacro.expansion import expand
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "submissions" / "reference" / "roscourse_sim_ws" / "src" / "my_robot"
+URDF = PACKAGE / "urdf" / "my_robot.urdf"
+ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
+XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
+RUBRIC = load_rubric("lab6")
+
+
+class Case(NamedTuple):
+    """A grading, the points that it must give, and how often it is repeated in a round."""
+
+    run: Callable[[], Report]
+    points: int
+    count: int
+
+
+def from_bytes(data: bytes, path: str) -> Callable[[], Report]:
+    """Return the grading of a URDF's bytes."""
+    return lambda: grade(RUBRIC, read_submission(data, identity="a", path=path))
+
+
+def from_path(path: Path) -> Callable[[], Report]:
+    """Return the grading of a path."""
+    return lambda: grade(
+        RUBRIC, open_submission(str(path), wanted=RUBRIC.urdf, package=RUBRIC.package, folders=RUBRIC.folders)
+    )
+
+
+def expanded(path: Path) -> bytes:
+    """Return the URDF that xacro makes of a file."""
+    root = expand(path.read_bytes(), path.name, Surroundings().workspace(), {}).root
+    assert root is not None
+    return etree.tostring(root, pretty_print=True)
+
+
+CASES = {
+    "bytes to report": Case(from_bytes(URDF.read_bytes(), "my_robot.urdf"), 70, 50),
+    "path to report": Case(from_path(URDF), 70, 50),
+    "package": Case(from_path(PACKAGE), 90, 10),
+    "zip": Case(from_path(ZIPPED), 90, 10),
+    "xacro": Case(from_bytes(XACRO.read_bytes(), XACRO.name), 70, 50),
+    "expanded": Case(from_bytes(expanded(XACRO), "my_robot.urdf"), 70, 50),
+}
+
+
+def main(rounds: int) -> None:
+    """Print the times."""
+    for name, case in CASES.items():
+        points = case.run().score
+        assert points == case.points, f"{name} has {points} points, expected {case.points}"
+    data = URDF.read_bytes()
+    runs = {name: repeated(case.run, case.count) for name, case in CASES.items()}
+    print(json.dumps(in_turn({"lxml": repeated(lambda: etree.fromstring(data), 1_000), **runs}, rounds)))
+
+
+if __name__ == "__main__":
+    main(int((*sys.argv[1:], "15")[0]))
