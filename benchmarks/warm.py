@@ -16,7 +16,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.opening import open_submission, read_submission
-from grader.submission.workspace import Surroundings
+from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -42,9 +42,7 @@ def from_bytes(data: bytes, path: str) -> Callable[[], Report]:
 
 def from_path(path: Path) -> Callable[[], Report]:
     """Return the grading of a path."""
-    return lambda: grade(
-        RUBRIC, open_submission(str(path), wanted=RUBRIC.urdf, package=RUBRIC.package, folders=RUBRIC.folders)
-    )
+    return lambda: grade(RUBRIC, open_submission(str(path), RUBRIC.lab))
 
 
 def expanded(path: Path) -> bytes:

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from fnmatch import translate
+from functools import lru_cache
 from math import ceil
 from tempfile import TemporaryFile
 from types import ModuleType
@@ -32,6 +33,12 @@ _OTHER = re.compile(
     r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
     r"|grader \d\S*, \S+: "  # "grader 1.0, lab6: my_robot.urdf", the report as text
 )
+
+
+@lru_cache(maxsize=256)
+def _names_like(patterns: Sequence[str]) -> re.Pattern[str]:
+    """Return what matches names in lower case: translated once a rubric, not once a submission."""
+    return re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
 
 
 class DocumentCollection:
@@ -59,7 +66,7 @@ class DocumentCollection:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
         unread: list[Unread] = []
-        matching = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
+        matching = _names_like(tuple(patterns))
         files = self.tree.files.values()
         chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:

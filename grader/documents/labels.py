@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import takewhile
 
 from grader.names import closest
@@ -30,6 +31,7 @@ class Label:
         return self.task is not None and bool(self.steps)
 
 
+@lru_cache(maxsize=1024)  # a rubric's names are read for each submission
 def read_label(text: str, *, loosely: bool = False) -> Label:
     """Return the label of a name or line. If it names several tasks, as a path may, the last one counts.
 

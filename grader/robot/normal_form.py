@@ -1,6 +1,7 @@
 """The normal form of a robot: equal for files that differ only in what a copy can change without changing the robot."""
 
 from dataclasses import fields, is_dataclass
+from functools import cache
 from hashlib import sha256
 from typing import Any
 
@@ -57,10 +58,19 @@ def _renamed(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
 
 def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     """Return a value of the model as plain tuples; locations do not count, as in comparisons."""
-    if is_dataclass(value):
-        names = (field.name for field in fields(value) if field.compare and field.name not in ignored)
-        return type(value).__name__, *(_plain(getattr(value, name)) for name in names)
+    if isinstance(value, float):
+        return value + 0.0  # -0.0 is 0.0
     if isinstance(value, tuple):
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
-    return value + 0.0 if isinstance(value, float) else value  # -0.0 is 0.0
+    kind = type(value)
+    names = _compared(kind, ignored)
+    return (kind.__name__, *(_plain(getattr(value, name)) for name in names)) if names is not None else value
+
+
+@cache
+def _compared(kind: type, ignored: tuple[str, ...]) -> tuple[str, ...] | None:
+    """Return the fields of a dataclass that count; None for another class."""
+    if not is_dataclass(kind):
+        return None
+    return tuple(field.name for field in fields(kind) if field.compare and field.name not in ignored)
