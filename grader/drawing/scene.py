@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isfinite
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
 from grader.robot.transforms import Transform, Vector
 from grader.text import counted, enumerated, quoted
+from grader.values import dataclass
 
 Rgba = tuple[float, float, float, float]
 

@@ -1,6 +1,6 @@
 """The submission part of a report: what was graded, and its files as far as they can still be read."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple, Protocol
 
 from grader.robot.model import Robot
@@ -8,6 +8,7 @@ from grader.robot.reader import Verdict
 from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import OtherCandidate, Read, Urdf
+from grader.values import dataclass
 
 
 class Originals(Protocol):

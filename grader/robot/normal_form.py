@@ -63,13 +63,13 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     if isinstance(value, tuple):
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
-    kind = type(value)
+    kind: Any = type(value)
     names = _compared(kind, ignored)
     return (kind.__name__, *(_plain(getattr(value, name)) for name in names)) if names is not None else value
 
 
 @cache
-def _compared(kind: type, ignored: tuple[str, ...]) -> tuple[str, ...] | None:
+def _compared(kind: Any, ignored: tuple[str, ...]) -> tuple[str, ...] | None:
     """Return the fields of a dataclass that count; None for another class."""
     if not is_dataclass(kind):
         return None

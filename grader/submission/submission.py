@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +18,7 @@ from grader.source import Source
 from grader.static_python.closed_values import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
+from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection

@@ -3,7 +3,6 @@
 import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
@@ -24,6 +23,7 @@ from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_reports
 from grader.usecases.report_names import file_names, report_names
 from grader.usecases.terminal import Terminal
+from grader.values import dataclass
 
 _MAX_LISTED = 50  # students without a file
 

@@ -4,7 +4,6 @@ import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
@@ -28,6 +27,7 @@ from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
 from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
+from grader.values import dataclass
 
 _MAX_LINES = 10
 

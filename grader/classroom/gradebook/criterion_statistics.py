@@ -2,13 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import sqrt
 from typing import NamedTuple
 
 from grader.classroom.gradebook.graded_students import GradedStudent, full_units
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
+from grader.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,6 @@
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
 """
 
-from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from decimal import Decimal
 from math import ceil
@@ -12,6 +11,7 @@ from grader.errors import InputError
 from grader.grading.criterion import Late
 from grader.grading.rubric import Rubric
 from grader.text import counted
+from grader.values import dataclass
 
 _DAY = timedelta(days=1)
 

@@ -1,7 +1,6 @@
 """What needs manual grading in a class, and the marks and comments that it has so far."""
 
 import re
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -13,6 +12,7 @@ from grader.classroom.matching import plain_group, plain_name
 from grader.errors import InputError
 from grader.grading.report import ManualMark, Result
 from grader.text import enumerated
+from grader.values import dataclass
 
 COMMENT_NUMBER = re.compile(r"#([0-9]{1,9})")  # how a person refers to an earlier comment
 _MAX_NAMED = 6

@@ -1,6 +1,8 @@
 """How far a pass over a class is."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from grader.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

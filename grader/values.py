@@ -1,0 +1,48 @@
+"""Frozen dataclasses at a third of the price: in import time and in the time to make an instance.
+
+The standard `dataclass` compiles six methods for each frozen class, and its instances set each field by a call. Here
+only `__init__` is compiled, the other methods are shared, and mypy alone refuses assignments.
+"""
+
+import dataclasses
+from collections.abc import Callable, Iterable
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass as dataclass  # noqa: PLC0414  modules import it from here
+else:
+
+    def dataclass(*, frozen: bool, slots: bool = False) -> Callable[[type], type]:
+        """Return a decorator that makes a class with fields whose instances are equal and hashed by these."""
+        assert frozen
+
+        def made(cls: type) -> type:
+            shared = {"__eq__": _equal, "__hash__": _hash, "__repr__": _repr}
+            for name in shared.keys() - vars(cls).keys():
+                setattr(cls, name, shared[name])
+            made = dataclasses.dataclass(cls, eq=False, repr=False, slots=slots)
+            compared = [field for field in dataclasses.fields(made) if field.compare]
+            made.__compared__ = _getter(field.name for field in compared)
+            made.__hashed__ = _getter(field.name for field in compared if field.hash is not False)
+            return made
+
+        return made
+
+
+def _getter(names: Iterable[str]) -> Callable[[Any], Any]:
+    found = [*names]
+    return attrgetter(*found) if found else lambda _: ()
+
+
+def _equal(self: Any, other: Any) -> Any:
+    return self.__compared__(self) == self.__compared__(other) if type(self) is type(other) else NotImplemented
+
+
+def _hash(self: Any) -> int:
+    return hash((type(self), self.__hashed__(self)))
+
+
+def _repr(self: Any) -> str:
+    shown = (f"{field.name}={getattr(self, field.name)!r}" for field in dataclasses.fields(self) if field.repr)
+    return f"{type(self).__qualname__}({', '.join(shown)})"
