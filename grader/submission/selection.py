@@ -56,17 +56,8 @@ def select(tree: Tree, lab: Lab, max_size: int) -> Selection:
     if urdf is not None and not students:
         own, beside = students_beside(urdf.rpartition("/")[0], scope.tree.folders, names, words, lab.package)
         notes += (_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own),) if beside else ()
-    return Selection(
-        scope.tree,
-        urdf,
-        graded,
-        packages,
-        scope.no_package,
-        others + scope.elsewhere,
-        notes,
-        students,
-        scope.other_lab,
-    )
+    others += scope.elsewhere
+    return Selection(scope.tree, urdf, graded, packages, scope.no_package, others, notes, students, scope.other_lab)
 
 
 def _students(scope: Scope, names: Mapping[str, str], words: set[str], lab: Lab) -> tuple[str, ...]:

@@ -26,16 +26,7 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
-# Files that stay until a report replaces them.
-_KEPT = (
-    *ROBOT_ENDINGS,
-    ".toml",
-    ".py",
-    ".yaml",
-    ".yml",
-    ".rviz",
-    ".cfg",
-)  # files that stay until a report replaces them
+_KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
