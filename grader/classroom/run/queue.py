@@ -37,8 +37,8 @@ class Queue(Generic[Task, Result]):
         self._waiting: deque[Task] = deque()
         self._alone: deque[tuple[Task, int]] = deque()
         self._running: dict[Future[list[Result]], tuple[Sequence[Task], int]] = {}
-        self._began = 0.0
-        self._done = 0
+        self._began = 0.0  # when the first results came: until then workers start
+        self._done = 0  # since then
 
     def put(self, task: Task) -> None:
         """Add a task, and submit all that are ready."""
@@ -62,7 +62,10 @@ class Queue(Generic[Task, Result]):
         finished, _ = wait(self._running, return_when=FIRST_COMPLETED)
         for future in finished:
             results = self._results(future)
-            self._done += len(results)
+            if self._began:
+                self._done += len(results)
+            else:
+                self._began = time.perf_counter()
             if results:
                 yield results
         self._submit_ready(all_in=all_in)
@@ -87,7 +90,6 @@ class Queue(Generic[Task, Result]):
         return max(1, min(_MAX_GROUP, int(_GROUP_TIME / seconds)))
 
     def _submit_ready(self, *, all_in: bool) -> None:
-        self._began = self._began or time.perf_counter()
         while len(self._running) < self._workers * _AHEAD:
             if self._alone:
                 # A task that was lost when all processes ended runs alone.
