@@ -127,6 +127,7 @@ class Batch:
         first = next(tasks, None)
         if first is None:
             return
+        self._executor.submit(bool)  # the workers start while the reference is graded
         context = self._context(writer)  # only if there is something to grade: grading the reference takes a while
 
         def lost(task: Task, error: Exception) -> GradingResult | None:
