@@ -186,10 +186,7 @@ def _is_shared(pattern: Pattern, head: Heading) -> bool:
 def _joined(match: AnswerMatch, passages: list[Passage]) -> Passage:
     text = "\n\n".join(passage.text for passage in passages)[:_MAX_TEXT]
     return passages[0]._replace(
-        text=text,
-        how=match.how,
-        is_certain=match.is_certain,
-        is_empty=all(passage.is_empty for passage in passages),
+        text=text, how=match.how, is_certain=match.is_certain, is_empty=all(passage.is_empty for passage in passages)
     )
 
 

@@ -36,10 +36,7 @@ def render_class_json(
             **({"comparison": _comparison(comparison)} if comparison is not None else {}),
             "needs_attention": summary.attention.total,
             "attention": [
-                {
-                    "reason": group.reason,
-                    "students": [{"id": item.key, "detail": item.detail} for item in group.items],
-                }
+                {"reason": group.reason, "students": [{"id": item.key, "detail": item.detail} for item in group.items]}
                 for group in summary.attention.groups
             ],
             "evidence_without_urdf": summary.evidence_only["URDF"],

@@ -111,10 +111,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         with_fixes = _search_hints(request, book, terminal)
         if request.reports is not None:
             run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
-            with (
-                _processes(request.jobs, REPORT_SECONDS) as executor,
-                terminal.show_class("writing reports") as show,
-            ):
+            with _processes(request.jobs, REPORT_SECONDS) as executor, terminal.show_class("writing reports") as show:
                 write_reports(executor, run, warn, show)
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))

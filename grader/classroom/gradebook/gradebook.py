@@ -10,12 +10,7 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.connection import BUSY_TIMEOUT, prepare, transaction_of
 from grader.classroom.gradebook.result import StoredOutcome, decompressed
-from grader.classroom.gradebook.stored import (
-    STORED_SUBMISSIONS,
-    STUDENT_COLUMNS,
-    WITHOUT_SUBMISSION,
-    StoredSubmission,
-)
+from grader.classroom.gradebook.stored import STORED_SUBMISSIONS, STUDENT_COLUMNS, WITHOUT_SUBMISSION, StoredSubmission
 from grader.classroom.students import Student
 from grader.errors import GraderError, InputError
 from grader.grading.answers import with_answers
