@@ -71,13 +71,10 @@ def class_summary(
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
     summary = summary_of(grades, with_fixes=request.with_fixes)
     if request.kind is OutputFormat.JSON:
-        from grader.report.class_json import render_class_json
+        from grader.report.class_json import ClassReport, render_class_json
 
-        run = None
-        if done is not None:
-            run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
         comparison = compare(grades, request.by) if request.by is not None else None
-        return render_class_json(summary, grades, run, comparison)
+        return render_class_json(ClassReport(summary, grades, done, comparison))
     from grader.report.class_summary import render_class
 
     return draw(partial(render_class, summary, verbose=request.verbose), screen)
