@@ -39,7 +39,8 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     if found:
         raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
     guess = ""
-    if similar := [students[index] for index in _similar(people, name)]:
+    # Names that differ in accents: Muller and Mueller are similar to Müller.
+    if similar := [students[index] for index in sorted(_with_words(people, name, _without_accents))]:
         guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_listed(similar)}?"
     some = students[:_MAX_SUGGESTED_FROM]
     guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
@@ -54,24 +55,16 @@ def _named(people: People, name: str) -> list[int]:
     return sorted(found | _with_words(people, name, lambda word: (word,)))
 
 
-def _similar(people: People, name: str) -> list[int]:
-    """Return the positions of all people whose names differ in accents: Muller and Mueller are similar to Müller."""
-    return sorted(_with_words(people, name, _without_accents))
-
-
 def _with_words(people: People, name: str, spellings: Callable[[str], Iterable[str]]) -> set[int]:
     """Return the positions of people whose name has all words of a name, in one of the spellings of both."""
     wanted = [set(spellings(word)) for word in _WORD.findall(plain_name(name))]
-    return {
-        index
-        for index, clues in enumerate(people.clues)
-        for plain in clues.get(Clue.NAME, ())
-        if wanted and _has_all({word for part in _WORD.findall(plain) for word in spellings(part)}, wanted)
-    }
-
-
-def _has_all(words: set[str], wanted: Iterable[set[str]]) -> bool:
-    return not any(map(words.isdisjoint, wanted))
+    found = set()
+    for index, clues in enumerate(people.clues) if wanted else ():
+        for plain in clues.get(Clue.NAME, ()):
+            words = {word for part in _WORD.findall(plain) for word in spellings(part)}
+            if not any(map(words.isdisjoint, wanted)):
+                found.add(index)
+    return found
 
 
 def _without_accents(word: str) -> tuple[str, ...]:

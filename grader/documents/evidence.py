@@ -1,7 +1,7 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
@@ -35,30 +35,19 @@ def find_evidence(
     picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
-    exact = [labelled for labelled in files if _is_labelled(labelled, wanted)]
+    exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
     if exact:
         return FoundEvidence(evidence_files(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
-    meant = [labelled for labelled in others if _is_misspelt(labelled, wanted)]
-    perhaps = [labelled for labelled in others if labelled not in meant and _may_be_meant(labelled, wanted)]
+    meant = [it for it in others if it.loose.is_complete and any(matches(label, it.loose) for label in wanted)]
+    perhaps = [it for it in others if it not in meant and any(_may_match(label, it) for label in wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
         return FoundEvidence((*evidence_files(meant), *certain))
-    whole = _described(_whole_documents(documents), {labelled.file.path for labelled in perhaps})
+    listed = {labelled.file.path for labelled in perhaps}
+    whole = (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in listed)
     return FoundEvidence((), (*evidence_files(perhaps), *(it for it, _ in inside), *whole))
-
-
-def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[EvidenceFile]:
-    return (EvidenceFile(file.path, file.size) for file in files if file.path not in listed)
-
-
-def _is_labelled(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return any(matches(label, labelled.label) for label in wanted)
-
-
-def _is_misspelt(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return labelled.loose.is_complete and any(matches(label, labelled.loose) for label in wanted)
 
 
 def find_all_evidence(
@@ -91,10 +80,6 @@ def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
         return None
     distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
     return min(distances)[1] if distances else None
-
-
-def _may_be_meant(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return any(_may_match(label, labelled) for label in wanted)
 
 
 def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
