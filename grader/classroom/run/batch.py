@@ -93,6 +93,8 @@ class Batch:
         students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
         self._grade_all(writer, self._tasks(intake, students, contested))
+        for student in intake.absent:
+            students.recognise(student)
         with book.transaction():
             for stored in students.gone():
                 self._add_gone(writer, stored, is_contested=stored.key in contested)
