@@ -89,7 +89,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     title. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
-    bom, encoding, text = _decoded(data, shown)
+    bom, encoding, text = _decode(data, shown)
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
@@ -98,7 +98,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
-def _decoded(data: bytes, shown: str) -> tuple[bytes, str, str]:
+def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
     bom, encoding = next((pair for pair in _BOMS if data.startswith(pair[0])), (b"", ""))
     for candidate in (encoding,) if encoding else ("utf-8", "windows-1252"):
         try:

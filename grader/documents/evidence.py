@@ -92,10 +92,10 @@ def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
 
 def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
     """Return the headings of documents with the first of these labels that occurs."""
-    return [(document, head) for document, head, _ in _headed(documents, [read_label(name) for name in names])]
+    return [(document, head) for document, head, _ in _headings_about(documents, [read_label(name) for name in names])]
 
 
-def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
+def _headings_about(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
     found = ([(document, head, label) for document, head in heads if _is_about(label, head)] for label in wanted)
@@ -106,7 +106,7 @@ def _below_headings(
     documents: DocumentCollection | None, wanted: Sequence[Label]
 ) -> Iterator[tuple[EvidenceFile, bool]]:
     """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
-    for document, head, label in _headed(documents, wanted) if documents is not None else ():
+    for document, head, label in _headings_about(documents, wanted) if documents is not None else ():
         yield _below(document, head), _is_certain(label, document, head)
 
 

@@ -127,13 +127,13 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
             report = members[0][1]
-            named[name] = _packed(name, {feedback.name: report})
+            named[name] = _pack(name, {feedback.name: report})
         else:
             feedback.without.update((student.key, why) for student in students)
     return named
 
 
-def _packed(name: str, report: dict[str, bytes]) -> bytes:
+def _pack(name: str, report: dict[str, bytes]) -> bytes:
     """Return a report as the kind of file that its name promises: an archive, or the report itself."""
     if not name.lower().endswith(ARCHIVES):
         (data,) = report.values()

@@ -89,7 +89,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
         return f"{found}\n", ExitCode.PASSED
     unearned = grade(rubric, rubric.solution.submission).unearned
     lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in unearned]
-    unresolved = [*_unresolved(rubric)]
+    unresolved = [*_unresolved_lines(rubric)]
     if unresolved or any(result.outcome.status != "pending" for result in unearned):
         raise RubricError(tuple(map(printable, lines + unresolved)))
     if not lines:
@@ -99,7 +99,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
 
 
-def _unresolved(rubric: "Rubric") -> Iterator[str]:
+def _unresolved_lines(rubric: "Rubric") -> Iterator[str]:
     """Yield a line for each criterion that names a link by its place, where the reference has none or several."""
     from grader.grading.subjects import check_selectors
 

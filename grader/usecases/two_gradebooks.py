@@ -62,13 +62,13 @@ def merge_gradebooks(first: Path, second: Path, keep: Choice | None, terminal: T
     with Gradebook(first) as book, copy_of(second) as other:
         conflicts = [item for item in compare(book, other).items if item.is_conflict]
         names = book.shown, other.shown
-        choices = {conflict_of(item): keep for item in conflicts} if keep else _asked(conflicts, names, terminal)
+        choices = {conflict_of(item): keep for item in conflicts} if keep else _ask_choices(conflicts, names, terminal)
         merged = merge(book, other, choices)
     is_complete = not merged.conflicts and not merged.unmatched
     return "".join(f"{line}\n" for line in _lines(merged, names)), ExitCode.PASSED if is_complete else ExitCode.FAILED
 
 
-def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Terminal) -> dict[Conflict, Choice]:
+def _ask_choices(conflicts: list[MergeItem], names: tuple[str, str], terminal: Terminal) -> dict[Conflict, Choice]:
     """Ask which mark counts in each conflict, until the end of the input."""
     choices: dict[Conflict, Choice] = {}
     prompt = f"k to keep the mark of {names[0]}, t to take that of {names[1]}, s to skip: "

@@ -144,7 +144,7 @@ def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
     examples: dict[tuple[str, tuple[str, ...]], tuple[LossySubmission, StoredHint, tuple[StoredHint, ...]]] = {}
     marks = manual_units(book)
-    for submission, example, hints in _searched(book, rubric):
+    for submission, example, hints in _with_stored_hints(book, rubric):
         given = {row.id for row in rubric.criteria if marks[submission.student].get(row.id) == units_of(row.points)}
         for stored in hints:
             action, gained = stored.hint.action, tuple(stored.hint.gains)
@@ -161,7 +161,7 @@ def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
 
 
-def _searched(
+def _with_stored_hints(
     book: Gradebook, rubric: Rubric
 ) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[StoredHint, ...]]]:
     """Yield submissions, each with the first that has the same robot and the same failures, and with its hints."""

@@ -89,7 +89,7 @@ def compare(first: Gradebook, second: Gradebook) -> Comparison:
     students, others = _students(first), _students(second)
     own, theirs = _histories(first), _histories(second)
     marked = {student for student, _ in theirs}
-    matched = _matched(students, {number: others[number] for number in others if number in marked})
+    matched = _match_students(students, {number: others[number] for number in others if number in marked})
     items = [
         MergeItem(
             matched[student], students[matched[student]].key, criterion, own[matched[student], criterion], history
@@ -108,7 +108,7 @@ def is_newest(entry: StoredMark, history: History) -> bool:
     return _state(_newest(history)) == _state(entry)
 
 
-def _matched(students: dict[int, Student], others: dict[int, Student]) -> dict[int, int]:
+def _match_students(students: dict[int, Student], others: dict[int, Student]) -> dict[int, int]:
     """Return the ids of the students in the first gradebook, by those in the second: the same key, else the same ids.
 
     A student who matches several, or whose LMS number differs, is not included.

@@ -78,7 +78,7 @@ class Filling:
                 rows.append(row)
             elif row.number in matched:
                 grade = matched[row.number]
-                new = self._filled(row, grade, fill_row, fill_excuse)
+                new = self._fill(row, grade, fill_row, fill_excuse)
                 if isinstance(new, TableRow):
                     self._count(row, new, grade)
                     rows.append(new)
@@ -107,7 +107,7 @@ class Filling:
             self.preflight.conflicts.append(Conflict(row.number, self._students[row.number].who, old, new))
         return self.table.changed(row, column, new)
 
-    def _filled(
+    def _fill(
         self, row: TableRow, grade: LmsGrade, fill_row: FillRow, fill_excuse: FillExcuse | None
     ) -> TableRow | str | RowNote:
         titles = self.table.titles

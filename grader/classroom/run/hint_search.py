@@ -50,7 +50,7 @@ def _proven_hints(one: LossySubmission, rubric: Rubric) -> str | None:
     return hints_to_record(hinted(report, submission, rubric.hints, keep_edits=True).report)
 
 
-def _lost(submission: LossySubmission, error: Exception) -> SearchedHints:
+def _give_up(submission: LossySubmission, error: Exception) -> SearchedHints:
     """Return that there are no hints: searched again if another task may be the cause that the search was lost."""
     is_own_fault = not isinstance(error, WorkerError) or error.is_own_fault
     return SearchedHints(submission.content, _NONE if is_own_fault else None, "errored")
@@ -78,7 +78,7 @@ class ClassHintSearch:
             if content in self._alike:
                 save_hints(self._book, self._alike[content], hints)
         work = partial(search_hints, self._rubric.data, str(self._rubric.path))
-        for group in Queue(executor, workers, work, _lost).all(self.wanted):
+        for group in Queue(executor, workers, work, _give_up).all(self.wanted):
             for searched in group:
                 if searched.hints is not None:
                     save_hints(self._book, self._alike[searched.content], searched.hints)
