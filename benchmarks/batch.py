@@ -243,7 +243,7 @@ def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: P
     """Grade a class into a gradebook; every submission gets a mark or was graded before."""
     root, rubric = str(folder), load_rubric("lab6")
     with Gradebook(book, create=True) as opened:
-        progress = Batch(opened, rubric, RunSettings(root, "folders", count, jobs), executor).grade(read_class(folder))
+        progress = Batch(opened, rubric, RunSettings(root, "folders"), executor, jobs).grade(read_class(folder))
     assert (progress.done, progress.errored, progress.unreadable) == (count, 0, 0), progress
     return progress
 
