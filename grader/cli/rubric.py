@@ -42,7 +42,7 @@ def list_rubrics() -> str:
 
       grader rubric list
     """
-    return rubrics.listed()
+    return rubrics.list_rubrics()
 
 
 @rubric.command("show")
@@ -63,7 +63,7 @@ def show_rubric(
 
       grader rubric show my_lab.toml --markdown
     """
-    return rubrics.shown(name, warn, answers=answers, markdown=markdown)
+    return rubrics.show_rubric(name, warn, answers=answers, markdown=markdown)
 
 
 @rubric.command("checks")

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document
-from grader.documents.evidence_files import EvidenceFile, LabelledFile, evidence_files
+from grader.documents.evidence_files import EvidenceFile, LabelledFile, as_evidence
 from grader.documents.headings import Heading
 from grader.documents.labels import Label, matches, read_label, stem
 from grader.files.tree import File
@@ -37,17 +37,17 @@ def find_evidence(
     wanted = [read_label(name) for name in names]
     exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
     if exact:
-        return FoundEvidence(evidence_files(exact))
+        return FoundEvidence(as_evidence(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
     meant = [it for it in others if it.loose.is_complete and any(matches(label, it.loose) for label in wanted)]
     perhaps = [it for it in others if it not in meant and any(_may_match(label, it) for label in wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
-        return FoundEvidence((*evidence_files(meant), *certain))
+        return FoundEvidence((*as_evidence(meant), *certain))
     listed = {labelled.file.path for labelled in perhaps}
     whole = (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in listed)
-    return FoundEvidence((), (*evidence_files(perhaps), *(it for it, _ in inside), *whole))
+    return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *whole))
 
 
 def find_all_evidence(
@@ -70,7 +70,7 @@ def find_all_evidence(
     for labelled in files:
         near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *evidence_files([labelled])))
+            found[near] = FoundEvidence((), (*found[near].possible, *as_evidence([labelled])))
     return found
 
 

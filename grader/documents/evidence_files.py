@@ -63,7 +63,7 @@ def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
     return tuple(_label(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
-def evidence_files(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
+def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
     return tuple(_evidence_file(labelled.file, is_opened=index < _MAX_OPENED) for index, labelled in enumerate(files))
 

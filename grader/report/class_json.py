@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.sections import Comparison
+from grader.classroom.gradebook.sections import SectionComparison
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.classroom.run.progress import Progress
@@ -134,7 +134,7 @@ class ClassReport(NamedTuple):
     summary: ClassSummary
     grades: Grades
     run: Progress | None = None
-    comparison: Comparison | None = None
+    comparison: SectionComparison | None = None
 
     @property
     def students(self) -> list[_Student]:
@@ -172,7 +172,7 @@ def render_class_json(report: ClassReport) -> str:
     return to_json(CLASS.data(report))
 
 
-def _groups(comparison: Comparison) -> Any:
+def _groups(comparison: SectionComparison) -> Any:
     """Yield the sections, each with its share of the points of each criterion."""
     for section in comparison.sections:
         shares = zip(comparison.criteria, section.shares, strict=True)

@@ -44,7 +44,7 @@ class Selection(NamedTuple):
     other_lab: str
 
 
-class Scope(NamedTuple):
+class LabScope(NamedTuple):
     """Where a lab is searched: the URDF in `search_tree`, among `robots`; documents in `tree`.
 
     If the lab has a folder, `tree` is only that folder, `own_folder`. `other_lab` is the folder of another lab that is
@@ -94,7 +94,7 @@ def select(tree: Tree, lab: Lab, max_size: int) -> Selection:
     )
 
 
-def _students(scope: Scope, names: Mapping[str, str], words: set[str], lab: Lab) -> tuple[str, ...]:
+def _students(scope: LabScope, names: Mapping[str, str], words: set[str], lab: Lab) -> tuple[str, ...]:
     """Return the folders of the students if the robots and packages are of several; `names` are those of packages."""
     robots = (robot for robot in scope.robots[:_MAX_WORKS] if robot.size)
     works = [StudentWork(robot.path.rpartition("/")[0], is_of_lab(robot, lab.urdf)) for robot in robots]
@@ -127,7 +127,7 @@ class _Places(NamedTuple):
         return tree.only(lambda path: self.of(path) in places)
 
 
-def lab_scope(tree: Tree, lab: Lab, max_size: int) -> Scope:
+def lab_scope(tree: Tree, lab: Lab, max_size: int) -> LabScope:
     """Return where a lab is searched in the files of a submission.
 
     Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its
@@ -147,7 +147,7 @@ def lab_scope(tree: Tree, lab: Lab, max_size: int) -> Scope:
     elsewhere += [path for path in other_roots if path.rpartition("/")[2] == MANIFEST]
     of_other_labs = read_packages(tree, lab) if other_roots and not packages else ()
     reason, which = why_none(packages, of_other_labs, lab.package)
-    return Scope(
+    return LabScope(
         search_tree,
         own_tree,
         tuple(robot for robot in robots if places.of(robot.path) in of_robots),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.lms.feedback_names import ARCHIVES, canvas_name, moodle_folder
+from grader.classroom.lms.feedback_names import ARCHIVES, canvas_upload_name, moodle_folder
 from grader.classroom.lms.filling import FillOptions, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
@@ -122,7 +122,7 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
     named: dict[str, bytes] = {}
     for files, members in submissions.items():
         students = [grade.student for grade, _ in members]
-        name, why = canvas_name(files if files[0] else (), students, feedback.ending)
+        name, why = canvas_upload_name(files if files[0] else (), students, feedback.ending)
         if len({report for _, report in members}) > 1:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:

@@ -20,7 +20,7 @@ from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
 from grader.usecases.local_server import LocalServer, Request, Response
-from grader.usecases.review import NOTHING, summary, undo
+from grader.usecases.review import NOTHING, review_summary, undo
 from grader.usecases.review_pictures import item_pictures
 from grader.usecases.terminal import Terminal
 
@@ -177,7 +177,7 @@ def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: 
                 "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
             )
             server.serve_forever()
-        return server.worker.submit(lambda: summary(page.session)).result()
+        return server.worker.submit(lambda: review_summary(page.session)).result()
 
 
 @contextmanager

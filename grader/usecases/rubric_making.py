@@ -27,7 +27,7 @@ from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode, read_threshold
-from grader.usecases.rubrics import load, summary
+from grader.usecases.rubrics import load, rubric_summary
 from grader.usecases.terminal import ShowClass, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 
@@ -113,7 +113,7 @@ def _relative(reference: Path, folder: Path) -> str:
 
 
 def _lines(file: Path, made: RubricDraft) -> Iterator[str]:
-    yield f"wrote {printable_path(file)}: {summary(made.rubric)}; its reference gets full marks"
+    yield f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full marks"
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))

@@ -77,14 +77,14 @@ class UnmatchedStudent(NamedTuple):
     entries: int
 
 
-class Comparison(NamedTuple):
+class MarkComparison(NamedTuple):
     """The items of which the first gradebook lacks entries of the second, and the students who are not matched."""
 
     items: tuple[MergeItem, ...]
     unmatched: tuple[UnmatchedStudent, ...]
 
 
-def compare(first: Gradebook, second: Gradebook) -> Comparison:
+def compare_marks(first: Gradebook, second: Gradebook) -> MarkComparison:
     """Return what a merge of the second gradebook's marks into the first one has to do."""
     students, others = _students(first), _students(second)
     own, theirs = _histories(first), _histories(second)
@@ -100,7 +100,7 @@ def compare(first: Gradebook, second: Gradebook) -> Comparison:
     counts = Counter(student for (student, _), history in theirs.items() for _ in history)
     unmatched = [UnmatchedStudent(others[number].key, counts[number]) for number in sorted(marked - matched.keys())]
     found = sorted((item for item in items if item.new), key=lambda item: (item.key, item.criterion))
-    return Comparison(tuple(found), tuple(sorted(unmatched)))
+    return MarkComparison(tuple(found), tuple(sorted(unmatched)))
 
 
 def is_newest(entry: StoredMark, history: History) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
-from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
+from grader.classroom.lms.preflight import Filled, Overwrite, Preflight, RowNote
 from grader.classroom.matching import OF_RECORDS, People, clues_of, lms_ids_of
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
@@ -104,7 +104,7 @@ class Filling:
         if old.casefold() == new.casefold():
             return row
         if old.casefold() not in _NOT_GRADED_YET:
-            self.preflight.conflicts.append(Conflict(row.number, self._students[row.number].who, old, new))
+            self.preflight.conflicts.append(Overwrite(row.number, self._students[row.number].who, old, new))
         return self.table.changed(row, column, new)
 
     def _fill(
