@@ -90,7 +90,7 @@ class People:
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
     """Return the clues in a record: a row of a roster or LMS file, or a student of the gradebook."""
     local_part, at, _ = student.email.partition("@")
-    words = {_composed(word.strip()) for word in (student.key, student.login, student.sis, student.email, *aliases)}
+    words = {_compose(word.strip()) for word in (student.key, student.login, student.sis, student.email, *aliases)}
     return _present(
         {
             Clue.CANVAS: (student.canvas,),
@@ -107,7 +107,7 @@ def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
 
 def claims_of(student: Student) -> Clues:
     """Return the clues in the name of a submission, or in what a person types: a word may be any kind of id."""
-    words = {_composed(word) for word in (student.key, student.login, student.name if student.team else "")}
+    words = {_compose(word) for word in (student.key, student.login, student.name if student.team else "")}
     lower = {plain_word(word) for word in words}
     in_canvas = student.key.rpartition("_")[0] if student.readings else ""
     return _present(
@@ -133,7 +133,7 @@ def _present(clues: Mapping[Clue, Collection[str]]) -> Clues:
     return {clue: kept for clue, values in clues.items() if (kept := {value for value in values if value})}
 
 
-def _composed(word: str) -> str:
+def _compose(word: str) -> str:
     return word if word.isascii() else unicodedata.normalize("NFC", word)
 
 
@@ -148,7 +148,7 @@ def plain_word(word: str) -> str:
     """Normalise a login, id or address: case, spaces and the encoding of accents are ignored."""
     if word.isalnum() and word.isascii():
         return word.lower()
-    return " ".join(_composed(word).casefold().split())
+    return " ".join(_compose(word).casefold().split())
 
 
 def plain_name(name: str) -> str:

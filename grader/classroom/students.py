@@ -1,4 +1,10 @@
-"""Students of a class and their submissions."""
+"""Students of a class and their submissions.
+
+A submission of a class is, in this order: a ClassSubmission (whose it is and where, found by a layout), an
+OpenedSubmission (its files and their digest), a Submission (what of it is graded), and a GradingResult (its points).
+In the gradebook it is a StoredSubmission (as the last run found it), and a StudentGrade (with its SubmissionFiles and
+the manual marks).
+"""
 
 from grader.values import dataclass
 

@@ -26,11 +26,7 @@ SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 ROW_LIMIT = 100_000
 CELL_LIMIT = 1_000_000
 DELIMITERS = ",;\t"
-_BOMS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
+_BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +90,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     title. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
-    bom, encoding, text = _decoded(data, shown)
+    bom, encoding, text = _decode(data, shown)
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
@@ -103,7 +99,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
-def _decoded(data: bytes, shown: str) -> tuple[bytes, str, str]:
+def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
     bom, encoding = next((pair for pair in _BOMS if data.startswith(pair[0])), (b"", ""))
     for candidate in (encoding,) if encoding else ("utf-8", "windows-1252"):
         try:

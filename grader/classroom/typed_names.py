@@ -33,20 +33,21 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
     people = People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
-    found = [students[index] for index in _named(people, name)]
+    found = [students[index] for index in _find_people(people, name)]
     if len(found) == 1:
         return found[0]
     if found:
-        raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
+        raise InputError(f"{name!r} is ambiguous: it may be {_students_text(found)}; use one of these ids")
     guess = ""
-    if similar := [students[index] for index in _similar(people, name)]:
-        guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_listed(similar)}?"
+    # Names that differ in accents: Muller and Mueller are similar to Müller.
+    if similar := [students[index] for index in sorted(_with_words(people, name, _without_accents))]:
+        guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_students_text(similar)}?"
     some = students[:_MAX_SUGGESTED_FROM]
     guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
     raise InputError(f"there is no student {name!r} in the gradebook{guess or advice}")
 
 
-def _named(people: People, name: str) -> list[int]:
+def _find_people(people: People, name: str) -> list[int]:
     """Return the positions of all people whom a typed name may mean, in any case."""
     claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
     matches = (people.find({kind: claims.get(kind, ())}, (kind,)) for kind in _TYPED)
@@ -54,24 +55,16 @@ def _named(people: People, name: str) -> list[int]:
     return sorted(found | _with_words(people, name, lambda word: (word,)))
 
 
-def _similar(people: People, name: str) -> list[int]:
-    """Return the positions of all people whose names differ in accents: Muller and Mueller are similar to Müller."""
-    return sorted(_with_words(people, name, _without_accents))
-
-
 def _with_words(people: People, name: str, spellings: Callable[[str], Iterable[str]]) -> set[int]:
     """Return the positions of people whose name has all words of a name, in one of the spellings of both."""
     wanted = [set(spellings(word)) for word in _WORD.findall(plain_name(name))]
-    return {
-        index
-        for index, clues in enumerate(people.clues)
-        for plain in clues.get(Clue.NAME, ())
-        if wanted and _has_all({word for part in _WORD.findall(plain) for word in spellings(part)}, wanted)
-    }
-
-
-def _has_all(words: set[str], wanted: Iterable[set[str]]) -> bool:
-    return not any(map(words.isdisjoint, wanted))
+    found = set()
+    for index, clues in enumerate(people.clues) if wanted else ():
+        for plain in clues.get(Clue.NAME, ()):
+            words = {word for part in _WORD.findall(plain) for word in spellings(part)}
+            if not any(map(words.isdisjoint, wanted)):
+                found.add(index)
+    return found
 
 
 def _without_accents(word: str) -> tuple[str, ...]:
@@ -84,7 +77,7 @@ def _without_accents(word: str) -> tuple[str, ...]:
     )
 
 
-def _listed(students: Sequence[Student]) -> str:
+def _students_text(students: Sequence[Student]) -> str:
     """Return the ids and names of students, at most _MAX_LISTED."""
     shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students]
     more = len(shown) - _MAX_LISTED

@@ -1,5 +1,6 @@
 """grader grade: one submission against a rubric."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +12,6 @@ from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.levels import HintLevel
 from grader.report.formats import Format, render
-from grader.usecases.github import is_github_job, publish_refusal, publish_report
 from grader.usecases.grade import GradeRequest, grade_and_save
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.saves import read_saves, saved_pictures
@@ -70,36 +70,49 @@ def grade(
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
     try:
-        saves = read_saves(save or ())
         request = GradeRequest(
-            path,
-            rubric,
-            expect_rubric,
-            tuple(part or ()),
-            output_format,
-            saves,
-            fail_under,
-            max_size,
-            answers,
-            tuple(arg or ()),
-            verbose,
-            hints,
-            fix,
+            path=path,
+            rubric=rubric,
+            expected_rubric=expect_rubric,
+            parts=tuple(part or ()),
+            format=output_format,
+            saves=read_saves(save or ()),
+            fail_under=fail_under,
+            max_size=max_size,
+            answers=answers,
+            arguments=tuple(arg or ()),
+            verbose=verbose,
+            hints=hints,
+            fix=fix,
         )
         if watch:
             from grader.usecases.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
-        result = grade_and_save(request, warn, TERMINAL.show_file)
-        text = render(result.report, output_format, result.base, screen(), verbose=verbose)
-        write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
-        if is_github_job():
-            annotate = write_stderr if output_format is not Format.GITHUB else None
-            publish_report(result.report, result.base, annotate, warn, [*saved_pictures(saves)])
-        elif result.reason:
-            warn(result.reason)
+        return _grade_once(request)
     except GraderError as error:
-        if is_github_job():
+        if _is_github_job():
+            from grader.usecases.github import publish_refusal  # late: most runs are no such job
+
             publish_refusal(str(error), write_stderr, warn)
         raise
-    return result.exit_code
+
+
+def _grade_once(request: GradeRequest) -> int:
+    """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit code."""
+    run = grade_and_save(request, warn, TERMINAL.show_file)
+    text = render(run.report, request.format, run.base, screen(), verbose=request.verbose)
+    write_stdout(text if request.format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+    if _is_github_job():
+        from grader.usecases.github import publish_report  # late: most runs are no such job
+
+        annotate = write_stderr if request.format is not Format.GITHUB else None
+        publish_report(run.report, run.base, annotate, warn, [*saved_pictures(request.saves)])
+    elif run.reason:
+        warn(run.reason)
+    return run.exit_code
+
+
+def _is_github_job() -> bool:
+    """Return whether this process runs in a job of GitHub Actions."""
+    return os.environ.get("GITHUB_ACTIONS") == "true"

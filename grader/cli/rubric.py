@@ -42,7 +42,7 @@ def list_rubrics() -> str:
 
       grader rubric list
     """
-    return rubrics.listed()
+    return rubrics.list_rubrics()
 
 
 @rubric.command("show")
@@ -63,7 +63,7 @@ def show_rubric(
 
       grader rubric show my_lab.toml --markdown
     """
-    return rubrics.shown(name, warn, answers=answers, markdown=markdown)
+    return rubrics.show_rubric(name, warn, answers=answers, markdown=markdown)
 
 
 @rubric.command("checks")
@@ -85,8 +85,7 @@ def list_checks() -> str:
 def new_rubric(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The .toml file to write.")],
     reference: Annotated[
-        str,
-        typer.Option("--from", metavar="URDF", help="The reference: a URDF, xacro, package, workspace or archive."),
+        str, typer.Option("--from", metavar="URDF", help="The reference: a URDF, xacro, package, workspace or archive.")
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> str:

@@ -78,12 +78,12 @@ class _AnswerSearch:
     def passages(self) -> Iterator[Passage | None]:
         """Yield the best passage for each place."""
         for wanted in self._wanted:
-            yield self._in_order(wanted) if isinstance(wanted, Ordinal) else self._labelled(wanted)
+            yield self._in_order(wanted) if isinstance(wanted, Ordinal) else self._passage_below(wanted)
 
     def _headings(self, document: Document) -> tuple[Heading, ...]:
         return self._documents.headings(document, self._patterns)
 
-    def _labelled(self, wanted: Label) -> Passage | None:
+    def _passage_below(self, wanted: Label) -> Passage | None:
         """Return the passage whose heading, or whose file, is labelled so."""
         best: Passage | None = None
         rank = (True, True, True, True)
@@ -99,10 +99,10 @@ class _AnswerSearch:
                 is_short = len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
                 found = (passage.is_empty, is_short, head.is_item, head.is_mention)
                 if best is None or found < rank:
-                    best, rank = self._explained(passage, document, head, wanted), found
+                    best, rank = self._explain(passage, document, head, wanted), found
         return best
 
-    def _explained(self, passage: Passage, document: Document, head: Heading, wanted: Label) -> Passage:
+    def _explain(self, passage: Passage, document: Document, head: Heading, wanted: Label) -> Passage:
         """Return a passage with what makes its heading less than certain."""
         if head.is_item:
             items = [item for item in self._headings(document) if item.is_item and item.section == head.section]
@@ -124,12 +124,12 @@ class _AnswerSearch:
             cut = ((head, self._cut(document, head)) for document, head in heads[:_MAX_MATCHES])
             pairs = [(head, passage) for head, passage in cut if passage is not None]
             answers = [
-                Answer(_shown(head), head.number, head.section, passage.is_empty, "\n" not in passage.text)
+                Answer(_heading_text(head), head.number, head.section, passage.is_empty, "\n" not in passage.text)
                 for head, passage in pairs
             ]
             match = match_answer(wanted, self._task, answers)
             if match is not None:
-                found.append(_joined(match, [pairs[index][1] for index in match.indices]))
+                found.append(_join(match, [pairs[index][1] for index in match.indices]))
         found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
         return found[0] if found else None
 
@@ -183,17 +183,14 @@ def _is_shared(pattern: Pattern, head: Heading) -> bool:
     return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
 
 
-def _joined(match: AnswerMatch, passages: list[Passage]) -> Passage:
+def _join(match: AnswerMatch, passages: list[Passage]) -> Passage:
     text = "\n\n".join(passage.text for passage in passages)[:_MAX_TEXT]
     return passages[0]._replace(
-        text=text,
-        how=match.how,
-        is_certain=match.is_certain,
-        is_empty=all(passage.is_empty for passage in passages),
+        text=text, how=match.how, is_certain=match.is_certain, is_empty=all(passage.is_empty for passage in passages)
     )
 
 
-def _shown(head: Heading) -> str:
+def _heading_text(head: Heading) -> str:
     """Return the beginning of a heading; of a question the words before its colon."""
     text = " ".join((head.text.partition(":")[0] if head.pattern else head.text).split())
     return cut(text, _MAX_SHOWN)
@@ -205,5 +202,5 @@ def _where(document: Document, head: Heading, at: Location) -> str:
     if page is not None:
         return f"on page {page} of {at.path}"
     if document.file.suffix == ".docx":
-        return f'in {at.path}, below "{_shown(head)}"' if head.text else f"in {at.path}"
+        return f'in {at.path}, below "{_heading_text(head)}"' if head.text else f"in {at.path}"
     return f"in {at.path}, from line {at.line}"

@@ -117,10 +117,10 @@ def _docx(data: bytes) -> bytes:
         else:
             shown = [_markdown(block, _without_marks(block.text), lists)]
         lines += [*before, *shown, *after]
-    return _encoded("\n".join(lines))
+    return _encode("\n".join(lines))
 
 
-def _encoded(text: str) -> bytes:
+def _encode(text: str) -> bytes:
     return text[:_MAX_TEXT].encode("utf-8", "replace")
 
 
@@ -187,10 +187,10 @@ class _Lists:
             if (number, depth) not in self._levels:
                 self._levels[number, depth] = self._level(number, depth)
             level = self._levels[number, depth]
-            return f"{self._counted(level, depth)} " if level is not None else ""
+            return f"{self._number_text(level, depth)} " if level is not None else ""
         return ""
 
-    def _counted(self, level: _Level, depth: int) -> str:
+    def _number_text(self, level: _Level, depth: int) -> str:
         counts = self._counts.setdefault(level.key, {})
         counts[depth] = counts.get(depth, level.first - 1) + 1
         for deeper in [other for other in counts if other > depth]:
@@ -225,7 +225,7 @@ def _pdf(data: bytes) -> bytes:
         texts.append(text)
     if len(pages) > MAX_PAGES:
         texts.append("")
-    return _encoded(f"\n{PAGE_BREAK}\n".join(texts))
+    return _encode(f"\n{PAGE_BREAK}\n".join(texts))
 
 
 def _page_text(page: Any) -> str:

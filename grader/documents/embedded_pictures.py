@@ -33,12 +33,12 @@ def main() -> int:
     converter = runpy.run_path(str(Path(__file__).with_name("converter.py")))
 
     def in_docx(data: bytes) -> bytes:
-        return _packed(_in_docx(converter["opened"](data), converter["MARKS"]))
+        return _pack(_in_docx(converter["opened"](data), converter["MARKS"]))
 
     def in_pdf(data: bytes) -> bytes:
         import pypdf
 
-        return _packed(_in_pdf(pypdf.PdfReader(io.BytesIO(data)).pages[: converter["MAX_PAGES"]]))
+        return _pack(_in_pdf(pypdf.PdfReader(io.BytesIO(data)).pages[: converter["MAX_PAGES"]]))
 
     return int(converter["main"]({"docx": in_docx, "pdf": in_pdf}))
 
@@ -52,7 +52,7 @@ def unpacked(output: bytes) -> Iterator[tuple[int, bytes]]:
         yield number, output[start - length : start]
 
 
-def _packed(pictures: Iterator[tuple[int, bytes]]) -> bytes:
+def _pack(pictures: Iterator[tuple[int, bytes]]) -> bytes:
     parts: list[bytes] = []
     left = _MAX_BYTES
     for number, data in pictures:

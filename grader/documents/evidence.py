@@ -1,12 +1,12 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document
-from grader.documents.evidence_files import EvidenceFile, LabelledFile, evidence_files
+from grader.documents.evidence_files import EvidenceFile, LabelledFile, as_evidence
 from grader.documents.headings import Heading
 from grader.documents.labels import Label, matches, read_label, stem
 from grader.files.tree import File
@@ -35,30 +35,19 @@ def find_evidence(
     picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
-    exact = [labelled for labelled in files if _is_labelled(labelled, wanted)]
+    exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
     if exact:
-        return FoundEvidence(evidence_files(exact))
+        return FoundEvidence(as_evidence(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
-    meant = [labelled for labelled in others if _is_misspelt(labelled, wanted)]
-    perhaps = [labelled for labelled in others if labelled not in meant and _may_be_meant(labelled, wanted)]
+    meant = [it for it in others if it.loose.is_complete and any(matches(label, it.loose) for label in wanted)]
+    perhaps = [it for it in others if it not in meant and any(_may_match(label, it) for label in wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
-        return FoundEvidence((*evidence_files(meant), *certain))
-    whole = _described(_whole_documents(documents), {labelled.file.path for labelled in perhaps})
-    return FoundEvidence((), (*evidence_files(perhaps), *(it for it, _ in inside), *whole))
-
-
-def _described(files: Iterable[File], listed: Collection[str]) -> Iterator[EvidenceFile]:
-    return (EvidenceFile(file.path, file.size) for file in files if file.path not in listed)
-
-
-def _is_labelled(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return any(matches(label, labelled.label) for label in wanted)
-
-
-def _is_misspelt(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return labelled.loose.is_complete and any(matches(label, labelled.loose) for label in wanted)
+        return FoundEvidence((*as_evidence(meant), *certain))
+    listed = {labelled.file.path for labelled in perhaps}
+    whole = (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in listed)
+    return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *whole))
 
 
 def find_all_evidence(
@@ -81,7 +70,7 @@ def find_all_evidence(
     for labelled in files:
         near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
         if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *evidence_files([labelled])))
+            found[near] = FoundEvidence((), (*found[near].possible, *as_evidence([labelled])))
     return found
 
 
@@ -91,10 +80,6 @@ def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
         return None
     distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
     return min(distances)[1] if distances else None
-
-
-def _may_be_meant(labelled: LabelledFile, wanted: Sequence[Label]) -> bool:
-    return any(_may_match(label, labelled) for label in wanted)
 
 
 def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
@@ -107,10 +92,10 @@ def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
 
 def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
     """Return the headings of documents with the first of these labels that occurs."""
-    return [(document, head) for document, head, _ in _headed(documents, [read_label(name) for name in names])]
+    return [(document, head) for document, head, _ in _headings_about(documents, [read_label(name) for name in names])]
 
 
-def _headed(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
+def _headings_about(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
     found = ([(document, head, label) for document, head in heads if _is_about(label, head)] for label in wanted)
@@ -121,7 +106,7 @@ def _below_headings(
     documents: DocumentCollection | None, wanted: Sequence[Label]
 ) -> Iterator[tuple[EvidenceFile, bool]]:
     """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
-    for document, head, label in _headed(documents, wanted) if documents is not None else ():
+    for document, head, label in _headings_about(documents, wanted) if documents is not None else ():
         yield _below(document, head), _is_certain(label, document, head)
 
 

@@ -60,15 +60,15 @@ class LabelledFile(NamedTuple):
 
 def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
     """Return every picture, video and PDF of a submission, with its labels."""
-    return tuple(_labelled(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
+    return tuple(_label(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
-def evidence_files(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
+def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
     return tuple(_evidence_file(labelled.file, is_opened=index < _MAX_OPENED) for index, labelled in enumerate(files))
 
 
-def _labelled(file: File) -> LabelledFile:
+def _label(file: File) -> LabelledFile:
     name = _COPY.sub("", stem(file.path))
     label = read_label(name)
     return LabelledFile(file, label, label if label.is_complete else read_label(name, loosely=True))

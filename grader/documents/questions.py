@@ -55,23 +55,25 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
         return None
     below = [index for index, answer in enumerate(answers) if answer.section == task]
     if task is not None and len(below) == 1 and all(answer.section is not None for answer in answers):
-        return AnswerMatch(tuple(below), True, f"the only {_shown(answers, below)} below the heading of task {task}")
+        return AnswerMatch(
+            tuple(below), True, f"the only {_answer_text(answers, below)} below the heading of task {task}"
+        )
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.number for answer in answers if answer.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
-        return _numbered(wanted, task, answers, written)
-    for indices in (list(range(len(answers))), written, _repeated(answers, wanted.total)):
+        return _answer_by_number(wanted, task, answers, written)
+    for indices in (list(range(len(answers))), written, _answers_after_list(answers, wanted.total)):
         in_order = all(answers[index].number in (None, place) for place, index in enumerate(indices, start=1))
         if len(indices) == wanted.total and in_order:
             index = indices[wanted.number - 1]
-            how = f"in order: heading {wanted.number} of {wanted.total} like {_shown(answers, [index])}"
+            how = f"in order: heading {wanted.number} of {wanted.total} like {_answer_text(answers, [index])}"
             return AnswerMatch((index,), True, how)
     indices = written or list(range(len(answers)))
-    count = f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like {_shown(answers, indices)}"
+    count = f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like {_answer_text(answers, indices)}"
     return AnswerMatch(tuple(indices), False, f"{count} for {wanted.total} questions: it may answer another question")
 
 
-def _numbered(
+def _answer_by_number(
     wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]
 ) -> AnswerMatch | None:
     """Return the answer below the question's number; of several, as with a list of the questions, that with text."""
@@ -81,18 +83,18 @@ def _numbered(
     if not hits:
         return None
     if len(hits) > 1:
-        return AnswerMatch(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
+        return AnswerMatch(tuple(hits), False, f"{len(hits)} headings like {_answer_text(answers, hits)}")
     section = answers[hits[0]].section
     is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
     where = f", but below the heading of task {section}" if is_other else ""
-    return AnswerMatch(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
+    return AnswerMatch(tuple(hits), not is_other, f"by the number in {_answer_text(answers, hits)}{where}")
 
 
-def _repeated(answers: Sequence[Answer], total: int) -> list[int]:
+def _answers_after_list(answers: Sequence[Answer], total: int) -> list[int]:
     """Return the answers that follow a list of all questions; none without such a list."""
     is_list = len(answers) == 2 * total and all(answer.is_line for answer in answers[:total])
     return list(range(total, 2 * total)) if is_list and not any(answer.is_line for answer in answers[total:]) else []
 
 
-def _shown(answers: Sequence[Answer], indices: Sequence[int]) -> str:
+def _answer_text(answers: Sequence[Answer], indices: Sequence[int]) -> str:
     return f'"{answers[indices[0]].heading}"'

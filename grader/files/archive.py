@@ -61,7 +61,7 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()
     unseen: set[str] = set()
-    for member in _bounded(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
+    for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
         path = _path(member)
         if isinstance(path, IgnoredFile):
             ignored.append(path)
@@ -102,7 +102,7 @@ def _path(member: ArchiveMember) -> str | IgnoredFile:
     return path
 
 
-def _bounded(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
+def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
     """Return the members; raises InputError for too many, or too much in those that are not ignored for their size."""
     listed: list[ArchiveMember] = []
     total = 0

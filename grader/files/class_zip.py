@@ -79,7 +79,7 @@ class ClassZip:
         kind = None
         stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
         try:
-            kind = _copied(member, stored, digest)
+            kind = _copy_archive(member, stored, digest)
             if kind is not None:
                 return read_archive(stored, kind, path)
         except ARCHIVE_ERRORS as error:
@@ -106,7 +106,7 @@ class ClassZip:
         return replace(tree, kept=(self,))
 
 
-def _copied(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
+def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
     """Copy an archive and update the digest; return its kind, or None for a file that is not an archive."""
     with member.open() as content:
         chunk = content.read(_CHUNK)

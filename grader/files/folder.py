@@ -77,7 +77,7 @@ class _Walk:
         if entry.is_dir(follow_symlinks=False):
             self.unseen.append(printable_path(path))
         if entry.name in BUILD_FOLDERS and not entry.is_symlink():
-            self.generated += _generated(self._folder, path)
+            self.generated += _generated_files(self._folder, path)
         return True
 
     def _add(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
@@ -145,7 +145,7 @@ def file_at(path: Path, name: str, top: str) -> File:
     return File(name, status.st_size, partial(_read, os.fspath(path), name, top))
 
 
-def _generated(folder: Path, path: str) -> list[str]:
+def _generated_files(folder: Path, path: str) -> list[str]:
     """Return the files of packages below a build folder: they are named in the report, never read."""
     found: list[str] = []
     seen = 0

@@ -103,7 +103,7 @@ def with_inner(
         else:
             parts.append((archive.path + "/", inner))
             count += len(inner.files)
-    return _combined(tree.name, parts, unopened)
+    return _combine(tree.name, parts, unopened)
 
 
 def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
@@ -116,7 +116,7 @@ def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     return archives
 
 
-def _combined(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
+def _combine(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
     """Return one tree of several, each with the start of its paths."""
     return make_tree(
         name,

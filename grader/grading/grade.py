@@ -97,7 +97,7 @@ def _evidence_of(
     if not wanted:
         return (), ()
     from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
-    from grader.documents.evidence_files import evidence_files
+    from grader.documents.evidence_files import as_evidence
 
     graded = {evidence.id: _graded_names(evidence, rubric) for evidence in wanted}
     # A file that may be meant for several pieces is listed where a criterion lists it, too.
@@ -108,7 +108,7 @@ def _evidence_of(
     found_files = tuple(EvidenceResult(evidence, *by_id[evidence.id]) for evidence in wanted)
     listed = {file.path for one in found for file in (*one.files, *one.possible)}
     others = [labelled for labelled in submission.labelled_files if labelled.file.path not in listed]
-    return found_files, evidence_files(others[:_MAX_PICTURES])
+    return found_files, as_evidence(others[:_MAX_PICTURES])
 
 
 def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:

@@ -42,15 +42,14 @@ PROBLEM = Record(
     }
 )
 _HINT = Record({"message": TEXT, "edits": Many(EDIT), "gains": mapping(POINTS), "verified": (FLAG, lambda _: True)})
-_KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}
-KINDS = Record(_KINDS, ("bonus", "adjustment"))
+KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
 ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
     {
-        **inner("criterion", _KINDS),
+        **inner("criterion", KINDS),
         "mark": (Record({"points": POINTS, **each(TEXT, "by comment")}), "manual_mark"),
         "comment": Record(each(TEXT, "text by")),
     },
-    (*KINDS.optional, "mark", "comment"),
+    (*KINDS, "mark", "comment"),
 )
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from decimal import Decimal
+from operator import itemgetter
 from typing import Any, TypeVar
 
 from rich.console import Console
@@ -12,13 +13,84 @@ from grader.classroom.gradebook.gradebook import Run
 from grader.grading.criterion import Adjustment
 from grader.grading.rubric_changes import RubricChange
 from grader.report.console import wrapped
-from grader.report.json_data import exact, rounded, to_json
+from grader.report.json_data import (
+    COUNT,
+    GRADER,
+    HASH,
+    POINTS,
+    TEXT,
+    VALUE,
+    Many,
+    Record,
+    array,
+    each,
+    exact,
+    nullable,
+    record,
+    rounded,
+    schema_key,
+    to_json,
+)
 from grader.report.rubrics import toml_text
 from grader.text import counted, enumerated, format_points, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12
 K = TypeVar("K", bound=Hashable)
 Steps = tuple[PointsChange, ...]
+
+
+def _plain(value: Any) -> Any:
+    """Return a value of a rubric as JSON has it."""
+    match value:
+        case Decimal():
+            return exact(value)
+        case Adjustment():
+            return value._asdict()
+        case Mapping():
+            return {key: _plain(item) for key, item in value.items()}
+        case tuple() | list():
+            return [_plain(item) for item in value]
+        case None | bool() | int() | float() | str():
+            return rounded(value)
+    return str(value)
+
+
+_RUN = Record(
+    {
+        "run": (COUNT, "id"),
+        "started": TEXT,
+        "grader": (GRADER, lambda run: {"version": run.version}),
+        "rubric": (record({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
+    }
+)
+_SPAN = each(nullable(POINTS), "before after")
+_STEP = Record({"id": (TEXT, "criterion"), **_SPAN})
+_RUBRIC_CHANGE = Record(
+    {
+        "id": (TEXT, "criterion"),
+        "key": TEXT,
+        "before": (VALUE, lambda change: _plain(change.before)),
+        "after": (VALUE, lambda change: _plain(change.after)),
+    }
+)
+_CHANGE = Record(
+    {
+        "id": (TEXT, "key"),
+        "name": TEXT,
+        **_SPAN,
+        "reasons": (array(TEXT), "why"),
+        "criteria": (Many(_STEP), "steps"),
+        "rubric": Many(_RUBRIC_CHANGE),
+    }
+)
+DIFF = Record(  # of the two runs, and the changes
+    {
+        **schema_key("grader/diff/v1"),
+        "from": (_RUN, itemgetter(0)),
+        "to": (_RUN, itemgetter(1)),
+        "students": (Many(_CHANGE), itemgetter(2)),
+    }
+)
 
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
@@ -68,46 +140,7 @@ def _show_students(steps: Steps, changes: Sequence[Change], console: Console) ->
 
 def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
     """Return the changes as JSON, schema grader/diff/v1."""
-    listed = [
-        {
-            "id": change.key,
-            "name": change.name,
-            "before": exact(change.before),
-            "after": exact(change.after),
-            "reasons": list(change.why),
-            "criteria": [
-                {"id": step.criterion, "before": exact(step.before), "after": exact(step.after)}
-                for step in change.steps
-            ],
-            "rubric": [
-                {"id": row.criterion, "key": row.key, "before": _plain(row.before), "after": _plain(row.after)}
-                for row in change.rubric
-            ],
-        }
-        for change in changes
-    ]
-    before, after = map(_run, runs)
-    return to_json({"schema": "grader/diff/v1", "from": before, "to": after, "students": listed})
-
-
-def _run(run: Run) -> dict[str, Any]:
-    return {"run": run.id, "started": run.started, "grader": {"version": run.version}, "rubric": {"sha256": run.rubric}}
-
-
-def _plain(value: Any) -> Any:
-    """Return a value of a rubric as JSON has it."""
-    match value:
-        case Decimal():
-            return exact(value)
-        case Adjustment():
-            return value._asdict()
-        case Mapping():
-            return {key: _plain(item) for key, item in value.items()}
-        case tuple() | list():
-            return [_plain(item) for item in value]
-        case None | bool() | int() | float() | str():
-            return rounded(value)
-    return str(value)
+    return to_json(DIFF.data((*runs, changes)))
 
 
 def _rubric_line(change: RubricChange) -> str:

@@ -26,7 +26,7 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     score = _score(before, after)
     if not rows:
         return [f"{score}; only other parts of the report changed"]
-    return [score, *(f"{change}: {_named(criteria)}" for change, criteria in rows)]
+    return [score, *(f"{change}: {_criteria_text(criteria)}" for change, criteria in rows)]
 
 
 def hinted_texts(report: Report) -> dict[str, str]:
@@ -107,7 +107,7 @@ def _of(report: Report) -> str:
     return f"{format_points(report.score)} of {format_points(report.max_score)}"
 
 
-def _named(criteria: Sequence[PointsChange]) -> str:
+def _criteria_text(criteria: Sequence[PointsChange]) -> str:
     """Return the criteria with the change of their points; of many the first, and how many more there are."""
     named = [f"{printable(name)}{_in_brackets(points)}" for name, points in criteria[:_MAX_NAMED]]
     rest = criteria[_MAX_NAMED:]

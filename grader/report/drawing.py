@@ -18,18 +18,7 @@ from grader.report.details import remarks_on
 from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
 from grader.report.drawing_signs import ViewSigns
 from grader.report.inspection import Inspection, effect
-from grader.report.svg_elements import (
-    DARK_RULES,
-    LINE,
-    SVG,
-    circle,
-    colour,
-    edge_look,
-    path_data,
-    put,
-    put_lines,
-    wrap,
-)
+from grader.report.svg_elements import DARK_RULES, LINE, SVG, circle, colour, edge_look, path_data, put, put_lines, wrap
 from grader.text import printable
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"

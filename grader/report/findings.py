@@ -10,14 +10,7 @@ from typing import Literal, NamedTuple
 from grader.grading.report import Hint, Report, Result
 from grader.report.content import other_problems
 from grader.report.details import remarks_on, result_details, sentence
-from grader.report.locations import (
-    Base,
-    RepositoryLocation,
-    SourceOf,
-    archive_around,
-    in_repository,
-    location_text,
-)
+from grader.report.locations import Base, RepositoryLocation, SourceOf, archive_around, in_repository, location_text
 from grader.report.order import FailedCriterion, earned_text, failures, is_failure, pending_automatic, points_of
 from grader.source import Location
 from grader.text import counted_points, printable

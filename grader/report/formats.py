@@ -74,8 +74,8 @@ _SCHEMAS = {
     "report": ("report", "as_json:REPORT"),
     "inspect": ("inspection", "inspection:INSPECTION"),
     "rubric-test": ("rubric test", "rubric_test:RUBRIC_TEST"),
-    "class": ("class", "class_schemas:CLASS"),
-    "diff": ("diff", "class_schemas:DIFF"),
+    "class": ("class", "class_json:CLASS"),
+    "diff": ("diff", "changes:DIFF"),
 }
 
 

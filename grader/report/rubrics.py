@@ -29,7 +29,7 @@ EFFECTS = {
 }
 
 
-def rubric_text(rubric: Rubric) -> str:
+def rubric_overview(rubric: Rubric) -> str:
     """Return the parts and criteria of a rubric, with the model answers that it was loaded with."""
     lines = [f"{rubric.id}: {rubric.title} ({worth(rubric.criteria).text})", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:

@@ -4,7 +4,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.gradebook.sections import Comparison, Section
+from grader.classroom.gradebook.sections import Section, SectionComparison
 from grader.report.class_words import percent
 from grader.report.console import wrapped
 from grader.text import format_points, printable
@@ -14,7 +14,7 @@ _NOTE = (
 )
 
 
-def render_sections(comparison: Comparison, console: Console) -> None:
+def render_sections(comparison: SectionComparison, console: Console) -> None:
     """Print a row for each section, and the criteria that differ most with the share of each section."""
     table = _table(comparison.by, "students", "graded", "mean", "median", "late", "late penalty")
     for section in comparison.sections:
@@ -33,7 +33,7 @@ def render_sections(comparison: Comparison, console: Console) -> None:
         _print_criteria(comparison, console)
 
 
-def _print_criteria(comparison: Comparison, console: Console) -> None:
+def _print_criteria(comparison: SectionComparison, console: Console) -> None:
     console.print()
     wrapped(console, Text("Criteria that differ most: mean share of the points earned", style="bold"), 0)
     for position in comparison.differing:
@@ -52,5 +52,5 @@ def _table(first: str, *others: str) -> Table:
     return table
 
 
-def _name(section: Section, comparison: Comparison) -> str:
+def _name(section: Section, comparison: SectionComparison) -> str:
     return printable(section.name) or f"(no {comparison.by})"

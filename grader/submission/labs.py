@@ -37,7 +37,7 @@ class LabFolders:
     """
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
-        self._own = {_joined(lab_words(name)) for name in names}
+        self._own = {_join_words(lab_words(name)) for name in names}
         self._shapes = {_NUMBER.sub("#", own) for own in self._own if _NUMBER.search(own)}
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
@@ -51,11 +51,11 @@ class LabFolders:
 
     def is_lab(self, name: str) -> bool:
         """Return whether a folder has exactly the name of this lab."""
-        return _joined(lab_words(without_archive(name))) in self._own
+        return _join_words(lab_words(without_archive(name))) in self._own
 
     def is_project(self, path: str) -> bool:
         """Return whether a file is in the folder of a final project."""
-        return any(_FINAL.search(_joined(lab_words(name))) for name in path.split("/")[:-1])
+        return any(_FINAL.search(_join_words(lab_words(name))) for name in path.split("/")[:-1])
 
     def belonging(self, path: str) -> Belonging:
         """Return where a file is. Of the folders around it the nearest that names a lab decides."""
@@ -67,27 +67,27 @@ class LabFolders:
         """Return the outermost folder around a file that names a lab; empty if there is none."""
         if not self._own:
             return ""
-        named = (folder for folder in parents(path) if self._named(folder) is not Belonging.NO_LAB)
+        named = (folder for folder in parents(path) if self._own_belonging(folder) is not Belonging.NO_LAB)
         return next(reversed(list(named)), "")
 
     def _of_folder(self, folder: str) -> Belonging:
         if not folder:
             return Belonging.NO_LAB
         if folder not in self._known:
-            own = self._named(folder)
+            own = self._own_belonging(folder)
             self._known[folder] = own if own is not Belonging.NO_LAB else self._of_folder(folder.rpartition("/")[0])
         return self._known[folder]
 
-    def _named(self, folder: str) -> Belonging:
+    def _own_belonging(self, folder: str) -> Belonging:
         words = lab_words(without_archive(folder.rpartition("/")[2]))
-        name = _joined(words)
+        name = _join_words(words)
         if name in self._own:
             return Belonging.THIS_LAB
         if _NUMBER.sub("#", name) in self._shapes or _FINAL.fullmatch(name):
             return Belonging.OTHER_LAB
         if folder in self._packages:
             return Belonging.NO_LAB
-        spans = {_joined(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
+        spans = {_join_words(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
         if any(_NUMBER.search(own) for own in spans & self._own):
             return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
         is_other = any(_NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans)
@@ -100,7 +100,7 @@ def lab_words(name: str) -> tuple[str, ...]:
     return tuple(str(int(word)) if word.isdecimal() else _NUMBER_WORDS.get(word, word) for word in words)
 
 
-def _joined(words: Sequence[str]) -> str:
+def _join_words(words: Sequence[str]) -> str:
     """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which is not lab 62."""
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 

@@ -37,10 +37,10 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, opening: Openi
         tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
     except (OSError, InputError):
         tree = None
-    return _expanded(submission, tree, path, alone) if tree is not None else submission
+    return _with_files_around(submission, tree, path, alone) if tree is not None else submission
 
 
-def _expanded(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:
+def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:
     """Return a single file with what is read for it of a tree; `alone`: its surroundings without a tree."""
     known: dict[str, bytes] = {}
 

@@ -54,7 +54,7 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     known: dict[str, Package] = {}
     packages = [_read_package(tree, folder, known, lab.package) for folder in find_packages(tree, lab.package)]
     packages.sort(
-        key=lambda it: (_distance(it, lab.package), is_backup(it.folder), _missing(it, lab.urdf), _depth(it.folder)),
+        key=lambda it: (_distance(it, lab.package), is_backup(it.folder), _missing(it, lab.urdf), _depth(it.folder))
     )
     for package in packages:
         known.setdefault(package.name, package)

@@ -84,7 +84,7 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start, file.size) if start else ())))
+            found.append(RobotFile(file.path, file.size, is_urdf, *(_describe(start, file.size) if start else ())))
     return tuple(sorted(found))
 
 
@@ -127,7 +127,7 @@ def _end_of_prolog(data: bytes) -> int:
     return found.end() if found is not None else 0
 
 
-def _described(start: bytes, size: int) -> tuple[str, frozenset[str], bool]:
+def _describe(start: bytes, size: int) -> tuple[str, frozenset[str], bool]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
     text = _COMMENT.sub(b"", start)

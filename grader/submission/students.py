@@ -86,7 +86,7 @@ def students_in(
     team/bo/pkg they are in team/ash and team/bo. Of ash/lab6 and old/lab6 there is one student.
     """
     owners = {work: tuple(_owners(work.folder, packages, lab, package_name)) for work in works}
-    shared = _shared(owners.values())
+    shared = _count_common(owners.values())
     by_person: dict[str, list[tuple[str, bool]]] = {}
     free = [work for work, own in owners.items() if len(own) == shared]
     for work, own in owners.items():
@@ -165,7 +165,7 @@ def _owners(
             return
 
 
-def _shared(owners: Iterable[tuple[tuple[str, str], ...]]) -> int:
+def _count_common(owners: Iterable[tuple[tuple[str, str], ...]]) -> int:
     """Return how many owners all of these begin with: the team's repository, and its members' common folder."""
     count = 0
     for level in zip(*owners, strict=False):

@@ -78,7 +78,7 @@ class Submission:
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded
-    opening: Opening = DEFAULTS
+    opening: Opening = field(default=DEFAULTS, repr=False)
     budget: Budget = field(default_factory=Budget, repr=False, compare=False)  # of the work to read it
     neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took

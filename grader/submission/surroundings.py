@@ -47,7 +47,13 @@ class Surroundings:
         folders = {package.name: package.folder for package in reversed(self.packages)}
         is_part = not folders and bool(self.tree.files)
         return Workspace(
-            self._read, folders.get, self.budget, tuple(self.tree.files), self._installed, is_part, self.asked.append
+            self._read,
+            folders.get,
+            self.budget,
+            tuple(self.tree.files),
+            self._installed_file,
+            is_part,
+            self.asked.append,
         )
 
     def _read(self, path: str) -> bytes:
@@ -66,7 +72,7 @@ class Surroundings:
         except InputError as error:
             raise NotDecided(str(error)) from None
 
-    def _installed(self, name: str, inside: str) -> str | None:
+    def _installed_file(self, name: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built; without any package, the most similar path."""
         from grader.package.cmake import read_cmake  # late: most URDFs are no xacro
 

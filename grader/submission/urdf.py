@@ -92,11 +92,11 @@ def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = No
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
         given = dict(launched[0].arguments) if launched else {}
-        return Read(path, data, _expanded(data, path, surroundings, given), is_expanded=True)
+        return Read(path, data, _expand_xacro(data, path, surroundings, given), is_expanded=True)
     reading = read_urdf(data, path)
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading)
-    expanded = _expanded(data, path, surroundings, {})
+    expanded = _expand_xacro(data, path, surroundings, {})
     if expanded.robot is None:
         return Read(path, data, reading)
     if reading.verdict == "clean":
@@ -125,7 +125,7 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
 
 
-def _expanded(data: bytes, path: str, surroundings: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
+def _expand_xacro(data: bytes, path: str, surroundings: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in xacro. A file that the

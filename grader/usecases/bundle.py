@@ -8,7 +8,7 @@ from grader.errors import GraderError
 from grader.grading.criterion import worth
 from grader.grading.rubric import Rubric, load_rubric
 from grader.text import format_points, printable
-from grader.usecases.rubrics import summary
+from grader.usecases.rubrics import rubric_summary
 from grader.usecases.writing import save_bytes
 
 
@@ -18,7 +18,7 @@ def write_bundle(platform: str, output: Path, rubric: str) -> str:
         raise GraderError(f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}")
     rules = load_rubric(rubric)
     save_bytes(output, autograder_zip(rules))
-    return printable(f"wrote {output}: {summary(rules)}") + "\n" + printable(f"next: {_next_step(rules)}") + "\n"
+    return printable(f"wrote {output}: {rubric_summary(rules)}") + "\n" + printable(f"next: {_next_step(rules)}") + "\n"
 
 
 def _next_step(rubric: Rubric) -> str:

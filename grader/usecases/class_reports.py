@@ -115,7 +115,7 @@ def render_reports(
     progress = Progress(len(names))
     show(progress)
     lost: dict[str, str] = {}
-    queue = Queue(executor, processors(), partial(_write_some, run), _lost, _TASK_SIZE)
+    queue = Queue(executor, processors(), partial(_write_some, run), _give_up, _TASK_SIZE)
     for results in queue.all(names.items()):
         lost |= {key: why for key, why in results if why}
         progress = replace(progress, graded=progress.graded + len(results))
@@ -123,7 +123,7 @@ def render_reports(
     return {key: lost[key] for key in names if key in lost}
 
 
-def _lost(named: tuple[str, str], error: Exception) -> tuple[str, str]:
+def _give_up(named: tuple[str, str], error: Exception) -> tuple[str, str]:
     """Return the student without a report, and why."""
     if isinstance(error, InputError | RubricError):
         raise error

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
-from grader.classroom.gradebook.sections import Grouping, compare
+from grader.classroom.gradebook.sections import Grouping, compare_sections
 from grader.classroom.gradebook.summary import summary_of
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
@@ -60,7 +60,7 @@ def class_statistics(gradebook: Path, request: SummaryRequest, terminal: Termina
         if request.by is not None and request.kind is not OutputFormat.JSON:
             from grader.report.sections import render_sections
 
-            return draw(partial(render_sections, compare(grades, request.by)), terminal.screen())
+            return draw(partial(render_sections, compare_sections(grades, request.by)), terminal.screen())
         search_class_hints(book, HintOptions(), terminal, reports=False, statistics=True)
         return class_summary(grades, request, terminal.screen())
 
@@ -71,13 +71,10 @@ def class_summary(
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
     summary = summary_of(grades, with_fixes=request.with_fixes)
     if request.kind is OutputFormat.JSON:
-        from grader.report.class_json import render_class_json
+        from grader.report.class_json import ClassReport, render_class_json
 
-        run = None
-        if done is not None:
-            run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        comparison = compare(grades, request.by) if request.by is not None else None
-        return render_class_json(summary, grades, run, comparison)
+        comparison = compare_sections(grades, request.by) if request.by is not None else None
+        return render_class_json(ClassReport(summary, grades, done, comparison))
     from grader.report.class_summary import render_class
 
     return draw(partial(render_class, summary, verbose=request.verbose), screen)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.lms.feedback_names import ARCHIVES, canvas_name, moodle_folder
+from grader.classroom.lms.feedback_names import ARCHIVES, canvas_upload_name, moodle_folder
 from grader.classroom.lms.filling import FillOptions, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
@@ -122,18 +122,18 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
     named: dict[str, bytes] = {}
     for files, members in submissions.items():
         students = [grade.student for grade, _ in members]
-        name, why = canvas_name(files if files[0] else (), students, feedback.ending)
+        name, why = canvas_upload_name(files if files[0] else (), students, feedback.ending)
         if len({report for _, report in members}) > 1:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
             report = members[0][1]
-            named[name] = _packed(name, {feedback.name: report})
+            named[name] = _pack(name, {feedback.name: report})
         else:
             feedback.without.update((student.key, why) for student in students)
     return named
 
 
-def _packed(name: str, report: dict[str, bytes]) -> bytes:
+def _pack(name: str, report: dict[str, bytes]) -> bytes:
     """Return a report as the kind of file that its name promises: an archive, or the report itself."""
     if not name.lower().endswith(ARCHIVES):
         (data,) = report.values()

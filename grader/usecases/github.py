@@ -18,11 +18,6 @@ Annotate = Callable[[str], None]  # writes workflow commands
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary
 
 
-def is_github_job() -> bool:
-    """Return whether this process runs in a job of GitHub Actions."""
-    return os.environ.get("GITHUB_ACTIONS") == "true"
-
-
 def publish_report(
     report: "Report", base: "Base", annotate: Annotate | None, warn: Warn, pictures: Sequence[str] = ()
 ) -> None:

@@ -4,6 +4,7 @@ import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from datetime import datetime
 from math import isfinite
 from pathlib import Path
 
@@ -85,41 +86,39 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     _warn_of_intake(intake, warn)
     if request.roster is not None and not request.add:
         check_roster(intake)
+    settings = RunSettings(
+        root=str(request.root),
+        layout=intake.layout,
+        force=request.force,
+        roster=roster,
+        deadline=deadline.isoformat() if deadline is not None else "",
+        add=request.add,
+        max_size=request.max_size,
+        parts=request.part,
+        handed_out=handed_out,
+    )
     with Gradebook(request.gradebook, create=True) as book:
         warn_of_parts(book, request.part, rubric, warn)
-        with _executor(request) as (executor, workers):
-            due = deadline.isoformat() if deadline is not None else ""
-            settings = RunSettings(
-                root=str(request.root),
-                layout=intake.layout,
-                total=len(intake),
-                workers=workers,
-                force=request.force,
-                roster=roster,
-                deadline=due,
-                add=request.add,
-                max_size=request.max_size,
-                parts=request.part,
-                handed_out=handed_out,
-            )
-            with terminal.show_class("grading") as show:
-                batch = Batch(book, rubric, settings, executor, show)
-                done = _run(batch, intake, warn)
-            _warn_lines(batch.notes, warn)
-            errored = f" ({done.errored} errored)" if done.errored else ""
-            warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
+        with _executor(request) as (executor, workers), terminal.show_class("grading") as show:
+            batch = Batch(book, rubric, settings, executor, workers, show)
+            done = _run(batch, intake, warn)
+        _warn_lines(batch.notes, warn)
+        errored = f" ({done.errored} errored)" if done.errored else ""
+        warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
         with_fixes = _search_hints(request, book, terminal)
-        if request.reports is not None:
-            run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
-            with (
-                _processes(request.jobs, REPORT_SECONDS) as executor,
-                terminal.show_class("writing reports") as show,
-            ):
-                write_reports(executor, run, warn, show)
-        if request.csv is not None:
-            save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
+        _write_files(request, book, deadline, terminal)
         summary = SummaryRequest(request.output_format, with_fixes, request.verbose)
         return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
+
+
+def _write_files(request: ClassRequest, book: Gradebook, deadline: datetime | None, terminal: Terminal) -> None:
+    """Write the students' reports and the grades."""
+    if request.reports is not None:
+        run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
+        with _processes(request.jobs, REPORT_SECONDS) as executor, terminal.show_class("writing reports") as show:
+            write_reports(executor, run, terminal.warn, show)
+    if request.csv is not None:
+        save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
 
 
 def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) -> bool:

@@ -130,18 +130,18 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
     """Yield what filling in an LMS file changes, line by line, at most 50 lines of each kind."""
     yield f"column {found.column!r}: {found.filled} filled in, {found.unchanged} already the same"
     yield from map(
-        printable, [f"excused (EX): {len(found.excused)} ({_listed(found.excused)})"] if found.excused else []
+        printable, [f"excused (EX): {len(found.excused)} ({_names_text(found.excused)})"] if found.excused else []
     )
     for kind in ("final mark", "excuse"):
         older = [one.who for one in found.older if one.why == kind]
         verb = "is" if len(older) == 1 else "are"
-        text = f"{counted(len(older), kind)} {verb} from before the newest submission: {_listed(older)}"
+        text = f"{counted(len(older), kind)} {verb} from before the newest submission: {_names_text(older)}"
         yield from map(printable, [text] if older else [])
-    yield from _capped(
+    yield from _first_lines_of(
         "grades that change",
         [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
     )
-    yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
+    yield from _first_lines_of("without a grade", _by_reason("without a grade", found.ungraded))
     if any(row.why != "excused" for row in found.ungraded):
         yield _NEXT_STEP
     for kind, rows in (
@@ -151,7 +151,7 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
         ("ambiguous", found.ambiguous),
         ("kept the comment that a person wrote", found.kept_feedback),
     ):
-        yield from _capped(
+        yield from _first_lines_of(
             kind, [f"{kind}: {f'row {row.row}, ' if row.row else ''}{row.who}: {row.why}" for row in rows]
         )
     yield from map(printable, found.warnings)
@@ -162,16 +162,16 @@ def _by_reason(kind: str, rows: Sequence[RowNote]) -> list[str]:
     names: dict[str, list[str]] = {}
     for row in rows:
         names.setdefault(row.why, []).append(row.who)
-    return [f"{kind}, {reason}: {len(students)} ({_listed(students)})" for reason, students in names.items()]
+    return [f"{kind}, {reason}: {len(students)} ({_names_text(students)})" for reason, students in names.items()]
 
 
-def _listed(names: Sequence[str]) -> str:
+def _names_text(names: Sequence[str]) -> str:
     shown = list(names[:_MAX_NAMED])
     more = [f"... and {len(names) - len(shown)} more"] if len(names) > len(shown) else []
     return ("; " if any("," in name for name in shown) else ", ").join([*shown, *more])
 
 
-def _capped(kind: str, lines: Sequence[str]) -> Iterator[str]:
+def _first_lines_of(kind: str, lines: Sequence[str]) -> Iterator[str]:
     yield from map(printable, lines[:_MAX_LINES])
     if len(lines) > _MAX_LINES:
         yield f"{kind}: and {len(lines) - _MAX_LINES} more"

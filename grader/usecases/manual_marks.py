@@ -89,7 +89,7 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         rubric = grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric()
         criterion = None if request.is_total else criterion_of(rubric, request.criterion)
         if request.comments:
-            return _listed(numbered_comments(book, request.criterion))
+            return _comment_lines(numbered_comments(book, request.criterion))
         most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
         if request.is_points and criterion is not None and criterion.adjustment is not None and not criterion.points:
             raise InputError(_NOT_COUNTED.format(criterion.id))
@@ -191,6 +191,6 @@ def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
     return of_criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
 
 
-def _listed(comments: dict[int, str]) -> str:
+def _comment_lines(comments: dict[int, str]) -> str:
     lines = [printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments.items()]
     return "".join(f"{line}\n" for line in lines) or "no comments yet\n"

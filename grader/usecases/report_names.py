@@ -33,13 +33,13 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     A key that is not a valid name, or that ends like one with a digest, gets its digest appended.
     """
     plain = {key: _plain(key) for key in keys}
-    counts = Counter(map(_folded, plain.values()))
+    counts = Counter(map(_fold, plain.values()))
     names = {}
     for key, name in plain.items():
-        is_valid = name == key and counts[_folded(name)] == 1 and not _DIGEST.search(name)
+        is_valid = name == key and counts[_fold(name)] == 1 and not _DIGEST.search(name)
         digest = "" if is_valid else f"-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"
         names[key] = name + digest
-    if len(set(map(_folded, names.values()))) < len(names):
+    if len(set(map(_fold, names.values()))) < len(names):
         raise InputError("two students would share a report file; nothing was written")
     return names
 
@@ -64,7 +64,7 @@ def update_index(folder: Path, names: dict[str, str]) -> list[str]:
     return sorted(before.keys() - rows.keys())
 
 
-def _folded(name: str) -> str:
+def _fold(name: str) -> str:
     return unicodedata.normalize("NFC", name).casefold()
 
 

@@ -49,9 +49,9 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
                 if not _go_on(session, terminal):
                     break
         except KeyboardInterrupt:
-            terminal.print(f"\n{summary(session)}")
+            terminal.print(f"\n{review_summary(session)}")
             raise
-        return summary(session)
+        return review_summary(session)
 
 
 def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
@@ -76,7 +76,7 @@ def _show(session: ReviewSession, pictures: Sequence[str], terminal: Terminal) -
     terminal.print(draw(page, terminal.screen()))
 
 
-def summary(session: ReviewSession) -> str:
+def review_summary(session: ReviewSession) -> str:
     """Return how many items were marked, and how many are left."""
     return f"{session.marked} marked, {session.left} left\n"
 

@@ -20,7 +20,7 @@ from grader.errors import GraderError, InputError
 from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
 from grader.report.review import mark_text
 from grader.usecases.local_server import LocalServer, Request, Response
-from grader.usecases.review import NOTHING, summary, undo
+from grader.usecases.review import NOTHING, review_summary, undo
 from grader.usecases.review_pictures import item_pictures
 from grader.usecases.terminal import Terminal
 
@@ -42,7 +42,7 @@ class ReviewPage:
     def __call__(self, request: Request) -> Response:
         """Return the response to a request; errors of the gradebook become messages."""
         try:
-            return self._posted(request) if request.body is not None else self._page(request.path)
+            return self._act(request) if request.body is not None else self._page(request.path)
         except GraderError as error:
             if request.body is not None:
                 return _json({"error": str(error)})
@@ -63,7 +63,7 @@ class ReviewPage:
             case ("",):
                 return Response(b"", status=HTTPStatus.FOUND, location=self._address())
             case ("end",):
-                return _html(end_page(self.session.marked, self.session.left, self._gradebook, self._said()))
+                return _html(end_page(self.session.marked, self.session.left, self._gradebook, self._pop_notice()))
             case (number,) if (position := self._position(number)) is not None:
                 self.session.go(position)
                 return self._item()
@@ -76,7 +76,7 @@ class ReviewPage:
         session, item = self.session, self.session.current_item()
         place = Place(session.position + 1, len(session.queue), session.is_own, session.can_undo)
         pictures = self._album(session.position, item).result()
-        return _html(item_page(item, place, pictures, session.comments(), self._said()))
+        return _html(item_page(item, place, pictures, session.comments(), self._pop_notice()))
 
     def _picture(self, which: str) -> Response:
         pictures = self._album(self.session.position, self.session.current_item()).result()
@@ -85,7 +85,7 @@ class ReviewPage:
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
         return Response(found.data, found.kind.media_type)
 
-    def _posted(self, request: Request) -> Response:
+    def _act(self, request: Request) -> Response:
         """Execute an action of the page: next, back, undo, or a mark."""
         sent = _read(request.body or b"")
         position = self._position(request.path[0]) if len(request.path) == 1 else None
@@ -134,7 +134,7 @@ class ReviewPage:
         inside = _is_number(number) and 1 <= int(number) <= len(self.session.queue)
         return int(number) - 1 if inside else None
 
-    def _said(self) -> str:
+    def _pop_notice(self) -> str:
         """Return the notice of the last action, once."""
         said, self._notice = self._notice, ""
         return said
@@ -177,7 +177,7 @@ def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: 
                 "open this address in a browser on this machine; Ctrl-C ends the review, and all marks are kept"
             )
             server.serve_forever()
-        return server.worker.submit(lambda: summary(page.session)).result()
+        return server.worker.submit(lambda: review_summary(page.session)).result()
 
 
 @contextmanager

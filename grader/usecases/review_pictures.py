@@ -63,7 +63,7 @@ class PictureFolder:
         name = self._names[key] if item.number is None else f"submission-{item.number}"
         start = self._folder / self._folders[criterion] / name
         found = item_pictures(item, self._session.rubric_of(item))
-        return [_written(one, start, number, item) for number, one in enumerate(found, 1)]
+        return [_write_picture(one, start, number, item) for number, one in enumerate(found, 1)]
 
 
 def write_all_pictures(
@@ -82,7 +82,7 @@ def write_all_pictures(
     return found
 
 
-def _written(found: EmbeddedPicture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
+def _write_picture(found: EmbeddedPicture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
     """Write a picture, unless it is not shown, and return the line about it."""
     if isinstance(found, NotShown):
         return printable(str(found))

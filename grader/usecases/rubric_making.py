@@ -27,7 +27,7 @@ from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode, read_threshold
-from grader.usecases.rubrics import load, summary
+from grader.usecases.rubrics import load, rubric_summary
 from grader.usecases.terminal import ShowClass, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 
@@ -61,7 +61,7 @@ def _solution(reference: str, warn: Warn) -> Solution:
     """Return the reference, which ROS 2 must load; raise GraderError."""
     if reference == STANDARD_INPUT:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
-    submission, shown = _opened(reference), printable_path(reference)
+    submission, shown = _open_reference(reference), printable_path(reference)
     match submission.urdf:
         case Absent():
             raise InputError(f"{shown} has no URDF: no file in it has a <robot>")
@@ -79,7 +79,7 @@ def _solution(reference: str, warn: Warn) -> Solution:
     return Solution(submission, reading, Configuration(reading.robot))
 
 
-def _opened(reference: str) -> Submission:
+def _open_reference(reference: str) -> Submission:
     """Return the reference as a submission; of several packages, the one with the URDF is graded."""
     submission = open_submission(reference, Lab(_URDF))
     package = package_around(submission.packages, submission.path)
@@ -113,15 +113,15 @@ def _relative(reference: Path, folder: Path) -> str:
 
 
 def _lines(file: Path, made: RubricDraft) -> Iterator[str]:
-    yield f"wrote {printable_path(file)}: {summary(made.rubric)}; its reference gets full marks"
+    yield f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full marks"
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
-    yield from (f"omitted: {line}" for line in _grouped(made.omissions))
+    yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
     yield from (f"odd: {line}" for line in made.oddities)
     yield f"next: grader rubric test {shell_quoted(file)}"
 
 
-def _grouped(omissions: Iterable[Omission]) -> Iterator[str]:
+def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
     """Yield what is omitted, in one line for each reason."""
     by_reason: dict[str, list[str]] = {}
     for omission in omissions:

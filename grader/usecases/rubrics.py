@@ -29,24 +29,24 @@ def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
     return rubric
 
 
-def shown(name: str, warn: Warn, *, answers: bool, markdown: bool) -> str:
+def show_rubric(name: str, warn: Warn, *, answers: bool, markdown: bool) -> str:
     """Return the parts and criteria of a rubric: with or without its model answers, or in Markdown for students."""
-    from grader.report.rubrics import render_handout, rubric_text
+    from grader.report.rubrics import render_handout, rubric_overview
 
     if answers and markdown:
         raise GraderError("--markdown is for students, so it shows no model answers: leave out --answers")
     rubric = load(name, warn, answers=answers)
-    return render_handout(rubric) if markdown else rubric_text(rubric)
+    return render_handout(rubric) if markdown else rubric_overview(rubric)
 
 
-def listed() -> str:
+def list_rubrics() -> str:
     """Return a line for each rubric that comes with the grader."""
     from grader.grading.rubric import load_rubric, shipped_rubrics
 
-    return "".join(f"{rubric.id}  {summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics()))
+    return "".join(f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics()))
 
 
-def summary(rubric: "Rubric") -> str:
+def rubric_summary(rubric: "Rubric") -> str:
     """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
     return f"{rubric.title} ({_size(rubric)})"
 
@@ -89,7 +89,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
         return f"{found}\n", ExitCode.PASSED
     unearned = grade(rubric, rubric.solution.submission).unearned
     lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in unearned]
-    unresolved = [*_unresolved(rubric)]
+    unresolved = [*_unresolved_lines(rubric)]
     if unresolved or any(result.outcome.status != "pending" for result in unearned):
         raise RubricError(tuple(map(printable, lines + unresolved)))
     if not lines:
@@ -99,7 +99,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
 
 
-def _unresolved(rubric: "Rubric") -> Iterator[str]:
+def _unresolved_lines(rubric: "Rubric") -> Iterator[str]:
     """Yield a line for each criterion that names a link by its place, where the reference has none or several."""
     from grader.grading.subjects import check_selectors
 

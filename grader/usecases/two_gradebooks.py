@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.changes import changes
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.histories import MergeItem, compare
-from grader.classroom.gradebook.merge import Choice, Conflict, Merged, conflict_of, copy_of, merge
+from grader.classroom.gradebook.histories import MergeItem, compare_marks
+from grader.classroom.gradebook.merge import Choice, ConflictId, Merged, conflict_of, copy_of, merge
 from grader.classroom.gradebook.snapshots import Snapshot, last_two
 from grader.errors import GraderError, InputError
 from grader.report.changes import render_changes, render_changes_json
@@ -60,17 +60,17 @@ def merge_gradebooks(first: Path, second: Path, keep: Choice | None, terminal: T
     if first.exists() and second.exists() and first.samefile(second):
         raise InputError(f"{printable_path(first)} cannot be merged into itself: name two gradebooks")
     with Gradebook(first) as book, copy_of(second) as other:
-        conflicts = [item for item in compare(book, other).items if item.is_conflict]
+        conflicts = [item for item in compare_marks(book, other).items if item.is_conflict]
         names = book.shown, other.shown
-        choices = {conflict_of(item): keep for item in conflicts} if keep else _asked(conflicts, names, terminal)
+        choices = {conflict_of(item): keep for item in conflicts} if keep else _ask_choices(conflicts, names, terminal)
         merged = merge(book, other, choices)
     is_complete = not merged.conflicts and not merged.unmatched
     return "".join(f"{line}\n" for line in _lines(merged, names)), ExitCode.PASSED if is_complete else ExitCode.FAILED
 
 
-def _asked(conflicts: list[MergeItem], names: tuple[str, str], terminal: Terminal) -> dict[Conflict, Choice]:
+def _ask_choices(conflicts: list[MergeItem], names: tuple[str, str], terminal: Terminal) -> dict[ConflictId, Choice]:
     """Ask which mark counts in each conflict, until the end of the input."""
-    choices: dict[Conflict, Choice] = {}
+    choices: dict[ConflictId, Choice] = {}
     prompt = f"k to keep the mark of {names[0]}, t to take that of {names[1]}, s to skip: "
     for item in conflicts:
         terminal.print("".join(f"{line}\n" for line in _conflict_lines(item, names)))

@@ -86,7 +86,7 @@ def _changes(request: GradeRequest, besides: set[Path], warn: Warn) -> Iterator[
         raise GraderError("--watch writes no fix: use --fix without it")
     rubric = _rubric_file(request, warn)
     own = frozenset(os.path.realpath(file) for _, file in request.saves)
-    return changes(Watched(Path(request.path), rubric, own, besides))
+    return file_changes(Watched(Path(request.path), rubric, own, besides))
 
 
 def _rubric_file(request: GradeRequest, warn: Warn) -> Path | None:
@@ -135,7 +135,7 @@ class Watched(NamedTuple):
     besides: Collection[Path] = ()
 
 
-def changes(watched: Watched) -> Iterator[bool]:
+def file_changes(watched: Watched) -> Iterator[bool]:
     """Yield at once and after every change, without end: True if a file changed for certain."""
     seen: dict[str, _Stamp] | None = None
     before: dict[str, _Stamp] = {}

@@ -273,8 +273,8 @@ class HostileClass(RuleBasedStateMachine):
         intake = read_class(self.source, roster, layout, rubric_id="lab6")
         for submission in intake.submissions():
             self._check_files(submission.paths, submission.names, submission.student.key)
-        reported = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
-        Batch(self.book, RUBRIC, reported, InlineExecutor()).grade(intake)
+        reported = RunSettings(str(self.source), layout, roster=roster)
+        Batch(self.book, RUBRIC, reported, InlineExecutor(), 1).grade(intake)
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], key: str) -> None:
         """Assert that the files read for a submission belong to the owner of its folder."""

@@ -19,7 +19,7 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.lms.preflight import Conflict, Preflight, RowNote
+from grader.classroom.lms.preflight import Overwrite, Preflight, RowNote
 from grader.classroom.students import ClassSubmission
 from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
@@ -419,7 +419,7 @@ def test_the_output_for_a_large_class_is_short() -> None:
     late = [RowNote(number, f"Doe, {number}", "nothing was submitted") for number in (41, 42)]
     one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
     unknown = [RowNote(number, "x\x1b", "nobody") for number in range(50, 103)]
-    conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
+    conflicts = [Overwrite(number, "y", "1", "2") for number in range(50)]
     found = Preflight("Grade", 0, 0, conflicts, [*pending, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
     assert lines[0] == "column 'Grade': 0 filled in, 0 already the same"

@@ -97,7 +97,7 @@ def test_another_limit_of_a_urdf_is_no_change(tmp_path: Path, monkeypatch: pytes
     write_submission(tmp_path / "ash")
     (tmp_path / "ash" / "robot.urdf").write_text(urdf() + " " * 2_000_000)
     later = time.time_ns() + 10**9  # files that were just written have no fingerprint
-    monkeypatch.setattr("grader.classroom.gradebook.student_grade.time", SimpleNamespace(time_ns=lambda: later))
+    monkeypatch.setattr("grader.classroom.gradebook.submission_files.time", SimpleNamespace(time_ns=lambda: later))
     for limit, is_read in ((3_000_000, True), (URDF_LIMIT, False)):
         stamp = fingerprint(str(tmp_path), ("ash",), later)
         sources = SubmissionSources(SubmissionFiles(str(tmp_path), ("ash",), (), "ash", stamp, "", limit), lab())

@@ -303,7 +303,7 @@ def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monk
         raise error
 
     with monkeypatch.context() as patched:
-        patched.setattr("grader.classroom.gradebook.gradebook._transaction", locked)
+        patched.setattr("grader.classroom.gradebook.gradebook.transaction_of", locked)
         assert review.mark("1", "3")["error"] == f"the gradebook {book}: database is locked"
     assert review.mark("1", "3") == {"go": "2"}
     with monkeypatch.context() as patched:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import pytest
 
 from grader.files.folder import is_looked_at, read_folder
-from grader.usecases.watch import Watched, _stamps, changes
+from grader.usecases.watch import Watched, _stamps, file_changes
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
@@ -307,7 +307,7 @@ def without_pauses(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("without_pauses")
 def test_an_undecodable_name_is_a_change(tmp_path: Path) -> None:
     """And later changes are noticed."""
-    heard = filter(None, changes(Watched(tmp_path)))
+    heard = filter(None, file_changes(Watched(tmp_path)))
     next(heard)
     Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.txt")).touch()
     next(heard)
@@ -322,7 +322,7 @@ def test_only_changes_are_yielded(tmp_path: Path) -> None:
     put("<robot/>", robot)
     put("<robot/>", part)
     besides: list[Path] = []
-    file = changes(Watched(robot, besides=besides))
+    file = file_changes(Watched(robot, besides=besides))
     assert next(file)
     for text in ("a", "b", "longer"):
         put(text, robot)

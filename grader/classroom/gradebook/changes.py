@@ -63,7 +63,7 @@ def _change(key: str, old: StudentState, new: StudentState, comparison: _Compari
     name = new.name or old.name
     final = tuple(_final_mark(old, new))
     if not (old.verdict and new.verdict):
-        why = (*_moved(old, new), *final)
+        why = (*_submission_change(old, new), *final)
         return Change(*whole, (), why, name) if why else None
     steps = tuple(_steps(old, new))
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
@@ -78,7 +78,7 @@ def _change(key: str, old: StudentState, new: StudentState, comparison: _Compari
     return Change(*whole, steps, why, name, found, is_other or old.total != new.total)
 
 
-def _moved(old: StudentState, new: StudentState) -> Iterator[str]:
+def _submission_change(old: StudentState, new: StudentState) -> Iterator[str]:
     """Yield that a student has a submission in one of two runs only."""
     if new.verdict:
         yield "first submission"

@@ -10,12 +10,7 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.connection import BUSY_TIMEOUT, prepare, transaction_of
 from grader.classroom.gradebook.result import StoredOutcome, decompressed
-from grader.classroom.gradebook.stored import (
-    STORED_SUBMISSIONS,
-    STUDENT_COLUMNS,
-    WITHOUT_SUBMISSION,
-    StoredSubmission,
-)
+from grader.classroom.gradebook.stored import STORED_SUBMISSIONS, STUDENT_COLUMNS, WITHOUT_SUBMISSION, StoredSubmission
 from grader.classroom.students import Student
 from grader.errors import GraderError, InputError
 from grader.grading.answers import with_answers
@@ -165,13 +160,13 @@ class Gradebook(AbstractContextManager["Gradebook"]):
 
     def stored_submissions(self) -> Iterator[StoredSubmission]:
         """Yield the newest submission of each student, in the order of the keys, unaffected by later writes."""
-        return self._stored(STORED_SUBMISSIONS)
+        return self._read_stored(STORED_SUBMISSIONS)
 
     def without_submission(self) -> Iterator[StoredSubmission]:
         """Yield the students who have submitted nothing, in the order of the keys, unaffected by later writes."""
-        return self._stored(WITHOUT_SUBMISSION)
+        return self._read_stored(WITHOUT_SUBMISSION)
 
-    def _stored(self, query: str) -> Iterator[StoredSubmission]:
+    def _read_stored(self, query: str) -> Iterator[StoredSubmission]:
         with self.input_errors(), closing(sqlite3.connect(self.path, timeout=BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(query):
                 yield StoredSubmission.of(row)

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from decimal import Decimal
 from pathlib import PurePosixPath
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -30,6 +30,18 @@ _RUBRICS = "SELECT DISTINCT rubric FROM grade WHERE result IS NOT NULL AND versi
 _ROBOT = ("urdf", "robot")  # what a check examines that depends on the URDF alone
 
 
+class HintKey(NamedTuple):
+    """What submissions with the same hints have in common: the hash of a file, all files or a robot, and the statuses.
+
+    Such as ("file", "9b71...", "{3: 'failed', 7: 'skipped'}", "task1 task2").
+    """
+
+    kind: Literal["file", "digest", "robot"]
+    sha256: str
+    statuses: str
+    parts: str = ""
+
+
 class LossySubmission(NamedTuple):
     """A submission that lost points. `hints` are those that are stored, as JSON; None if they have not been searched.
 
@@ -44,8 +56,8 @@ class LossySubmission(NamedTuple):
     is_gone: bool
     hints: str | None
     submission: GradedSubmission
-    content: tuple[str, ...]
-    robot: tuple[str, ...]
+    content: HintKey
+    robot: HintKey
 
 
 def lossy_submissions(book: Gradebook, rubric: Rubric) -> list[LossySubmission]:
@@ -63,10 +75,11 @@ def lossy_submissions(book: Gradebook, rubric: Rubric) -> list[LossySubmission]:
         submission = graded_submission_from(book.record(row["result"]))
         is_package_wrong = not submission.is_single and not failed.isdisjoint(of_package)
         if is_package_wrong or not failed.isdisjoint(of_robot):
-            files = ("file", row["urdf"]) if submission.is_single and row["urdf"] else ("digest", row["digest"])
-            content = (*files, row["parts"], str(statuses))
-            of_robots = {position: statuses.get(position) for position in of_robot}
-            robot = content if is_package_wrong or not row["robot"] else ("robot", row["robot"], str(of_robots))
+            content = HintKey("digest", row["digest"], str(statuses), row["parts"])
+            if submission.is_single and row["urdf"]:
+                content = content._replace(kind="file", sha256=row["urdf"])
+            of_robots = str({position: statuses.get(position) for position in of_robot})
+            robot = content if is_package_wrong or not row["robot"] else HintKey("robot", row["robot"], of_robots)
             parts, is_gone = tuple(row["parts"].split()), bool(row["is_gone"])
             known = row["student"], row["result"], SubmissionFiles.of(row), parts, is_gone, row["hints"]
             found.append(LossySubmission(*known, submission, content, robot))
@@ -132,7 +145,7 @@ def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     needed: dict[str, dict[str, tuple[str, ...]]] = {}  # what each student gains by an action
     examples: dict[tuple[str, tuple[str, ...]], tuple[LossySubmission, Hint, tuple[Hint, ...]]] = {}
     marks = manual_units(book)
-    for submission, example, hints in _searched(book, rubric):
+    for submission, example, hints in _with_stored_hints(book, rubric):
         given = {row.id for row in rubric.criteria if marks[submission.student].get(row.id) == units_of(row.points)}
         for hint in hints:
             action, gained = hint.action, tuple(hint.gains)
@@ -149,7 +162,9 @@ def common_fixes(book: Gradebook, rubric: Rubric) -> tuple[CommonFix, ...]:
     return tuple(sorted(fixes, key=lambda fix: (-fix.count, -fix.points, fix.action))[:_MAX_FIXES])
 
 
-def _searched(book: Gradebook, rubric: Rubric) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[Hint, ...]]]:
+def _with_stored_hints(
+    book: Gradebook, rubric: Rubric
+) -> Iterator[tuple[LossySubmission, LossySubmission, tuple[Hint, ...]]]:
     """Yield submissions, each with the first that has the same robot and the same failures, and with its hints."""
     submissions = lossy_submissions(book, rubric)
     first = {one.robot: one for one in reversed(submissions) if one.hints is not None}

@@ -77,19 +77,19 @@ class UnmatchedStudent(NamedTuple):
     entries: int
 
 
-class Comparison(NamedTuple):
+class MarkComparison(NamedTuple):
     """The items of which the first gradebook lacks entries of the second, and the students who are not matched."""
 
     items: tuple[MergeItem, ...]
     unmatched: tuple[UnmatchedStudent, ...]
 
 
-def compare(first: Gradebook, second: Gradebook) -> Comparison:
+def compare_marks(first: Gradebook, second: Gradebook) -> MarkComparison:
     """Return what a merge of the second gradebook's marks into the first one has to do."""
     students, others = _students(first), _students(second)
     own, theirs = _histories(first), _histories(second)
     marked = {student for student, _ in theirs}
-    matched = _matched(students, {number: others[number] for number in others if number in marked})
+    matched = _match_students(students, {number: others[number] for number in others if number in marked})
     items = [
         MergeItem(
             matched[student], students[matched[student]].key, criterion, own[matched[student], criterion], history
@@ -100,7 +100,7 @@ def compare(first: Gradebook, second: Gradebook) -> Comparison:
     counts = Counter(student for (student, _), history in theirs.items() for _ in history)
     unmatched = [UnmatchedStudent(others[number].key, counts[number]) for number in sorted(marked - matched.keys())]
     found = sorted((item for item in items if item.new), key=lambda item: (item.key, item.criterion))
-    return Comparison(tuple(found), tuple(sorted(unmatched)))
+    return MarkComparison(tuple(found), tuple(sorted(unmatched)))
 
 
 def is_newest(entry: StoredMark, history: History) -> bool:
@@ -108,7 +108,7 @@ def is_newest(entry: StoredMark, history: History) -> bool:
     return _state(_newest(history)) == _state(entry)
 
 
-def _matched(students: dict[int, Student], others: dict[int, Student]) -> dict[int, int]:
+def _match_students(students: dict[int, Student], others: dict[int, Student]) -> dict[int, int]:
     """Return the ids of the students in the first gradebook, by those in the second: the same key, else the same ids.
 
     A student who matches several, or whose LMS number differs, is not included.

@@ -30,8 +30,8 @@ def identical_work(book: Gradebook) -> list[IdenticalWork]:
     handed_out = {sha256 for (sha256,) in book.rows("SELECT sha256 FROM handed_out")}
     rows = (_Work(key, urdf, robot, (source, files)) for key, urdf, robot, source, files in book.rows(_SUBMISSIONS))
     works = [work for work in rows if work.urdf not in handed_out and work.robot not in handed_out]
-    files = _shared((work.urdf, work) for work in works)
-    robots = _shared((work.robot, work) for work in works if work.robot)
+    files = _groups_of_several((work.urdf, work) for work in works)
+    robots = _groups_of_several((work.robot, work) for work in works if work.robot)
     numbers = {work.key: number for number, group in enumerate(robots) for work in group}
     inside: dict[int, list[tuple[str, ...]]] = {}
     apart = []
@@ -46,7 +46,7 @@ def identical_work(book: Gradebook) -> list[IdenticalWork]:
     return sorted(same + apart, key=lambda work: (not work.same_file, -len(work.students), work.students))
 
 
-def _shared(works: Iterable[tuple[str, _Work]]) -> list[list[_Work]]:
+def _groups_of_several(works: Iterable[tuple[str, _Work]]) -> list[list[_Work]]:
     """Return the groups with the same hash that come from more than one submission."""
     groups: dict[str, list[_Work]] = {}
     for sha256, work in works:

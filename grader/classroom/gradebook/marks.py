@@ -88,7 +88,7 @@ def add_mark(
             f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
         )
     with _writing(book):
-        before = _seen(book, grade, criterion, entry, by, shown)
+        before = _newest_if_shown(book, grade, criterion, entry, by, shown)
         mark = Mark(entry, by, result=grade.result)
         if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
             mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
@@ -104,7 +104,7 @@ def restore_mark(
     """
     mark = Mark(mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
     with _writing(book):
-        before = _seen(book, grade, criterion, mark.entry, by, shown)
+        before = _newest_if_shown(book, grade, criterion, mark.entry, by, shown)
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
@@ -129,7 +129,7 @@ def _writing(book: Gradebook) -> Iterator[None]:
         yield
 
 
-def _seen(
+def _newest_if_shown(
     book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, shown: int | None
 ) -> Mark | None:
     """Return the newest mark, or for a second opinion this grader's newest; raises NewerMarkError if not shown."""

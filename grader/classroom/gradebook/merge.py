@@ -8,14 +8,14 @@ from tempfile import TemporaryDirectory
 from typing import Any, Literal, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.histories import MergeItem, UnmatchedStudent, compare, is_newest
+from grader.classroom.gradebook.histories import MergeItem, UnmatchedStudent, compare_marks, is_newest
 from grader.classroom.gradebook.marks import account, insert_mark
 from grader.classroom.gradebook.schema import APPLICATION_ID
 from grader.errors import InputError
 from grader.text import printable_path
 
 Choice = Literal["first", "second"]
-Conflict = tuple[
+ConflictId = tuple[
     str, str, int, int
 ]  # key, criterion, and the ids of the newest marks: another mark is another conflict
 # What a result refers to: the tables that belong to a rubric, each with its column, and the dictionary.
@@ -52,19 +52,19 @@ def copy_of(path: Path) -> Iterator[Gradebook]:
             yield book
 
 
-def conflict_of(item: MergeItem) -> Conflict:
+def conflict_of(item: MergeItem) -> ConflictId:
     """Return what identifies a conflict: it is another one as soon as somebody marks the item."""
     first, second = (entry.mark.id if entry is not None else 0 for entry in item.newest)
     return item.key, item.criterion, first, second
 
 
-def merge(first: Gradebook, second: Gradebook, choices: Mapping[Conflict, Choice]) -> Merged:
+def merge(first: Gradebook, second: Gradebook, choices: Mapping[ConflictId, Choice]) -> Merged:
     """Append the entries that the first gradebook lacks, in one transaction; a conflict without a choice stays.
 
     If another mark than the chosen one would count after that, the chosen one is repeated as a new entry.
     """
     with first.transaction():
-        items, unmatched = compare(first, second)
+        items, unmatched = compare_marks(first, second)
         results = _Results(first, second)
         written: dict[str, int] = {}
         conflicts = []

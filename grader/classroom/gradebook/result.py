@@ -132,7 +132,7 @@ def _outcome(result: Result) -> OutcomeRow:
     if result.is_adjusted or result.carried:
         return position, "adjusted" if result.is_adjusted else "carried", units_of(result.points), "", None
     if status == "failed":
-        return position, status, 0, _cause(outcome.mistake or outcome.message), _measured(outcome)
+        return position, status, 0, _cause(outcome.mistake or outcome.message), _measurement(outcome)
     if status == "pending" and criterion.check.function not in MANUAL_CHECKS:
         return position, status, None, _cause(outcome.mistake or f"{criterion.check.name} could not be decided"), None
     return position, status, 0 if status == "skipped" else None, "", None
@@ -142,7 +142,7 @@ def _cause(words: str) -> str:
     return storable(cut(words, _MAX_CAUSE))
 
 
-def _measured(outcome: Outcome) -> str | None:
+def _measurement(outcome: Outcome) -> str | None:
     """Return the measured and the expected numbers with the tolerance as JSON; None if no numbers were compared."""
     measured, expected = _numbers(outcome.measured), _numbers(outcome.expected)
     if outcome.tolerance is None or not measured:

@@ -8,13 +8,7 @@ from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import GradingResult, storable, units_of
-from grader.classroom.gradebook.stored import (
-    PROFILE_COLUMNS,
-    Enrolment,
-    StoredSubmission,
-    files_json,
-    profile_of,
-)
+from grader.classroom.gradebook.stored import PROFILE_COLUMNS, Enrolment, StoredSubmission, files_json, profile_of
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.rubric import Rubric

@@ -35,7 +35,7 @@ class Section(NamedTuple):
     shares: tuple[float | None, ...]
 
 
-class Comparison(NamedTuple):
+class SectionComparison(NamedTuple):
     """The sections side by side, in the order of their names, and the positions of the criteria that differ most."""
 
     by: Grouping
@@ -45,7 +45,7 @@ class Comparison(NamedTuple):
     differing: tuple[int, ...]
 
 
-def compare(grades: Grades, by: Grouping) -> Comparison:
+def compare_sections(grades: Grades, by: Grouping) -> SectionComparison:
     """Return the sections, or each marker's students, side by side; raises InputError if nothing was graded."""
     rubric, book = grades.newest_rubric(), grades.book
     students = {student.id: student for student in graded_students(book, rubric)}
@@ -54,7 +54,7 @@ def compare(grades: Grades, by: Grouping) -> Comparison:
         groups[getattr(grade, by)].append(grade)
     most = max((student.out_of for student in students.values()), default=units_of(rubric.points))
     sections = tuple(_section(name, groups[name], students, most, rubric.criteria) for name in sorted(groups))
-    return Comparison(
+    return SectionComparison(
         by,
         points_from_units(most),
         rubric.criteria,

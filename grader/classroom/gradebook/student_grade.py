@@ -101,10 +101,7 @@ class StudentGrade:
             (self.faults, "the grader failed on a criterion"),
             (self.verdict == "unreadable" and self.pending, f"it could not be graded: {self.reason}"),
             (self.is_gone, "it is no longer in the class folder"),
-            (
-                self.is_outdated,
-                "it was graded with an earlier version of the rubric: run `grader batch` again",
-            ),
+            (self.is_outdated, "it was graded with an earlier version of the rubric: run `grader batch` again"),
             (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
             (
                 self.doubtful.over,

@@ -65,11 +65,11 @@ def late_totals(grades: Grades) -> LateTotals:
     """Return the totals of a gradebook, without students who have a final mark or an excuse: they lose nothing."""
     lost = [-grade.late.points for grade in grades.where(_MAYBE_LATE) if grade.late.days]
     zero = Decimal(0)
-    unknown = _undated(grades) if grades.has_deadline else 0
+    unknown = _count_undated(grades) if grades.has_deadline else 0
     return LateTotals(len(lost), sum(lost, zero), min(lost, default=zero), max(lost, default=zero), unknown)
 
 
-def _undated(grades: Grades) -> int:
+def _count_undated(grades: Grades) -> int:
     """Return how many submissions there are; 0 if it is known of one when it was submitted, or whether it is late."""
     rows = list(grades.book.rows(_TIMES))
     is_known = any(has_time or (entry and json.loads(entry).get("is_late") is not None) for has_time, entry in rows)

@@ -26,16 +26,16 @@ def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     try:
         if is_zip(root):
             status = os.stat(root)  # noqa: PTH116
-            return f"{_shown(status)} {paths}" if status.st_ctime_ns < settled else ""
+            return f"{_stamp(status)} {paths}" if status.st_ctime_ns < settled else ""
         if len(paths) == 1:
             status = os.lstat(f"{root}/{paths[0]}")
             if stat.S_ISREG(status.st_mode):  # a shortcut for most submissions of a large class
-                return _shown(status) if status.st_ctime_ns < settled else ""
+                return _stamp(status) if status.st_ctime_ns < settled else ""
         digest, newest = sha256(), 0
         for path in paths:
             for entry, status in _walk(f"{root}/{path}"):
                 newest = max(newest, status.st_ctime_ns)
-                digest.update(f"{entry}\0{_shown(status)}\0".encode("utf-8", "surrogateescape"))
+                digest.update(f"{entry}\0{_stamp(status)}\0".encode("utf-8", "surrogateescape"))
     except OSError:
         return ""
     return digest.hexdigest() if newest < settled else ""
@@ -58,13 +58,13 @@ def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
         folders += [entry.path for entry in entries if entry.is_dir(follow_symlinks=False)]
 
 
-def _shown(status: os.stat_result) -> str:
+def _stamp(status: os.stat_result) -> str:
     return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
 
 
 def file_stamp(path: str) -> str:
     """Return what the file system says about one file; empty if it cannot be read."""
     try:
-        return _shown(os.stat(path))  # noqa: PTH116
+        return _stamp(os.stat(path))  # noqa: PTH116
     except OSError:
         return ""

@@ -16,62 +16,19 @@ _ZONE = re.compile(r"\s*(?:UTC|UCT|GMT|Z)$")
 _OFFSET = re.compile(r"\s+(?=[+-][0-9:]+$)")
 # The words of the names of folders that hold what a course hands out: Lab6 resources, Starter code, Handout (old).
 _COURSE_WORDS = frozenset(
-    [
-        "resource",
-        "resources",
-        "handout",
-        "handouts",
-        "solution",
-        "solutions",
-        "template",
-        "templates",
-        "starter",
-        "skeleton",
-        "material",
-        "materials",
-        "example",
-        "examples",
-        "instructions",
-        "reference",
-        "references",
-        "rubric",
-        "rubrics",
-        "grading",
-        "demo",
-        "slides",
-    ]
-)
+    {
+        "resource", "resources", "handout", "handouts", "solution", "solutions", "template", "templates", "starter",
+        "skeleton", "material", "materials", "example", "examples", "instructions", "reference", "references",
+        "rubric", "rubrics", "grading", "demo", "slides",
+    }
+)  # fmt: skip
 _OTHER_WORDS = frozenset(
-    [
-        "lab",
-        "labs",
-        "course",
-        "class",
-        "code",
-        "file",
-        "files",
-        "folder",
-        "for",
-        "of",
-        "the",
-        "and",
-        "to",
-        "from",
-        "old",
-        "new",
-        "sample",
-        "model",
-        "student",
-        "students",
-        "project",
-        "assignment",
-        "exercise",
-        "task",
-        "week",
-        "ws",
-        "workspace",
-    ]
-)
+    {
+        "lab", "labs", "course", "class", "code", "file", "files", "folder", "for", "of", "the", "and", "to", "from",
+        "old", "new", "sample", "model", "student", "students", "project", "assignment", "exercise", "task", "week",
+        "ws", "workspace",
+    }
+)  # fmt: skip
 _WORDS = re.compile(r"[^\W\d_]+")
 
 

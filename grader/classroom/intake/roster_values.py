@@ -108,7 +108,7 @@ class RowReader:
             row["section"],
             due,
             extension,
-            _submitted(row["submitted"], complain),
+            _submission_time(row["submitted"], complain),
             is_late,
             days,
             (row["github"],) if row["github"] not in ("", login) else (),
@@ -160,7 +160,7 @@ def _group(text: str, complain: Complain) -> str:
     return text
 
 
-def _submitted(text: str, complain: Complain) -> str:
+def _submission_time(text: str, complain: Complain) -> str:
     time = iso_time(text)
     if text and not time:
         complain(f"has the time {text!r} for submitted{_why_no_date(text)}: write it as 2026-09-01T10:00")

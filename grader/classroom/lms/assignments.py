@@ -32,7 +32,7 @@ def find_assignment(columns: Sequence[GradeColumn], options: FillOptions, lms: s
 
     `lms` is the name of the LMS, `example` the header of an assignment there.
     """
-    return _named(columns, options) if options.column else _detected(columns, options, lms, example)
+    return _column_by_name(columns, options) if options.column else _column_of_rubric(columns, options, lms, example)
 
 
 def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, options: FillOptions) -> Iterator[str]:
@@ -46,7 +46,7 @@ def assignment_warnings(columns: Sequence[GradeColumn], chosen: GradeColumn, opt
         )
 
 
-def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
+def _column_by_name(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
     """Return the column with this header, title or number."""
     wanted = options.column.strip()
     exact = [column for column in columns if column.header == wanted]
@@ -57,7 +57,7 @@ def _named(columns: Sequence[GradeColumn], options: FillOptions) -> GradeColumn:
     return found[0]
 
 
-def _detected(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
+def _column_of_rubric(columns: Sequence[GradeColumn], options: FillOptions, lms: str, example: str) -> GradeColumn:
     """Return the only assignment whose title is a name of the rubric, contains or is part of one.
 
     Raises InputError if there is none, or several. An only assignment with another title may be the grade of other

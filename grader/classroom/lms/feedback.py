@@ -61,7 +61,7 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
         out_of = sum((result.criterion.points for result in group), Decimal(0))
         if len(group) == 1:
             (result,) = group
-            message = _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
+            message = _capitalise(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
             message = f"{message}. {result.why_given}" if result.why_given else message
             message = (
                 result.why_given if result.is_adjusted else message
@@ -76,7 +76,7 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
         else:
             yield FeedbackItem(
-                f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalised(cause), is_open=True
+                f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalise(cause), is_open=True
             )
 
 
@@ -99,7 +99,7 @@ def _cause(result: Result) -> tuple[str, str] | None:
     return ("pending", result.outcome.message) if result.is_open else None
 
 
-def _capitalised(message: str) -> str:
+def _capitalise(message: str) -> str:
     """Return a message as in the terminal report: a first word with other characters than letters is unchanged."""
     return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
 
@@ -107,7 +107,7 @@ def _capitalised(message: str) -> str:
 def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem], graded: str = "automatically") -> str:
     """Return a comment in one line of at most LIMIT characters: who graded, the exported score, then the items."""
     opening = (
-        f"<p>{_OPENING}{_escaped(graded)}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
+        f"<p>{_OPENING}{_escape(graded)}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
     )
     lines = [_item(item) for item in items]
     room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
@@ -127,16 +127,16 @@ def is_own_feedback(text: str) -> bool:
 
 
 def _item(item: FeedbackItem) -> str:
-    message = _escaped(item.message)
+    message = _escape(item.message)
     if item.points is None:
-        return f"<li>{_escaped(item.title)}: {message}</li>"
+        return f"<li>{_escape(item.title)}: {message}</li>"
     points = "–" if item.is_open else format_points(item.points)
     if item.points >= 0:  # a late penalty is negative, and has no maximum
         points += f" of {format_points(item.out_of)}"
-    return f"<li>{_escaped(item.title)}: {points}.{' ' if message else ''}{message}</li>"
+    return f"<li>{_escape(item.title)}: {points}.{' ' if message else ''}{message}</li>"
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     """Return a student's text on one line of HTML.
 
     Two things become character references: a backslash, which PHP's CSV reader takes for an escape, and what a

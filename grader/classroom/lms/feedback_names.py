@@ -43,7 +43,7 @@ def canvas_target(name: str) -> tuple[str, str] | None:
     return (found[0], found[1]) if len(found) == 2 and found[1].isdecimal() else None
 
 
-def canvas_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
+def canvas_upload_name(names: Sequence[str], members: Collection[Student], ending: str) -> tuple[str, str]:
     """Return the name under which Canvas gives a report to a submission's students; else an empty name and the reason.
 
     `names` are the files of the newest attempt, `members` the students whose submission it is, `ending` that of the

@@ -9,7 +9,7 @@ from dataclasses import replace
 from decimal import Decimal
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
-from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
+from grader.classroom.lms.preflight import Filled, Overwrite, Preflight, RowNote
 from grader.classroom.matching import OF_RECORDS, People, clues_of, lms_ids_of
 from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
@@ -79,7 +79,7 @@ class Filling:
                 rows.append(row)
             elif row.number in matched:
                 grade = matched[row.number]
-                new = self._filled(row, grade, fill_row, fill_excuse)
+                new = self._fill(row, grade, fill_row, fill_excuse)
                 if isinstance(new, TableRow):
                     self._count(row, new, grade)
                     rows.append(new)
@@ -105,10 +105,10 @@ class Filling:
         if old.casefold() == new.casefold():
             return row
         if old.casefold() not in _NOT_GRADED_YET:
-            self.preflight.conflicts.append(Conflict(row.number, self._students[row.number].who, old, new))
+            self.preflight.conflicts.append(Overwrite(row.number, self._students[row.number].who, old, new))
         return self.table.changed(row, column, new)
 
-    def _filled(
+    def _fill(
         self, row: TableRow, grade: LmsGrade, fill_row: FillRow, fill_excuse: FillExcuse | None
     ) -> TableRow | str | RowNote:
         titles = self.table.titles

@@ -79,7 +79,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     if identifier is None:
         reason = "its first column does not have 'Participant 123' in every row"
         raise InputError(f"{shown} is not a grading worksheet of Moodle: {reason}; {_list(titles)}")
-    grade = _named(titles, column, shown) if column else _grade(kinds, rows, identifier)
+    grade = _column_by_name(titles, column, shown) if column else _grade(kinds, rows, identifier)
     if grade is None:
         raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
@@ -99,7 +99,9 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
         grade=grade,
         maximum=maximum,
         changeable=_first(kinds, "changeable", grade),
-        feedback=_named(titles, feedback_column, shown) if feedback_column else _first(kinds, "feedback", maximum),
+        feedback=_column_by_name(titles, feedback_column, shown)
+        if feedback_column
+        else _first(kinds, "feedback", maximum),
         has_modified="modified" in kinds[maximum + 1 :],
     )
 
@@ -142,7 +144,7 @@ def _first(kinds: list[str], kind: str, behind: int) -> int | None:
     return kinds.index(kind, behind + 1) if kind in kinds[behind + 1 :] else None
 
 
-def _named(titles: tuple[str, ...], column: str, shown: str) -> int:
+def _column_by_name(titles: tuple[str, ...], column: str, shown: str) -> int:
     found = [index for index, title in enumerate(titles) if title == column.strip()]
     if len(found) != 1:
         raise InputError(f"{shown} has {'more than one' if found else 'no'} column {column.strip()!r}; {_list(titles)}")

@@ -12,7 +12,7 @@ class RowNote(NamedTuple):
     why: str
 
 
-class Conflict(NamedTuple):
+class Overwrite(NamedTuple):
     """A row with another grade, which is overwritten: `was` becomes `becomes`."""
 
     row: int
@@ -36,7 +36,7 @@ class Preflight:
     column: str
     filled: int = 0
     unchanged: int = 0
-    conflicts: list[Conflict] = field(default_factory=list)
+    conflicts: list[Overwrite] = field(default_factory=list)
     ungraded: list[RowNote] = field(default_factory=list)
     unknown: list[RowNote] = field(default_factory=list)
     missing: list[RowNote] = field(default_factory=list)

@@ -40,8 +40,6 @@ class RunSettings(NamedTuple):
 
     root: str
     layout: str
-    total: int
-    workers: int
     force: bool = False
     roster: Roster | None = None
     deadline: str = ""
@@ -60,16 +58,17 @@ class Batch:
         rubric: Rubric,
         settings: RunSettings,
         executor: Executor,
+        workers: int,
         listener: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256  # which is computed
         used = {criterion.part for criterion in rubric.criteria}
         self._parts = parts_text(rubric, used.intersection(settings.parts or used))
-        self._executor = executor
+        self._executor, self._workers = executor, workers
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self.has_begun = False  # whether the run is in the gradebook
-        self.progress = Progress(settings.total)
+        self.progress = Progress(0)
         self.notes: list[str] = []
 
     def grade(self, intake: Intake) -> Progress:
@@ -89,10 +88,13 @@ class Batch:
         )
         self.has_begun = True
         writer.add_handed_out(settings.handed_out)
+        self.progress = Progress(len(intake))
         self._report(())  # the total, before the first result
         students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
         self._grade_all(writer, self._tasks(intake, students, contested))
+        for student in intake.absent:
+            students.recognise(student)
         with book.transaction():
             for stored in students.gone():
                 self._add_gone(writer, stored, is_contested=stored.key in contested)
@@ -137,7 +139,7 @@ class Batch:
             reason = str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
             return undecided_result(context, task, GradingResult(task.key, "errored", "", "", reason=reason))
 
-        queue = Queue(self._executor, self._settings.workers, partial(grade_all, context), lost)
+        queue = Queue(self._executor, self._workers, partial(grade_all, context), lost)
         for results in queue.all(chain([first], tasks)):
             with self._book.transaction():
                 for result in results:

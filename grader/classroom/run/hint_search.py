@@ -6,7 +6,7 @@ from functools import partial
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.hints import LossySubmission, lossy_submissions, save_hints
+from grader.classroom.gradebook.hints import HintKey, LossySubmission, lossy_submissions, save_hints
 from grader.classroom.gradebook.result import GradingVerdict
 from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.queue import Queue
@@ -17,13 +17,13 @@ from grader.grading.rubric import Rubric
 
 _NO_DOCUMENTS = "hints are about the URDF and the package"
 
-Group = Callable[[LossySubmission], tuple[str, ...]]  # what submissions have in common of which one is searched
+Group = Callable[[LossySubmission], HintKey]  # what submissions have in common of which one is searched
 
 
 class SearchedHints(NamedTuple):
     """The hints of submissions with the same content, as JSON; None if the files are not those that were graded."""
 
-    content: tuple[str, ...]
+    content: HintKey
     hints: str | None
     verdict: GradingVerdict = "graded"
 
@@ -50,7 +50,7 @@ def _proven_hints(one: LossySubmission, rubric: Rubric) -> str | None:
     return hints_to_record(hinted(report, submission, rubric.hints, keep_edits=True).report)
 
 
-def _lost(submission: LossySubmission, error: Exception) -> SearchedHints:
+def _give_up(submission: LossySubmission, error: Exception) -> SearchedHints:
     """Return that there are no hints: searched again if another task may be the cause that the search was lost."""
     is_own_fault = not isinstance(error, WorkerError) or error.is_own_fault
     return SearchedHints(submission.content, NO_HINTS if is_own_fault else None, "errored")
@@ -62,7 +62,7 @@ class ClassHintSearch:
     def __init__(self, book: Gradebook, rubric: Rubric, group: Group) -> None:
         self._book, self._rubric = book, rubric
         submissions = lossy_submissions(book, rubric)
-        self._alike: dict[tuple[str, ...], list[int]] = {}
+        self._alike: dict[HintKey, list[int]] = {}
         for submission in submissions:
             if submission.hints is None:
                 self._alike.setdefault(submission.content, []).append(submission.result)
@@ -78,7 +78,7 @@ class ClassHintSearch:
             if content in self._alike:
                 save_hints(self._book, self._alike[content], hints)
         work = partial(search_hints, self._rubric.data, str(self._rubric.path))
-        for group in Queue(executor, workers, work, _lost).all(self.wanted):
+        for group in Queue(executor, workers, work, _give_up).all(self.wanted):
             for searched in group:
                 if searched.hints is not None:
                     save_hints(self._book, self._alike[searched.content], searched.hints)

@@ -37,7 +37,7 @@ from grader.report.class_words import (
     span,
 )
 from grader.report.drawing import thumbnail_element
-from grader.report.pages.class_rows import Group, StudentRow, groups, student_rows
+from grader.report.pages.class_rows import Group, StudentRow, row_groups, student_rows
 from grader.report.pages.robot import RULES
 from grader.report.pages.shell import Assets, render_page
 from grader.robot.transforms import Vector, dot
@@ -113,7 +113,7 @@ def render_class_page(
     all_grades = list(grades.all())
     counted_in = members(grades.book, summary.rubric, summary.statistics)
     rows = student_rows(all_grades, summary, counted_in, links)
-    found = {name: group for name, group in groups(all_grades, summary, counted_in) if group.keys}
+    found = {name: group for name, group in row_groups(all_grades, summary, counted_in) if group.keys}
     values = {
         "version": __version__,
         "title": summary.rubric.title,

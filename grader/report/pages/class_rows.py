@@ -78,7 +78,7 @@ _STATES: tuple[tuple[str, str, Callable[[StudentGrade], bool]], ...] = (
 )
 
 
-def groups(
+def row_groups(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member]
 ) -> Iterator[tuple[str, Group]]:
     """Yield the groups of students on the page, each with the id that its buttons use."""

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grader.classroom.lms.canvas import fill_gradebook
 from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
-from grader.classroom.lms.preflight import Conflict, Filled, RowNote
+from grader.classroom.lms.preflight import Filled, Overwrite, RowNote
 from grader.classroom.students import Student
 from grader.classroom.tables import read_table
 from grader.errors import InputError
@@ -122,7 +122,7 @@ def test_excuses() -> None:
     assert lines(filled)[2:] == ["Ann,11,,,A,EX", "Bob,12,,,A,EX", "Cem,13,,,A,ex"]
     found = filled.preflight
     assert found.excused == ["Ann", "Bob", "Cem"]
-    assert found.conflicts == [Conflict(4, "Bob", "80", "EX")]
+    assert found.conflicts == [Overwrite(4, "Bob", "80", "EX")]
     assert (found.filled, found.unchanged) == (2, 1)
     assert [note.why for note in found.ungraded] == [
         "is not assigned this assignment in Canvas",

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lms.feedback_names import canvas_name, canvas_target, moodle_folder
+from grader.classroom.lms.feedback_names import canvas_target, canvas_upload_name, moodle_folder
 from grader.classroom.students import Student
 
 ANYBODY = (Student("x"),)
@@ -61,7 +61,7 @@ def test_whose_file_canvas_takes_it_for(name: str, target: tuple[str, str] | Non
 )
 def test_the_name_for_canvas(names: list[str], members: tuple[Student, ...], ending: str, chosen: str) -> None:
     """A file of the student's that Canvas recognises and that a report can be opened under."""
-    name, why = canvas_name(names, members, ending)
+    name, why = canvas_upload_name(names, members, ending)
     assert name == chosen
     assert bool(why) != bool(name)
 
@@ -81,4 +81,4 @@ def test_the_name_for_canvas(names: list[str], members: tuple[Student, ...], end
 )
 def test_why_there_is_no_name(names: list[str], ending: str, why: str) -> None:
     """The reason says what Canvas would do."""
-    assert canvas_name(names, ANYBODY, ending) == ("", why)
+    assert canvas_upload_name(names, ANYBODY, ending) == ("", why)

@@ -89,7 +89,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     first = min((file.attachment for file in clear if file.attachment), default=0)
     for name, readings in found.items():
         if readings:
-            file = _settled(readings, names, first)
+            file = _last_reading(readings, names, first)
             by_user[file.is_anonymous, file.user].append(file)
         else:
             ignored.add(start + name, "is not named like a submission in Canvas")
@@ -132,7 +132,7 @@ def _read(path: str, name: str, found: re.Match[str]) -> _CanvasFile:
     return _CanvasFile(path, name, found["user"], False, bool(found["late"]), int(found["attachment"] or 0), own)
 
 
-def _settled(readings: Sequence[_CanvasFile], names: Mapping[str, str], first: int) -> _CanvasFile:
+def _last_reading(readings: Sequence[_CanvasFile], names: Mapping[str, str], first: int) -> _CanvasFile:
     """Return a file in its last possible reading: its number is no part of a name that a user chose.
 
     Canvas writes one user's name in one way: `names` are those in names that can be read in one way only. They cannot

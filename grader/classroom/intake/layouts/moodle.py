@@ -26,7 +26,7 @@ _MAX_FILES = 2_000  # of one participant, if files and an online text have to be
 
 def is_layout(children: Children) -> bool:
     """Return whether this is a download of Moodle: at least half of the possible submissions are named like one."""
-    fitting = {name for name in children.folders + children.files if _parsed(name)}
+    fitting = {name for name in children.folders + children.files if _parse(name)}
     possible = children.folders + [name for name in children.files if ending_of(name) or name in fitting]
     return bool(fitting) and 2 * len(fitting) >= len(possible)
 
@@ -36,7 +36,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     folders = frozenset(folder.children.folders)
     by_participant: dict[str, list[re.Match[str]]] = defaultdict(list)
     for name in (*sorted(folders), *sorted(folder.children.files)):
-        file = _parsed(name)
+        file = _parse(name)
         if file is None:
             folder.ignored.add(folder.start + name, "is not named like a submission in Moodle")
         else:
@@ -47,7 +47,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     return Submissions(_submission(folder, files, folders, are_hidden=are_hidden) for files in by_participant.values())
 
 
-def _parsed(name: str) -> re.Match[str] | None:
+def _parse(name: str) -> re.Match[str] | None:
     # Names and files are chosen by students: with two such words a name could belong to either of two participants.
     return _NAME.fullmatch(name) if name.count("_assignsubmission_") == 1 else None
 

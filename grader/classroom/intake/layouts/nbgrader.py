@@ -44,7 +44,7 @@ def count_students(folder: ClassFolder) -> int:
 def _has_evidence(folder: ClassFolder, start: str) -> bool:
     """Return whether there is a submission with a timestamp, or for the lab."""
     found = _assignments(folder.listing, start)
-    has_lab = any(_normalised(name) == _normalised(folder.rubric_id) for name in found)
+    has_lab = any(_normalise(name) == _normalise(folder.rubric_id) for name in found)
     return has_lab or any(
         _TIMESTAMP in folder.listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
     )
@@ -55,7 +55,7 @@ def find_submissions(folder: ClassFolder) -> Submissions:
     listing, ignored, course = folder.listing, folder.ignored, find_course(folder)
     start = folder.start if course is None else course
     found = _assignments(listing, start)
-    name = _chosen(found, folder.assignment, folder.rubric_id)
+    name = _choose(found, folder.assignment, folder.rubric_id)
     children = listing.children(start.rstrip("/"))
     submitters = set(found[name])
     for student in children.folders:
@@ -92,18 +92,18 @@ def _choice(name: str, found: Iterable[str]) -> tuple[str]:
     return (f"the assignment {printable_path(name)} is graded; to grade {others}, add --assignment",)
 
 
-def _chosen(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str:
+def _choose(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str:
     named = ", ".join(printable_path(name) for name in sorted(found)[:_MAX_NAMED]) or "none"
     if assignment:
         if assignment in found:
             return assignment
         raise InputError(f"there is no submission for the assignment {printable_path(assignment)}; there are: {named}")
-    similar = [name for name in found if _normalised(name) == _normalised(rubric_id)]
+    similar = [name for name in found if _normalise(name) == _normalise(rubric_id)]
     for names in ([name for name in found if name == rubric_id], similar, list(found)):
         if len(names) == 1:
             return names[0]
     raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
 
 
-def _normalised(name: str) -> str:
+def _normalise(name: str) -> str:
     return "".join(letter for letter in name.casefold() if letter.isalnum())
