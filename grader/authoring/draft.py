@@ -33,7 +33,7 @@ class RubricDraft(NamedTuple):
 
 def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test. Raises InputError."""
-    found = _measured(solution)
+    found = _measure(solution)
     if len(found) > MAX_FACTS:
         raise InputError(
             f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
@@ -45,7 +45,7 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
         rows = criterion_ids(facts)
         data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
-        lost = _lost(rubric)
+        lost = _losses(rubric)
         if not lost:
             return RubricDraft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
         for name, outcome in lost.items():
@@ -64,7 +64,7 @@ def _instead(fact: Fact) -> list[Fact]:
     return [replace(it, about=fact.about) for it in fact.otherwise]
 
 
-def _lost(rubric: Rubric) -> dict[str, Outcome]:
+def _losses(rubric: Rubric) -> dict[str, Outcome]:
     """Return what the reference does not pass, with the outcome; for a skipped criterion, that of its cause."""
     assert rubric.solution is not None
     results = {it.criterion.id: it for it in grade(rubric, rubric.solution.submission).results}
@@ -72,9 +72,9 @@ def _lost(rubric: Rubric) -> dict[str, Outcome]:
     return {name: (results[it.because] if it.because else it).outcome for name, it in lost.items()}
 
 
-def _measured(solution: Solution) -> list[Fact | Omission]:
+def _measure(solution: Solution) -> list[Fact | Omission]:
     """Return what the checks measure: first the file, then each link, the robot, elements and the package."""
-    found = list(islice(chain.from_iterable(_measured_by(name, solution) for name in check_names()), MAX_FACTS + 1))
+    found = list(islice(chain.from_iterable(_measures_of(name, solution) for name in check_names()), MAX_FACTS + 1))
     headings = [THE_FILE, *(link.name for link in solution.links), THE_ROBOT]
     others = dict.fromkeys(it.about for it in found if isinstance(it, Fact) and it.about not in headings)
     headings += [*sorted(others, key=THE_PACKAGE.__eq__)]
@@ -84,7 +84,7 @@ def _measured(solution: Solution) -> list[Fact | Omission]:
     return [*found, *(Omission(f"the package {other.name}", "a rubric is about one package") for other in unused)]
 
 
-def _measured_by(name: str, solution: Solution) -> Iterator[Fact | Omission]:
+def _measures_of(name: str, solution: Solution) -> Iterator[Fact | Omission]:
     """Yield what a check measures, if it does. Raises InputError for a check of another package that fails at it."""
     check = usable_check(name)
     if check is None or not check.about.measure:

@@ -80,8 +80,8 @@ def element_present(
         if reading.undetermined:
             raise NotDecided(reading.undetermined, reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
-    outcome = _searched(reading, root, wanted)
-    is_dropped = outcome.status == "passed" and tag == "link" and _having(_kept(robot, root), wanted) is None
+    outcome = _search(reading, root, wanted)
+    is_dropped = outcome.status == "passed" and tag == "link" and _having(_without_dropped(robot, root), wanted) is None
     if outcome.status == "failed" or is_dropped:
         _check_known(reading, root, wanted)
     if is_dropped:
@@ -94,7 +94,7 @@ def element_present(
     return outcome
 
 
-def _kept(robot: Configuration, root: Element) -> Element:
+def _without_dropped(robot: Configuration, root: Element) -> Element:
     """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2 drops."""
     parts = (part for link in robot.robot.links for part in (link.inertial, *link.visuals, *link.collisions))
     tags = {part.location.tag for part in parts if part is not None and part.location is not None}
@@ -113,7 +113,7 @@ def _having(root: Element, wanted: WantedElement) -> Element | None:
     return next((it for it in fitting if not all(map(wanted.wrong, elements_at(it, steps)))), None)
 
 
-def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
+def _search(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     if _having(root, wanted) is not None:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     tags = [child for child in root if name_of(child) == wanted.tag]
@@ -179,11 +179,11 @@ def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wan
 def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     wanted = expected if isinstance(expected, list) else [expected]
-    should = f"it should be {enumerated([_shown(value) for value in wanted])}"
+    should = f"it should be {enumerated([_value_text(value) for value in wanted])}"
     if not found:
         return f"{key!r} is missing; {should}"
     texts = [readable(text.text) for text in found]
-    return f"{key!r} is {enumerated([*map(_shown, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
+    return f"{key!r} is {enumerated([*map(_value_text, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
 
 
 def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
@@ -193,7 +193,7 @@ def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
     return " (upper and lower case differ)" if is_alike else ""
 
 
-def _shown(value: Scalar) -> str:
+def _value_text(value: Scalar) -> str:
     text = text_of(value)
     return text if not isinstance(value, str) or numbers_of(text) else quoted(text)
 

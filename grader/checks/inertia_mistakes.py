@@ -28,7 +28,7 @@ def mistake_of(inertia: Tensor, solid: MassProperties, shapes: Sequence[tuple[Sh
         is_distinct = difference(candidate, solid.inertia) > _DISTINCT * principal_moments(solid.inertia)[2]
         if is_distinct and _is_near(inertia, candidate):
             return f"it would fit if {cause}"
-    return _scaled(inertia, solid)
+    return _scale_mistake(inertia, solid)
 
 
 def _is_near(inertia: Tensor, candidate: Tensor) -> bool:
@@ -81,7 +81,7 @@ def _about(cylinder: Cylinder, mass: float, axis: Vector) -> Tensor:
     return (x, 0.0, 0.0, y, 0.0, z)
 
 
-def _scaled(inertia: Tensor, solid: MassProperties) -> str:
+def _scale_mistake(inertia: Tensor, solid: MassProperties) -> str:
     """Return how many times too large an inertia is, if that is its only mistake, and what may be the cause."""
     xx, xy, xz, yy, yz, zz = solid.inertia
     factor = (inertia[0] + inertia[3] + inertia[5]) / (xx + yy + zz)

@@ -58,7 +58,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     """
     launch = _launch(package, name)
     if launch.faults and not launch.nodes:
-        raise _stopped(package, name, launch)
+        raise _fault_that_stops(package, name, launch)
     if launch.faults:
         return failed(_faults(launch), launch.faults[0].location, problem=launch.faults[0].message)
     started = {_name_of(node) for node in launch.nodes if node.when}
@@ -136,7 +136,7 @@ def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
 def _no_files(package: Package, name: str, launch: "Launch") -> Outcome:
     """Return why a launch file names neither a URDF nor an RViz file."""
     if launch.faults:
-        raise _stopped(package, name, launch)
+        raise _fault_that_stops(package, name, launch)
     if launch.unknown:
         return pending(f"{_UNKNOWN_FILES}: {launch.unknown[0].message}; needs manual grading", _UNKNOWN_FILES)
     raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
@@ -172,7 +172,7 @@ def _launch(package: Package, name: str) -> "Launch":
     return launch
 
 
-def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
+def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
     """Return the fault of a launch file that starts nothing because of it."""
     path, first = _path(package, name), launch.faults[0]
     return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)

@@ -33,7 +33,7 @@ def mimics(
         tolerance: How far multiplier and offset may be off, in their units.
     """
     joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
-    followed = _followed(robot, joint, link)
+    followed = _mimic_chain(robot, joint, link)
     at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
     if leading.name not in followed:
         message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
@@ -54,7 +54,7 @@ def mimics(
     return compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 
-def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
+def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
     """Return the joints that a joint mimics, directly and through others, each with the multiplier and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.

@@ -69,7 +69,7 @@ def elements(text: str) -> list[Element]:
         elif token[0].startswith("</") and open_ones:
             index = open_ones.pop()
             found[index] = found[index]._replace(end=token.end())
-    return _labelled(text, found)
+    return _label(text, found)
 
 
 def text_of(text: str, element: Element) -> tuple[int, int] | None:
@@ -93,7 +93,7 @@ def _attributes(text: str, token: re.Match[str]) -> Iterator[AttributeSpan]:
         yield AttributeSpan(found[1], found.start(1), found.span(2 if found[2] is not None else 3), found.end())
 
 
-def _labelled(text: str, found: list[Element]) -> list[Element]:
+def _label(text: str, found: list[Element]) -> list[Element]:
     """Return the elements with their labels; equal siblings are counted from the second on: `visual 2`."""
     counts: Counter[tuple[int, str]] = Counter()
     labelled: list[Element] = []

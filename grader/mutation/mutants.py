@@ -153,7 +153,7 @@ def of_value(
     label = f"{label} {name}".rstrip()
     parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
     for part, (low, high) in zip(parts, pieces, strict=True):
-        for family, number in _altered(float(text[low:high])):
+        for family, number in _alternatives(float(text[low:high])):
             yield MutantEdit(family, part, low, high, f"{number:.6g}", tags=tags)
     for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
         swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
@@ -170,7 +170,7 @@ def _parts(name: str, count: int) -> list[str]:
     return [""] if count == 1 else [f".{part}" for part in (known if len(known) == count else range(1, count + 1))]
 
 
-def _altered(value: float) -> Iterable[tuple[str, float]]:
+def _alternatives(value: float) -> Iterable[tuple[str, float]]:
     return (
         ("number negated", -value),
         ("number x10", value * 10),

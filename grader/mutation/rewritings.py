@@ -99,14 +99,14 @@ def move_frames(random: Random, tree: Element, around: RewritingRules) -> bool:
     moved = False
     for link in some(random, links):
         joint = parent_joint(tree, link.get("name", ""))
-        change = _allowed_move(random, joint) if joint is not None else None
+        change = _free_move(random, joint) if joint is not None else None
         if change is not None:
             move_frame(tree, link, change)
             moved = True
     return moved
 
 
-def _allowed_move(random: Random, joint: Element) -> Transform | None:
+def _free_move(random: Random, joint: Element) -> Transform | None:
     """Return a change of a child's frame that leaves the motion of the joint as it is; None if there is none."""
     kind, change = joint.get("type"), _any_pose(random)
     if kind in ("fixed", _SLIDING):
@@ -148,15 +148,15 @@ def scale_axes(random: Random, tree: Element, around: RewritingRules) -> bool:
 
 def rename_links(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename links and materials that nothing but this file refers to."""
-    return _renamed(random, tree, around, ("link", "material"))
+    return _rename_around(random, tree, around, ("link", "material"))
 
 
 def rename_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
-    return _renamed(random, tree, around, ("joint",))
+    return _rename_around(random, tree, around, ("joint",))
 
 
-def _renamed(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
+def _rename_around(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
     changed = False
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
     if "joint" in tags and len(set(children)) < len(children):  # of two parents, the joint that is last by name counts

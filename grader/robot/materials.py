@@ -49,7 +49,7 @@ class Materials:
         found = self.known.get(name) if name else own
         if own is None:
             if found is None and name and not reported:
-                self._undefined(name, element, link)
+                self._note_undefined(name, element, link)
                 found = self._elsewhere(name)
         elif found is None:
             found = self.known[name] = own
@@ -90,7 +90,7 @@ class Materials:
             return None
         return Material(name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))})
 
-    def _undefined(self, name: str, element: Element, link: str) -> None:
+    def _note_undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
         if self._defined is None:
             every = [other for other in problems.root.iter("material") if len(other)]

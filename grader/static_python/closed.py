@@ -28,7 +28,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     if len(text) > _MAX_LENGTH:
         raise Undetermined("the expression is too long")
     budget.charge(len(text))
-    node = _parsed(text) if len(text) > _MAX_KEPT else _kept(text)
+    node = _parse(text) if len(text) > _MAX_KEPT else _kept(text)
     if isinstance(node, str):
         raise ExpressionFails(node)
     try:
@@ -37,7 +37,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is nested too deeply") from None
 
 
-def _parsed(text: str) -> ast.expr | str:
+def _parse(text: str) -> ast.expr | str:
     """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
     try:
         with warnings.catch_warnings():
@@ -51,7 +51,7 @@ def _parsed(text: str) -> ast.expr | str:
         return f"{type(error).__name__}: {error}"
 
 
-_kept = lru_cache(1_000)(_parsed)
+_kept = lru_cache(1_000)(_parse)
 
 
 # What makes a value that no function has measured yet.

@@ -41,7 +41,7 @@ def _refuse(what: str) -> Value:
     raise Undetermined(f"{what} is not supported")
 
 
-def _unsupported(name: str) -> Callable[..., Value]:
+def _refuse_function(name: str) -> Callable[..., Value]:
     return lambda *_, **__: _refuse(f"the function {name}")
 
 
@@ -102,7 +102,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "float": float, "int": int, "bool": bool, "len": len, "abs": abs, "ord": ord, "round": _round, "range": _range,
     "min": _largest(min), "max": _largest(max), "sorted": _of_items(sorted), "sum": _sum,
     **{
-        name: _unsupported(name)
+        name: _refuse_function(name)
         for name in ("all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance",
                      "issubclass", "map", "repr", "reversed", "set", "slice", "tuple", "type", "vars", "zip")
     },

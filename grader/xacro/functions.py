@@ -48,13 +48,13 @@ def namespace(name: str, names: Mapping[str, Value]) -> Namespace:
 
 
 def _dotify(value: Value) -> Value:
-    return _dotted(run(make_dict, value))
+    return _dot(run(make_dict, value))
 
 
-def _dotted(value: Value) -> Value:
+def _dot(value: Value) -> Value:
     if isinstance(value, dict):
-        return DottedDict({key: _dotted(item) for key, item in value.items()})
-    return [_dotted(item) for item in value] if isinstance(value, list) else value
+        return DottedDict({key: _dot(item) for key, item in value.items()})
+    return [_dot(item) for item in value] if isinstance(value, list) else value
 
 
 def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:

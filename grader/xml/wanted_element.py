@@ -28,10 +28,10 @@ class FoundElement(NamedTuple):
 
 def name_of(element: Element) -> str:
     """Return the name of an element as it is written, with its prefix."""
-    return _written(str(element.tag), element)
+    return _name_with_prefix(str(element.tag), element)
 
 
-def _written(name: str, element: Element) -> str:
+def _name_with_prefix(name: str, element: Element) -> str:
     space, _, local = name.removeprefix("{").rpartition("}")
     if not space:
         return local
@@ -66,7 +66,7 @@ def attribute(element: Element, name: str) -> str | None:
     plain = element.get(name)
     if plain is not None or ":" not in name:
         return plain
-    return next((str(value) for key, value in element.items() if _written(str(key), element) == name), None)
+    return next((str(value) for key, value in element.items() if _name_with_prefix(str(key), element) == name), None)
 
 
 def _text(element: Element) -> str:

@@ -85,7 +85,7 @@ def _fact(element: Element, path: str, values: ElementValues, label: str) -> Fac
 def _title(element: Element, path: str, values: ElementValues) -> str:
     """Return a title: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
     owner = f"<{name_of(element)}>{f' of {_name(element)}' if _name(element) else ''}"
-    listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
+    listed = enumerated([f"{key.lstrip('@')} {_value_text(value)}" for key, value in values.items()], _MAX_LISTED)
     if not path:
         return f"{owner} has {listed}" if listed else f"There is a {owner}"
     return f"{owner} has <{path}>{f' with {listed}' if listed else ''}"
@@ -143,14 +143,14 @@ def _label(*elements: Element) -> str:
     return " ".join(f"{name_of(element)} {_name(element)}" for element in elements)
 
 
-def _shown(value: Any) -> str:
+def _value_text(value: Any) -> str:
     match value:
         case bool():
             return str(value).lower()
         case int() | float():
             return shown([value])
         case list():
-            return " and ".join(map(_shown, value))
+            return " and ".join(map(_value_text, value))
     return str(value)
 
 

@@ -52,12 +52,12 @@ class EditChoice:
         options, name = self._options_of(state), criterion.id
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(options, options.relevant(criterion), name),
-            lambda: self._suggested(options, criterion),
+            lambda: self._suggestions(options, criterion),
             lambda: self._package_edits(options, criterion),
-            lambda: self._repaired(options, criterion, SOLVED),
-            lambda: self._solved(options, criterion),
+            lambda: self._repairs(options, criterion, SOLVED),
+            lambda: self._solutions(options, criterion),
             lambda: self._other_frames(options, criterion),
-            lambda: self._repaired(options, criterion, STRUCTURE),
+            lambda: self._repairs(options, criterion, STRUCTURE),
             lambda: self._together(options, criterion),
         )
         best: Proven | None = None
@@ -114,7 +114,7 @@ class EditChoice:
         if options.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(options, other_frames(options.difference), criterion.id)
 
-    def _suggested(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+    def _suggestions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the edits that the check suggests itself."""
         place = criterion.check.about.suggests
         if options.draft is not None and place:
@@ -130,14 +130,14 @@ class EditChoice:
             if self._trials.passing(options.state, proposal.edits, (criterion.id,)):
                 yield proposal
 
-    def _solved(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+    def _solutions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         if options.draft is None or criterion.check.subject != "robot":
             return
         shown, moved = options.targets(criterion)
         solver = Solver(options.quick, options.difference, criterion.id, options.state.results[criterion.id].outcome)
         yield from self._passing(options, solver.pieces(slots(options.draft, shown, moved)), criterion.id)
 
-    def _repaired(self, options: StateEdits, criterion: Criterion, rank: int) -> Iterator[Proposal]:
+    def _repairs(self, options: StateEdits, criterion: Criterion, rank: int) -> Iterator[Proposal]:
         """Yield two edits up to a rank: the first makes a criterion pass and others fail, which the second repairs."""
         name = criterion.id
         plausible = [piece for piece in options.relevant(criterion) if piece.rank <= rank]

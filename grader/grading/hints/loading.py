@@ -65,7 +65,7 @@ def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], S
         edits = joined(trials.start.submission, final.edits, step.proposal.edits)
         taken.append(step.proposal._replace(edits=_alone(edits, final.edits)))
         final = step.after._replace(edits=edits)
-    return _grouped(taken), final
+    return _group(taken), final
 
 
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[LoadingStep]:
@@ -146,7 +146,7 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     return max(ranked, key=lambda found: found[0])[1] if ranked else None
 
 
-def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
+def _group(proposals: Iterable[Proposal]) -> list[Proposal]:
     """Return steps with those that correct the same mistake as one; what is added for one link stays apart."""
     groups: dict[tuple[str, str, str], list[Proposal]] = {}
     for proposal in proposals:

@@ -76,11 +76,11 @@ class Solver:
         known = {index: column for index in touched if (column := columns[index]) is not None}
         subsets = [(index,) for index in known] + ([tuple(known)] if len(known) > 1 else [])
         for subset in subsets:
-            solved = self._solved(residual_of, slot.values, start, {index: known[index] for index in subset})
+            solved = self._solve(residual_of, slot.values, start, {index: known[index] for index in subset})
             if solved is not None:
                 yield solved
 
-    def _solved(
+    def _solve(
         self, residual_of: Residuals, old: Values, start: Values, columns: Mapping[int, Values]
     ) -> Values | None:
         """Return values that leave no residual: by Newton's method, then with as few digits as possible."""

@@ -50,7 +50,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     if (plain := file.text.translate(_QUOTES)) != file.text:
         changed = [index for index, char in enumerate(file.text) if char != plain[index]]
         yield source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-    odd = _unpaired([token.text for token in file.tokens if token.kind == "op"])
+    odd = _loose_marks([token.text for token in file.tokens if token.kind == "op"])
     tokens = sorted(file.tokens, key=lambda it: min(abs(it.start - at), abs(it.end - at)))
     near = [token for token in tokens if source.at(token.start).line in (last, last - 1)]
     for token in near:
@@ -64,7 +64,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
         yield from (source.edit(token.end, token.end, char) for char in ",:=.([])")
 
 
-def _unpaired(ops: Sequence[str]) -> list[str]:
+def _loose_marks(ops: Sequence[str]) -> list[str]:
     """Return the quotes that are tokens of their own, and the brackets that are not all paired."""
     unpaired = [pair for pair in _BRACKETS if ops.count(pair[0]) != ops.count(pair[1])]
     return [char for char in "'\"" if char in ops] + list("".join(unpaired))
@@ -133,11 +133,11 @@ def _further(
 ) -> Iterator[Proposal]:
     """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
     reference = task.reference.launch(like) if task.reference is not None and like is not None else None
-    wanted = _started(reference) if reference is not None else set()
+    wanted = _node_names(reference) if reference is not None else set()
 
     def left(text: Source) -> tuple[bool, int]:
         launch = task.launch(path, text)
-        return launch.syntax is not None, len(launch.faults) + len(wanted - _started(launch))
+        return launch.syntax is not None, len(launch.faults) + len(wanted - _node_names(launch))
 
     found = [it for it in islice(_of_text(task, kind, source, path, like), _MAX_MADE) if it.edits]
     yield from found
@@ -151,7 +151,7 @@ def _further(
             yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
 
 
-def _started(launch: Launch) -> set[tuple[str, str]]:
+def _node_names(launch: Launch) -> set[tuple[str, str]]:
     return {(it.package, it.executable) for it in launch.nodes}
 
 

@@ -40,11 +40,11 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
     guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
-    yield from _replaced(source, _PROGRAM, [" "], what)
-    yield from () if source.path.endswith(".py") else _replaced(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+    yield from _replace_words(source, _PROGRAM, [" "], what)
+    yield from () if source.path.endswith(".py") else _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
 
 
-def _replaced(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
+def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
     """Yield edits that write another word everywhere for what a pattern finds."""
     places = [*pattern.finditer(source.text)]
     for old, word in product(dict.fromkeys(it[0] for it in places), words):

@@ -33,9 +33,9 @@ def conventions(difference: RobotDifference) -> Iterator[Piece]:
 def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
     """Return the piece that moves a link's frame, but nothing that is seen; a rotated frame turns the robot with it."""
     own = draft.joint_of(link) if T_new_old.rotation == IDENTITY.rotation else None
-    before = _placed(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
+    before = _place(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
     cause = f"{what} of the frame {link!r}"
-    return Piece(cause, f"correct {cause}", "", (*before, *_moved(draft, link, T_new_old)), (), CONVENTION)
+    return Piece(cause, f"correct {cause}", "", (*before, *_move(draft, link, T_new_old)), (), CONVENTION)
 
 
 def other_frames(difference: RobotDifference) -> Iterator[Piece]:
@@ -54,7 +54,7 @@ def other_frames(difference: RobotDifference) -> Iterator[Piece]:
             turned = T_new_old.rotate(direction)
             if joint.get("type") != "fixed" and _differ(turned, direction):
                 sets.append(Set(joint, "axis", "xyz", written(rounded(turned, 4))))
-            moved = [*_moved(draft, link.name, T_new_old)]
+            moved = [*_move(draft, link.name, T_new_old)]
             if sets and moved:
                 cause, action = "the frame {!r}", "correct the frame {!r}; what it shows stays where it is"
                 texts = cause.format(link.name), action.format(link.name)
@@ -65,15 +65,15 @@ def _differ(one: Values, other: Values) -> bool:
     return any(abs(a - b) > 1e-3 for a, b in zip(one, other, strict=True))
 
 
-def _moved(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
+def _move(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
     """Yield the values with which the frame of a link is moved, and all that is in it stays together."""
     own = draft.link(link)
     parts = own.iterchildren("visual", "collision", "inertial") if own is not None else ()
     for part in (*parts, *(joint for joint in draft.joints() if end_of(joint, "parent") == link)):
-        yield from _placed(part, T_new_old)
+        yield from _place(part, T_new_old)
 
 
-def _placed(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
+def _place(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
     old = _pose(owner)
     return _set(owner, old, T_new_old @ old @ T_old_new)
 

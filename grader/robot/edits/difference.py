@@ -102,7 +102,7 @@ class RobotDifference(PieceMaker):
                 case "add" if step.like is not None:
                     yield from self.additions.pieces(step, added, removed)
                 case "remove":
-                    yield from self._removed(step.own)
+                    yield from self._remove(step.own)
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
@@ -110,14 +110,14 @@ class RobotDifference(PieceMaker):
         wanted = {step.name: wanted_value(step) for step in found}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
-            yield from self._renamed(element, values.pop("name"))
+            yield from self._rename(element, values.pop("name"))
         if "" in values:
             text = values.pop("")
             edits = self.draft.write_text(element, text)
             yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
         yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
-    def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
+    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
         own = (Set(element, "", "name", name),)
@@ -126,7 +126,7 @@ class RobotDifference(PieceMaker):
             cause, link = f"the name of a {tag}", name if tag == "link" else ""
             yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
 
-    def _removed(self, node: Node) -> Iterator[Piece]:
+    def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):

@@ -35,12 +35,12 @@ def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
             current = after
         if causes and is_readable(attribute, current):
             found.setdefault(current, causes[0])
-    for current in _counted(attribute, text):
+    for current in _with_count(attribute, text):
         found.setdefault(current, (f"the count of numbers in {attribute}", f"write {len(PARTS[attribute])} numbers"))
     yield from ((current, *causes) for current, causes in found.items())
 
 
-def _counted(attribute: str, text: str) -> Iterator[str]:
+def _with_count(attribute: str, text: str) -> Iterator[str]:
     """Yield as many numbers as an attribute needs: with zeros for those that are missing, or without the last ones."""
     pieces, count = text.replace(",", " ").split(), len(PARTS.get(attribute, ()))
     is_other = len(pieces) > count or (attribute in ("xyz", "rpy") and len(pieces) < count)
@@ -49,7 +49,7 @@ def _counted(attribute: str, text: str) -> Iterator[str]:
         yield " ".join(["0", "0", "0", *pieces][-count:])
 
 
-def _evaluated(found: re.Match[str]) -> str:
+def _evaluate(found: re.Match[str]) -> str:
     """Return a number for an expression: ${0.6/4}, pi/2."""
 
     def find(name: str) -> Value:
@@ -91,7 +91,7 @@ _STEPS: tuple[_Step, ...] = (
     *((rf"(?i)(?<=[0-9.]) ?(?:{unit})(?!\w)", factor, *_UNIT) for unit, factor in _UNITS.items()),
     (
         r"\$\{([^{}]*)\}|\S+",
-        _evaluated,
+        _evaluate,
         "an expression, which ROS 2 does not evaluate",
         "write the value of the expression",
     ),
