@@ -8,13 +8,55 @@ from grader.difference import Node, Step, paired, steps
 from grader.robot.edits.additions import Additions
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.nodes import node_of, wanted_value
 from grader.robot.edits.numbers import number, values_of
-from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, unique
+from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import PARTS
+from grader.xml.urdf_format import PARTS, TAGS
 
+_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
+
+
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 _MAX_LINKS = 400  # of a robot: more are not compared
+
+
+def wanted_value(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = normal(tag, str(name), str(value))
+        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
+            continue
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
 
 
 class RobotDifference(PieceMaker):
