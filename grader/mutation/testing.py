@@ -60,7 +60,6 @@ def _criteria_to_pass(trial: Trial, submission: Submission, equivalent: Equivale
     return [it.id for it in criteria if it.check.subject not in others and not breaking(it, equivalent.families)]
 
 
-MAX_MUTANTS = 500  # by default
 Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 

@@ -56,7 +56,7 @@ def texts_at(element: Element, path: str) -> list[FoundElement]:
     """Return the texts at a path in an element: of attributes where it ends with @name, else of elements."""
     *steps, last = steps_of(path) or ["."]
     if not last.startswith("@"):
-        return [FoundElement(_text(found), found) for found in elements_at(element, steps_of(path))]
+        return [FoundElement(text_in(found), found) for found in elements_at(element, steps_of(path))]
     values = ((found, attribute(found, last[1:])) for found in elements_at(element, steps))
     return [FoundElement(value, found, last[1:]) for found, value in values if value is not None]
 
@@ -69,7 +69,8 @@ def attribute(element: Element, name: str) -> str | None:
     return next((str(value) for key, value in element.items() if _name_with_prefix(str(key), element) == name), None)
 
 
-def _text(element: Element) -> str:
+def text_in(element: Element) -> str:
+    """Return the text in an element, without that in its children."""
     return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
 
 

@@ -9,7 +9,7 @@ from grader.checks.measures.fact import Fact, Facts, Omission, Solution, shown
 from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import name_of, readable
+from grader.xml.wanted_element import name_of, readable, text_in
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _OF_CONTINUOUS = ("@effort", "@velocity")
@@ -64,7 +64,7 @@ def _facts_in(element: Element) -> Iterator[Fact]:
         if _children(child) or child.attrib:
             deep.append(child)
         else:
-            _add(plain, name_of(child), _value(_text(child)))
+            _add(plain, name_of(child), _value(text_in(child)))
     if plain or not deep:
         yield _fact(element, "", plain, _label(element))
     for child in deep:
@@ -98,8 +98,8 @@ def values_of(element: Element, path: str = "") -> ElementValues:
         _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
         inner = f"{path}{name_of(child)}"
-        if not _children(child) and (_text(child) or not child.attrib):
-            _add(found, inner, _value(_text(child)))
+        if not _children(child) and (text_in(child) or not child.attrib):
+            _add(found, inner, _value(text_in(child)))
         for key, value in values_of(child, f"{inner}/").items():
             _add(found, key, value)
     return found
@@ -128,10 +128,6 @@ def _value(text: str) -> str | bool | int | float:
 
 def _children(element: Element) -> list[Element]:
     return [child for child in element if isinstance(child.tag, str)]
-
-
-def _text(element: Element) -> str:
-    return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
 
 
 def _name(element: Element) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from grader.checks.measures.fact import THE_PACKAGE, Fact, Facts, Measure, Solution
-from grader.package.launch.model import Launch, StartedNode
+from grader.package.launch.model import Launch
 from grader.package.package import Package
 from grader.package.rviz import RvizFile
 from grader.text import enumerated
@@ -92,13 +92,9 @@ def _file_facts(package: Package) -> Iterator[Fact]:
 
 def _nodes_that_start(launch: Launch) -> list[str]:
     """Return the nodes that start, with what a condition replaces: joint_state_publisher for its GUI, for example."""
-    names = {when: list(dict.fromkeys(_node(it) for it in launch.nodes if it.when is when)) for when in (True, False)}
+    names = {when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when)) for when in (True, False)}
     alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
     return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
-
-
-def _node(node: StartedNode) -> str:
-    return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"
 
 
 def _rviz(package: Package) -> Iterator[tuple[str, RvizFile, Mapping[str, Any]]]:
