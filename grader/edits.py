@@ -1,4 +1,8 @@
-"""Edits of the text of a file: made for its elements, put together, and applied."""
+"""Edits of the text of a file: made for its elements, put together, and applied.
+
+What to edit is decided elsewhere: in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing`
+applies edits to a submission.
+"""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence

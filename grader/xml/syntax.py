@@ -26,7 +26,7 @@ class Way(NamedTuple):
     after: str
 
 
-def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
+def syntax_proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
     """Yield edits that make a text readable, the most plausible first; none where none brings the parser further."""
     search = _SyntaxSearch(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))

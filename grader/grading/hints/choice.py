@@ -11,7 +11,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.hints.slots import slots
 from grader.grading.hints.solving import Solver
 from grader.grading.hints.state_edits import StateEdits
-from grader.grading.hints.trials import State, Trials, as_one, joined
+from grader.grading.hints.trials import State, Trials, as_one, join
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
@@ -75,7 +75,7 @@ class EditChoice:
         pieces = [piece for piece in conventions(options.difference) if len(options.passing(piece)) >= _MIN_WHOLE - 1]
         for piece in sorted(pieces, key=lambda piece: -len(options.passing(piece))):
             for proposal in islice(options.proposals(piece), 1):
-                after = self._trials.applied(state, proposal.edits)
+                after = self._trials.apply(state, proposal.edits)
                 if after is not None and not after.lost:
                     return proposal
         return None
@@ -92,7 +92,7 @@ class EditChoice:
         return min(found, key=_order, default=None)
 
     def _proven(self, state: State, proposal: Proposal, name: str) -> Proven | None:
-        after = self._trials.applied(state, proposal.edits)
+        after = self._trials.apply(state, proposal.edits)
         if after is None or after.lost or after.results[name].outcome.status != "passed":
             return None
         return Proven(proposal, after.score - state.score)
@@ -143,7 +143,7 @@ class EditChoice:
         plausible = [piece for piece in options.relevant(criterion) if piece.rank <= rank]
         firsts = [piece for piece in plausible if name in options.passing(piece)]
         for first in islice((it for piece in firsts for it in islice(options.proposals(piece), 1)), _MAX_FIRST):
-            middle = self._trials.applied(options.state, first.edits)
+            middle = self._trials.apply(options.state, first.edits)
             if middle is None or not middle.lost:
                 continue
             broken = middle.lost
@@ -152,7 +152,7 @@ class EditChoice:
             for piece in other.relevant(target):
                 if piece.rank <= rank and broken in other.passing(piece, (broken,)):
                     for second in islice(other.proposals(piece), 1):
-                        edits = joined(options.state.submission, first.edits, second.edits)
+                        edits = join(options.state.submission, first.edits, second.edits)
                         yield as_one([first, second], edits)
 
     def _together(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:

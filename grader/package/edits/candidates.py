@@ -12,12 +12,12 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.package.edits.trees import markup_tree, tree_proposals
-from grader.package.edits.wording import defined, respelt, reworded
+from grader.package.edits.wording import defined, respelt, reword
 from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Edits, Source
 from grader.static_python.parse import SyntaxFault
-from grader.xml.syntax import proposals
+from grader.xml.syntax import syntax_proposals
 
 _BRACKETS = ("()", "[]", "{}")
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
@@ -28,7 +28,7 @@ _MAX_MISTAKES = 3  # in one launch file
 _MAX_FIRST = 2
 
 
-def repaired(file: PythonFile, what: str) -> Iterator[Proposal]:
+def repairs(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits of one token after which Python can read a file, the nearest to the error first."""
     fault = file.parsed
     if not isinstance(fault, SyntaxFault):
@@ -162,18 +162,18 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
     is_python = ending in (".py", "")
     if wanted and (ending == other or is_python):
-        yield from reworded(source, wanted, what)
+        yield from reword(source, wanted, what)
     if is_python:
         trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
         yield from tree_proposals(source, trees, what, own.needs)
-        yield from repaired(own, what)
+        yield from repairs(own, what)
         yield from defined(own, what)
     else:
         text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
         trees = markup_tree(source), markup_tree(Source(source.path, text))
         yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
     if ending == ".xml":
-        for it in proposals(source, is_urdf=False, is_strict=True):
+        for it in syntax_proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)

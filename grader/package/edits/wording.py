@@ -58,7 +58,7 @@ def slip(word: str, known: Iterable[str]) -> str | None:
     return guess if same >= _LIKENESS else None
 
 
-def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
     start_of_text = int(source.text.startswith("\ufeff"))
     own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)

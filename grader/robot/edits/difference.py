@@ -163,7 +163,7 @@ class RobotDifference(PieceMaker):
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
         own = (Set(element, "", "name", name),)
-        everywhere = renamed(self.draft, old, name) if tag == "link" else own
+        everywhere = rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
             cause, link = f"the name of a {tag}", name if tag == "link" else ""
             yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
@@ -180,7 +180,7 @@ class RobotDifference(PieceMaker):
             yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
 
 
-def renamed(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
     own = [link for link in draft.links() if link.get("name") == old]
     ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]

@@ -85,7 +85,7 @@ class RobotElements:
             end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
         )
 
-    def described(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
+    def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
         """Return what an element, or its child with a tag, is called: the visual origin of 'lidar', if `known`."""
         owner, path = self.owner(element), [tag] if tag else []
         inner = element

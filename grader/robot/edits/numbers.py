@@ -46,7 +46,7 @@ class Named(NamedTuple):
     is_mistake: bool = False
 
 
-def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
+def words_of_change(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
     """Return the mistake in numbers, and what to do; `what` has {} where the names of the wrong parts go."""
     if len(old) != len(new):
         return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {written(new)}")

@@ -6,7 +6,7 @@ from itertools import islice
 from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
-from grader.robot.edits.difference import RobotDifference, renamed
+from grader.robot.edits.difference import RobotDifference, rename_link
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.pieces import ENDS, Piece, unique
@@ -213,7 +213,7 @@ def _missing_link(
     free = (name for name in loose if name in unknown)
     for name in dict.fromkeys(filter(None, (closest(given, unknown), *free))):
         cause, action = "the name of a link", "correct the name of the link"
-        yield difference.piece(joint, cause, action, sets=renamed(draft, name, given), link=given)
+        yield difference.piece(joint, cause, action, sets=rename_link(draft, name, given), link=given)
     like = difference.reference.link(given)
     text = difference.additions.text(like) if like is not None else f'<link name="{given}"/>'
     cause, action = "the link of a joint is missing", "add the link that the joint names"
