@@ -1,7 +1,7 @@
 """Edits of the text of a file: made for its elements, put together, and applied.
 
-What to edit is decided elsewhere: in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing`
-applies edits to a submission.
+What to edit is decided in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing` applies
+edits to a submission.
 """
 
 import re

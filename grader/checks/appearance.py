@@ -6,17 +6,7 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.checks.check import MEASURES, METRES, About
-from grader.checks.outcome import (
-    Outcome,
-    failed,
-    judged,
-    measured,
-    other_unit,
-    passed,
-    place,
-    point,
-    within,
-)
+from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
 from grader.checks.visuals import all_within, main_visual, rgba, shape_name, visuals
 from grader.errors import MissingElement

@@ -18,7 +18,7 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
 
 
 ABOUT = {
-    "counts": About(("joint", "joint@type", "link"), measure=f"{MEASURES}.joints:counts", breaks_under=_breaks_under),
+    "counts": About(("joint", "joint@type", "link"), measure=f"{MEASURES}.joints:counts", breaks_under=_breaks_under)
 }
 
 

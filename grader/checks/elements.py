@@ -41,7 +41,7 @@ ABOUT = {
         ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
         measure=f"{MEASURES}.elements:elements",
         breaks_under=_breaks_under,
-    ),
+    )
 }
 
 _PARTS = ("inertial", "visual", "collision")  # of a link

@@ -8,11 +8,7 @@ from grader.checks.check import MEASURES, About
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
-from grader.package.launch.places import (
-    is_launch_named,
-    is_of_one_machine,
-    one_machine_only,
-)
+from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only
 from grader.package.package import Package
 from grader.source import Location
 from grader.text import enumerated

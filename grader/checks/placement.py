@@ -3,15 +3,7 @@
 from math import acos, degrees
 
 from grader.checks.check import MEASURES, METRES, About, Usual
-from grader.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    location_of,
-    measured_point,
-    place,
-)
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
 from grader.robot.kinematics import Configuration

@@ -101,7 +101,7 @@ ABOUT = {
         measure=f"{MEASURES}.joints:motions",
         usual=Usual({"samples": 20}, "random positions, besides the ends of each range"),
         breaks_under=_breaks_under,
-    ),
+    )
 }
 
 MatchBy = Literal["name", "order"]

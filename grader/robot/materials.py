@@ -2,10 +2,7 @@
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children, shown
-from grader.robot.model import (
-    Material,
-    UnresolvedPart,
-)
+from grader.robot.model import Material, UnresolvedPart
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
 from grader.xml.parsing import Element

@@ -98,10 +98,7 @@ _STEPS: tuple[_Step, ...] = (
     (r"([+-]) (?=[0-9.])", r"\1", "a space after a sign", "remove the space"),
     (r" ?(?:[,|] |; ?)", " ", *_COMMAS),
 )
-_SEPARATORS: tuple[_Step, ...] = (
-    (",", ".", "a decimal comma", "write a decimal point"),
-    (",", " ", *_COMMAS),
-)
+_SEPARATORS: tuple[_Step, ...] = ((",", ".", "a decimal comma", "write a decimal point"), (",", " ", *_COMMAS))
 _COLOUR: tuple[_Step, ...] = (
     (r".+", _in_range, "the range of the colour: 0..255, not 0..1", "write the colour in 0..1"),
     (r"\A\S+ \S+ \S+\Z", r"\g<0> 1", "the opacity is missing", "add the opacity"),
