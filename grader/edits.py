@@ -66,7 +66,7 @@ def _change_size(old: str, new: str) -> int:
     return len(old) + len(new) - 2 * (start + end)
 
 
-def text_of(source: Source, start: int) -> str:
+def element_text(source: Source, start: int) -> str:
     """Return the text of the element at an offset."""
     return source.text[start : markup.element_end(source.text, start)]
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.oddities import Doubts, oddities
-from grader.authoring.rubric_text import Head, criterion_ids, literal, rubric_text
+from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
 from grader.checks.registry import check_names, declared, usable_check
@@ -101,7 +101,7 @@ def _measures_of(name: str, solution: Solution) -> Iterator[Fact | Omission]:
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
     """Return the facts that a rubric can hold: with arguments that the check takes, and without duplicates."""
-    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
+    different = {(fact.check, toml_literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
     return list(different.values())
 
 

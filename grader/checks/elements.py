@@ -18,14 +18,14 @@ from grader.xml.parsing import Element
 from grader.xml.wanted_element import (
     FoundElement,
     WantedElement,
-    attribute,
+    attribute_of,
     elements_at,
     name_of,
-    numbers_of,
+    numbers_in,
     readable,
     steps_of,
-    text_of,
     texts_at,
+    xml_text,
 )
 
 
@@ -90,7 +90,7 @@ def element_present(
         steps = (step for key in (path, *wanted.values) for step in steps_of(key))
         part = next(step for step in steps if step in _PARTS)
         message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
-        raise MissingElement(part, attribute(link, "name") or "", message=message, location=at)
+        raise MissingElement(part, attribute_of(link, "name") or "", message=message, location=at)
     return outcome
 
 
@@ -146,13 +146,13 @@ def _no_tag(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
 
 
 def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElement) -> Outcome:
-    given = [{key: attribute(element, key) for key in wanted.attributes} for element in tags]
+    given = [{key: attribute_of(element, key) for key in wanted.attributes} for element in tags]
     texts = (" ".join(f'{key}="{value}"' for key, value in one.items() if value is not None) for one in given)
     shown = dict.fromkeys(f"<{wanted.tag} {text}>" if text else f"<{wanted.tag}>" for text in texts)
     detail = f"; the file has {enumerated([*shown], _MAX_NAMED)}"
     for key, value in wanted.attributes.items():
         found = [one[key] or "" for one in given]
-        detail += _case(found, [value]) or did_you_mean(text_of(value), filter(None, found))
+        detail += _case(found, [value]) or did_you_mean(xml_text(value), filter(None, found))
     return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
 
 
@@ -194,8 +194,8 @@ def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
 
 
 def _value_text(value: Scalar) -> str:
-    text = text_of(value)
-    return text if not isinstance(value, str) or numbers_of(text) else quoted(text)
+    text = xml_text(value)
+    return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
 
 
 def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:

@@ -1,7 +1,7 @@
 """The check of a joint that mimics another one."""
 
 from grader.checks.check import MEASURES, About
-from grader.checks.comparison import EXACT, check_known, compared, named, numbers_of
+from grader.checks.comparison import EXACT, check_known, compared, expected_numbers, named
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative
 from grader.errors import MissingElement
@@ -50,7 +50,7 @@ def mimics(
         return failed(message, at, detail=detail)
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
-    numbers = numbers_of({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
+    numbers = expected_numbers({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
     return compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 

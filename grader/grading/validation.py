@@ -12,7 +12,7 @@ from grader.errors import InputError
 from grader.grading import keys
 from grader.grading.criterion import TOTAL
 from grader.grading.toml_file import TomlPath
-from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shown
+from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
@@ -84,7 +84,7 @@ class Validation:
             where: TomlPath = ("defaults", "with", name)
             check = self._check(where, name)
             if not isinstance(given, dict):
-                self._complain(where, f"the arguments of {name} must be a table, not {shown(given)}")
+                self._complain(where, f"the arguments of {name} must be a table, not {shorten_value(given)}")
             elif check is not None:
                 unset = dict.fromkeys(given)  # invalid ones are complained of once, not at each criterion
                 self._default_arguments[name] = unset | self._parse_arguments(where, check, given)
@@ -151,7 +151,7 @@ class Validation:
                 hint = self._guess(name, positions)
                 self._complain(("adjust", name), f"adjusts {name!r}, which does not exist{hint}")
             elif not isinstance(adjusted[name], dict):
-                message = f"the adjustment of {name} must be a table, not {shown(adjusted[name])}"
+                message = f"the adjustment of {name} must be a table, not {shorten_value(adjusted[name])}"
                 self._complain(("adjust", name), message)
         return {
             name: self._row(("adjust", name), row, keys.ADJUSTMENT)
@@ -185,7 +185,7 @@ class Validation:
             try:
                 arguments[key] = parameter.type.parse(value)
             except WrongValue as error:
-                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shown(value)}")
+                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shorten_value(value)}")
         return arguments
 
     def _check(self, where: TomlPath, name: str) -> Check | None:

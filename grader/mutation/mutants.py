@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
 
-from grader.mutation.elements import AttributeSpan, Element, elements, names, text_of
+from grader.mutation.elements import AttributeSpan, Element, elements, names_of_tag, text_span
 from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
@@ -91,11 +91,11 @@ def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[
 
 def _changes(text: str) -> Iterator[MutantEdit]:
     found = elements(text)
-    known = {tag: names(text, found, tag) for tag in ("link", "joint", "material")}
+    known = {tag: names_of_tag(text, found, tag) for tag in ("link", "joint", "material")}
     for element in found:
         for attribute in element.attributes:
             yield from _of_attribute(text, element, attribute, known)
-        span = text_of(text, element)
+        span = text_span(text, element)
         if span is not None and element.parent >= 0:
             yield from of_value(text, element.label, span, "", (*element.tags, "@"))
         if element.parent >= 0:

@@ -1,7 +1,7 @@
 """The materials of a robot: where each is defined, and which one a visual gets."""
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import Problems, first_children, shown
+from grader.robot.diagnostics import Problems, first_children, quote_value
 from grader.robot.model import Material, UnresolvedPart
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
@@ -65,12 +65,12 @@ class Materials:
             try:
                 channels = rgba(text)
                 if channels is None:
-                    message = f"rgba={shown(text)} needs exactly four numbers; ROS 2 silently shows black"
+                    message = f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently shows black"
                     self._problems.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:
                 reported = True
-                message = f"cannot read rgba={shown(text)}: {error}; {consequence}"
+                message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
                 self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
                 self._problems.check_printed(f"{name} {text}", colour, "rgba")
         unresolved = self._problems.parts(element)

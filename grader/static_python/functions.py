@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.methods import in_order
+from grader.static_python.methods import sort_items
 from grader.static_python.operators import extend
 from grader.static_python.values import (
     MAX_ITEMS,
@@ -174,7 +174,7 @@ _OF_ITEMS: dict[tuple[str, ...], Callable[[Evaluation, list[Value], Call], Any]]
     ("builtins.set", "builtins.frozenset"): _set,
     ("builtins.reversed",): lambda _, items, __: items[::-1],
     ("builtins.enumerate",): _enumerate,
-    ("builtins.sorted",): in_order,
+    ("builtins.sorted",): sort_items,
     ("itertools.chain.from_iterable",): _join_items,
 }
 _FUNCTIONS: FunctionTable = {

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader import markup
-from grader.edits import Proposal, text_of, with_attribute, with_child, with_sibling
+from grader.edits import Proposal, element_text, with_attribute, with_child, with_sibling
 from grader.names import closest
 from grader.source import Edit, Edits, Source
 from grader.xacro.nodes import XacroNode
@@ -114,7 +114,7 @@ class Corrector:
         parameters = next((it.attributes.get("params", "").split() for it in macros), [])
         for node in self._nodes(tag):
             if node.place[:2] != place[:2]:
-                blocks = [text_of(*child.place.source.element(child.place.tag)) for child in node.elements]
+                blocks = [element_text(*child.place.source.element(child.place.tag)) for child in node.elements]
                 names = [name for name in parameters if name.startswith("*")]
                 yield {**node.attributes, **dict(zip(names, blocks, strict=False))}
 

@@ -16,9 +16,9 @@ from grader.static_python.closed_values import (
     Namespace,
     Undetermined,
     Value,
+    call_plain,
     checked_key,
-    run,
-    text_of,
+    str_of,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
@@ -48,7 +48,7 @@ def namespace(name: str, names: Mapping[str, Value]) -> Namespace:
 
 
 def _dotify(value: Value) -> Value:
-    return _dot(run(make_dict, value))
+    return _dot(call_plain(make_dict, value))
 
 
 def _dot(value: Value) -> Value:
@@ -72,7 +72,7 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
 
 
 def _fatal(*parts: Value) -> Value:
-    raise ExpressionFails(" ".join(map(text_of, parts)))
+    raise ExpressionFails(" ".join(map(str_of, parts)))
 
 
 def _no_path(*_: Value) -> Value:
@@ -154,7 +154,7 @@ class _Values:
     def _scalar(self, event: Any) -> Value:
         text = event.value
         if event.tag in _UNITS:
-            return run(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
+            return call_plain(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
         match _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_NUMBER], event.implicit).rpartition(":")[2]:
             case "str":
                 return text

@@ -7,7 +7,7 @@ from keyword import iskeyword
 
 from grader.names import did_you_mean
 from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, str_of
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
@@ -90,7 +90,7 @@ class Texts:
 
     def written(self, value: Value) -> str:
         """Return the text of a value. Raises Undetermined, OutOfBudget."""
-        return value if isinstance(value, str) else text_of(self._budget.checked(value))
+        return value if isinstance(value, str) else str_of(self._budget.checked(value))
 
     def text(self, text: str, scope: XacroScope) -> str:
         """Return the value of a text as it is written into the expanded file."""

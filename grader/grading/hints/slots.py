@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of
-from grader.robot.edits.numbers import Values, values_of, written
+from grader.robot.edits.numbers import Values, format_numbers, values_of
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, TAGS
 
@@ -21,7 +21,7 @@ class Slot(NamedTuple):
     values: Values
     unit: str
 
-    def sets(self, values: Values, text: Callable[[Values], str] = written) -> tuple[Set, ...]:
+    def sets(self, values: Values, text: Callable[[Values], str] = format_numbers) -> tuple[Set, ...]:
         """Return what is set to give the numbers these values."""
         if len(self.attributes) == 1:
             return (Set(self.owner, self.tag, self.attributes[0], text(values)),) if values != self.values else ()

@@ -13,7 +13,7 @@ from grader.checks.outcome import Outcome
 from grader.grading.hints.slots import Slot
 from grader.grading.hints.state_edits import QuickGrading
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.numbers import Values, plausible, rounded
+from grader.robot.edits.numbers import Values, plausible, round_numbers
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
 
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
@@ -51,7 +51,7 @@ class Solver:
                 if slot.sets(values) and not (is_size and min(values) <= 0.0):
                     is_one = sum(old != new for old, new in zip(slot.values, values, strict=True)) == 1
                     is_short = slot.unit == "rad" or all(
-                        rounded((new,), _SHORT)[0] == new
+                        round_numbers((new,), _SHORT)[0] == new
                         for old, new in zip(slot.values, values, strict=True)
                         if old != new
                     )
@@ -110,7 +110,7 @@ class Solver:
         for digits in _DIGITS:
             short = tuple(
                 before if abs(before - value) < _STEP / 10 else value
-                for before, value in zip(old, rounded(values, digits), strict=True)
+                for before, value in zip(old, round_numbers(values, digits), strict=True)
             )
             if self._is_exact(residual_of(short)):
                 return short

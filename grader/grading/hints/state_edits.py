@@ -17,7 +17,7 @@ from grader.grading.subjects import named_links
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set
-from grader.robot.edits.numbers import values_of, written
+from grader.robot.edits.numbers import format_numbers, values_of
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_robot
@@ -176,4 +176,4 @@ def _fewer(piece: Piece) -> Iterator[list[Set]]:
         old, new = values_of(one.element.get(one.attribute) if one.element is not None else None), values_of(one.value)
         off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
         for index in off if len(old) == len(new) and len(off) > 1 else ():
-            yield [one._replace(value=written((*new[:index], old[index], *new[index + 1 :])))]
+            yield [one._replace(value=format_numbers((*new[:index], old[index], *new[index + 1 :])))]

@@ -12,7 +12,7 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.package.edits.trees import markup_tree, tree_proposals
-from grader.package.edits.wording import defined, respelt, reword
+from grader.package.edits.wording import respellings, reword, undefined_names
 from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Edits, Source
@@ -167,7 +167,7 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
         yield from tree_proposals(source, trees, what, own.needs)
         yield from repairs(own, what)
-        yield from defined(own, what)
+        yield from undefined_names(own, what)
     else:
         text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
         trees = markup_tree(source), markup_tree(Source(source.path, text))
@@ -179,4 +179,4 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
         yield from setup_paths(task)
-    yield from respelt(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)
+    yield from respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

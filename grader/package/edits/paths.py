@@ -114,7 +114,7 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
                 yield [*imports, file.replaced(literal, new), *others]
 
 
-def pieces(source: Source) -> Iterator[tuple[int, int]]:
+def path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     """Yield the offsets of the texts in a file that a path may be put together from."""
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
@@ -125,7 +125,7 @@ def pieces(source: Source) -> Iterator[tuple[int, int]]:
 def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
     """Return the edits of one text each with which a path becomes the wanted one; those nearest to a line first."""
     found: dict[Edit, int] = {}
-    for start, end in islice(pieces(source), _MAX_PIECES):
+    for start, end in islice(path_offsets(source), _MAX_PIECES):
         piece = source.text[start:end]
         if piece.strip("./") and piece in actual:
             is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None

@@ -6,7 +6,7 @@ from functools import partial
 from typing import NamedTuple
 
 from grader.difference import Node, Step, steps
-from grader.edits import Proposal, text_of, with_attribute, with_child
+from grader.edits import Proposal, element_text, with_attribute, with_child
 from grader.markup import attributes, head_end
 from grader.package.edits.task import Verb, change
 from grader.package.edits.wording import slip
@@ -134,7 +134,7 @@ def _element(source: Source, file: XmlFile, element: Element, depth: int) -> Nod
 
     def of() -> TreePlace:
         end, _ = head_end(source.text, start)
-        whole, at = text_of(source, start), source.text.find(text, end)
+        whole, at = element_text(source, start), source.text.find(text, end)
         names = {it.name: (it.start, it.start + len(it.name)) for it in attributes(source.text, start)}
 
         def with_tag(new: str) -> Edit:

@@ -27,7 +27,7 @@ _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
 
 
-def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
@@ -70,7 +70,7 @@ def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
 
 
-def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
+def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     used = {node.id for node in names if isinstance(node.ctx, ast.Load)}

@@ -6,7 +6,7 @@ from math import pi
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.numbers import Values, rounded, values_of, written
+from grader.robot.edits.numbers import Values, format_numbers, round_numbers, values_of
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.model import Box
 from grader.robot.transforms import IDENTITY, Transform, rotation_from_rpy
@@ -53,7 +53,7 @@ def other_frames(difference: RobotDifference) -> Iterator[Piece]:
             direction = _values(axis, "xyz") if axis is not None else (1.0, 0.0, 0.0)
             turned = T_new_old.rotate(direction)
             if joint.get("type") != "fixed" and _differ(turned, direction):
-                sets.append(Set(joint, "axis", "xyz", written(rounded(turned, 4))))
+                sets.append(Set(joint, "axis", "xyz", format_numbers(round_numbers(turned, 4))))
             moved = [*_move(draft, link.name, T_new_old)]
             if sets and moved:
                 cause, action = "the frame {!r}", "correct the frame {!r}; what it shows stays where it is"
@@ -81,7 +81,7 @@ def _place(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY
 def _set(owner: Element, old: Transform, new: Transform) -> Iterator[Set]:
     for name, before, after in (("xyz", old.translation, new.translation), ("rpy", old.rpy, new.rpy)):
         if _differ(before, after):
-            yield Set(owner, "origin", name, written(rounded(after, 4)))
+            yield Set(owner, "origin", name, format_numbers(round_numbers(after, 4)))
 
 
 def _pose(owner: Element) -> Transform:
@@ -106,7 +106,8 @@ def _other_units(difference: RobotDifference) -> Iterator[Piece]:
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         metres = [
-            (element, name, written(tuple(value / factor for value in values))) for element, name, values in found
+            (element, name, format_numbers(tuple(value / factor for value in values)))
+            for element, name, values in found
         ]
         sets = tuple(Set(element, "", name, value) for element, name, value in metres)
         cause = f"the unit of all lengths: {unit}, not metres"

@@ -8,7 +8,7 @@ from grader.difference import Node, Step, paired, steps
 from grader.robot.edits.additions import Additions
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.numbers import number, values_of
+from grader.robot.edits.numbers import format_number, values_of
 from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS, TAGS
@@ -81,7 +81,7 @@ class RobotDifference(PieceMaker):
             for name, text in element.attrib.items()
             if PARTS.get(str(name))
         )
-        return list(dict.fromkeys(number(abs(value)) for found in values for value in found if value))
+        return list(dict.fromkeys(format_number(abs(value)) for found in values for value in found if value))
 
     @cached_property
     def pieces(self) -> list[Piece]:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple, Self
 
-from grader.edits import text_of
+from grader.edits import element_text
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
@@ -108,7 +108,7 @@ class RobotElements:
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
         source, start = self.source.element(self._tags[element])
-        return _COMMENT.sub("", text_of(source, start))
+        return _COMMENT.sub("", element_text(source, start))
 
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from math import isfinite, pi
 
-from grader.robot.edits.numbers import number, values_of
+from grader.robot.edits.numbers import format_number, values_of
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xml.urdf_format import PARTS
@@ -23,7 +23,7 @@ def is_readable(attribute: str, text: str) -> bool:
     return len(values) == len(parts) and is_in_range and (len(parts) > 1 or text == text.rstrip())
 
 
-def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
+def readable_values(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
     """Yield what a text may stand for, each with what was wrong, and what to do."""
     found: dict[str, tuple[str, str]] = {}
     for separator in _SEPARATORS if len(text) <= _MAX_LENGTH else ():
@@ -62,7 +62,7 @@ def _evaluate(found: re.Match[str]) -> str:
     except (ExpressionFails, Undetermined, OutOfBudget):
         return found[0]
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    return number(float(value)) if is_number and not values_of(found[0]) else found[0]
+    return format_number(float(value)) if is_number and not values_of(found[0]) else found[0]
 
 
 def _in_range(found: re.Match[str]) -> str:
@@ -70,8 +70,8 @@ def _in_range(found: re.Match[str]) -> str:
     values = values_of(found[0])
     if max(values, default=0.0) <= 1.0:
         return found[0]
-    channels = (number(round(value / 255.0, 3)) for value in values[:3])
-    return " ".join([*channels, *(number(min(value, 1.0)) for value in values[3:])])
+    channels = (format_number(round(value / 255.0, 3)) for value in values[:3])
+    return " ".join([*channels, *(format_number(min(value, 1.0)) for value in values[3:])])
 
 
 _SPACES = "separate the numbers by spaces"
