@@ -36,12 +36,12 @@ class OutOfTime(BaseException):
 class NotDecided(LookupError):
     """Something that cannot be determined statically, and needs manual grading. The message says why.
 
-    `cause` is the reason without what differs between students, such as the names of their files.
+    `cause` is the reason without what differs between students, such as the names of their files; default: the message.
     """
 
     def __init__(self, message: str, cause: str = "") -> None:
         super().__init__(message)
-        self.cause = cause
+        self.cause = cause or message
 
 
 class MissingElement(LookupError):

@@ -37,7 +37,7 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
         tolerance: How far each length may be off, in metres.
     """
     edges = [(_edges(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
-    actual, visual = edges[0] if len(edges) == 1 else min(edges, key=lambda pair: _difference(pair[0], size))
+    actual, visual = min(edges, key=lambda pair: _difference(pair[0], size))
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
@@ -63,7 +63,7 @@ def shows_cylinder(
     """
     expected = (radius, length)
     sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
-    actual, best = sizes[0] if len(sizes) == 1 else min(sizes, key=lambda pair: _difference(pair[0], expected))
+    actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
     fine = all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:

@@ -78,7 +78,7 @@ def element_present(
     root = reading.elements
     if root is None:
         if reading.undetermined:
-            raise NotDecided(reading.undetermined, reading.undetermined)
+            raise NotDecided(reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
     outcome = _search(reading, root, wanted)
     is_dropped = outcome.status == "passed" and tag == "link" and _having(_without_dropped(robot, root), wanted) is None
@@ -212,4 +212,4 @@ def _check_known(reading: Reading, root: Element, wanted: WantedElement) -> None
         found = reading.unresolved.get(element)
         for reason in (*found.attributes.values(), found.content) if found is not None else ():
             if reason:
-                raise NotDecided(reason, reason)
+                raise NotDecided(reason)

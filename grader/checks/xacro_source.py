@@ -82,7 +82,7 @@ def _inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
     try:
         return take_inventory(source.documents.values(), submission.budget)
     except OutOfBudget as error:
-        raise NotDecided(str(error), str(error)) from None
+        raise NotDecided(str(error)) from None
 
 
 def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
@@ -90,7 +90,7 @@ def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
     followed = source.includes.keys()
     is_open = any((place.source.path, place.tag) not in followed for place in found.includes)
     if source.open_reason and is_open:
-        raise NotDecided(source.open_reason, source.open_reason)
+        raise NotDecided(source.open_reason)
     if found.dynamic:
         place = found.dynamic[0].at()
         reason = "xacro evaluates the name of a property or macro"
@@ -162,7 +162,7 @@ def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource |
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source
     for found in expansion.undetermined:
-        raise NotDecided(found.reason, found.reason)
+        raise NotDecided(found.reason)
     first = expansion.problems[0]
     raise MissingElement("xacro", path, message=first.message, location=first.location, problem=first.message)
 

@@ -101,10 +101,8 @@ def shipped_rubrics() -> dict[str, Path]:
     """Return the rubrics that come with the grader, by id."""
     package = Path(__file__).resolve().parent.parent
     # In a wheel they are inside the package, in a checkout next to it.
-    for folder in (package / "rubrics", package.parent / "rubrics"):
-        if folder.is_dir():
-            return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}
-    return {}
+    folder = next(filter(Path.is_dir, (package / "rubrics", package.parent / "rubrics")), package)
+    return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}
 
 
 def find_rubric(name: str) -> Path:

@@ -26,7 +26,7 @@ class UnresolvedPart(NamedTuple):
     def check(self) -> None:
         """Raise NotDecided if the part cannot be determined."""
         if self.reason:
-            raise NotDecided(self.reason, self.reason)
+            raise NotDecided(self.reason)
 
 
 # The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
@@ -197,7 +197,7 @@ class Robot:
     def check_complete(self) -> None:
         """Raise NotDecided if there may be more links and joints than are known."""
         if self.incomplete:
-            raise NotDecided(self.incomplete, self.incomplete)
+            raise NotDecided(self.incomplete)
 
     def _raise_missing(self, kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
         self.check_complete()

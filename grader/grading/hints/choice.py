@@ -73,12 +73,9 @@ class EditChoice:
         if options.draft is None or len(options.lost) < _MIN_WHOLE:
             return None
         pieces = [piece for piece in conventions(options.difference) if len(options.passing(piece)) >= _MIN_WHOLE - 1]
-        for piece in sorted(pieces, key=lambda piece: -len(options.passing(piece))):
-            for proposal in islice(options.proposals(piece), 1):
-                after = self._trials.apply(state, proposal.edits)
-                if after is not None and not after.lost:
-                    return proposal
-        return None
+        pieces.sort(key=lambda piece: -len(options.passing(piece)))
+        firsts = (it for piece in pieces for it in islice(options.proposals(piece), 1))
+        return next((it for it in firsts if self._trials.loses_nothing(state, it.edits)), None)
 
     def _best(self, state: State, name: str, proposals: Iterable[Proposal]) -> Proven | None:
         """Return the proven edit that gains most, of equals the smallest; one that gains all ends the search."""
@@ -165,8 +162,7 @@ class EditChoice:
             self.causes[criterion.id] = list(dict.fromkeys(piece.cause for piece in kept))[:_MAX_PLACES]
         elif len(kept) > 1:
             proposals = [it for piece in kept for it in islice(options.proposals(piece), 1)]
-            if len(proposals) == len(kept):
-                yield as_one(proposals, tuple(edit for it in proposals for edit in it.edits))
+            yield as_one(proposals, tuple(edit for it in proposals for edit in it.edits))
 
     def _fewest(self, options: StateEdits, pieces: list[Piece], name: str) -> list[Piece]:
         """Return few of these pieces with which a criterion passes; none if it does not pass with all of them."""

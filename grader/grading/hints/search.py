@@ -76,10 +76,9 @@ class HintSearch:
         """Correct a convention of the whole robot first: one hint instead of one for each consequence."""
         best = None if self._is_another_robot else self._choice.convention(self.final)
         after = self.trials.apply(self.final, best.edits) if best is not None else None
-        if best is not None and after is not None:
-            name = next(iter(gains_of(self.final.results, after.results)))
-            if self._prove(self.final, best, name):
-                self.final = after._replace(edits=join(self.trials.start.submission, self.final.edits, best.edits))
+        name = next(iter(gains_of(self.final.results, after.results))) if after is not None else ""
+        if best is not None and after is not None and self._prove(self.final, best, name):
+            self.final = after._replace(edits=join(self.trials.start.submission, self.final.edits, best.edits))
 
     def _rounds(self) -> None:
         for is_solving in (False, True):  # what the reference has comes first
@@ -131,11 +130,9 @@ class HintSearch:
         all_edits = join(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
         if len(alone) + len(state.edits) == len(all_edits):
-            if self._add(proposal, alone, name):
+            tried = ((join(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found))
+            if self._add(proposal, alone, name) or any(self._add(proposal, edits, name, it) for edits, it in tried):
                 return True
-            for before in list(self.found):
-                if self._add(proposal, join(submission, before.edits, ()) + alone, name, (before,)):
-                    return True
         return self._add(proposal, all_edits, name, tuple(self.found))
 
     def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:

@@ -93,13 +93,13 @@ class StateEdits:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The difference to the reference."""
-        if self.draft is None:
-            return []
-        with self.trials.isolated():
-            corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
-            found = (Piece(it.cause, it.action, "", (), it.edits) for it in corrections)
-            return [*found, *self.difference.pieces]
-        return []
+        found: list[Piece] = []
+        if self.draft is not None:
+            with self.trials.isolated():
+                corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
+                found = [Piece(it.cause, it.action, "", (), it.edits) for it in corrections]
+                found += self.difference.pieces
+        return found
 
     def with_links(self, criterion: Criterion) -> Criterion:
         """Return a criterion with the names of the links that selectors mean, where each means one."""
@@ -149,8 +149,7 @@ class StateEdits:
         """Yield the edits of the text that a piece stands for."""
         assert self.draft is not None
         for way, edits in enumerate(self.draft.ways(piece.sets) if piece.sets else [piece.edits]):
-            if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
+            yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
     def of_package(self, criterion: Criterion) -> list[Proposal]:
         """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""

@@ -102,6 +102,11 @@ class Trials:
                 return State(edited, edits, results, name)
         return State(edited, edits, results)
 
+    def loses_nothing(self, state: State, edits: Edits) -> bool:
+        """Return whether edits of a state fit, and no criterion is worse after them. Raises NoTrialsLeft."""
+        after = self.apply(state, edits)
+        return after is not None and not after.lost
+
     def edit(self, state: State, edits: Edits) -> Submission | None:
         """Return the submission with edits of a state, not graded; None where they do not fit. Raises NoTrialsLeft."""
         self._charge_reading(state.submission)

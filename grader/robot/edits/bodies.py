@@ -41,12 +41,12 @@ def _inertial(difference: RobotDifference, own: Element, link: Link, mass: float
     if solid is None:
         return
     centre = " ".join(map(format_number, solid.centre))
-    if element is None:
+    if element is None or inertial is None:  # ROS 2 drops what a link shows with an <inertial> that it cannot read
         values = empty_element("inertia", dict(zip(_INERTIA, map(format_number, solid.inertia), strict=True)))
         text = f'<inertial>\n  <origin xyz="{centre}"/>\n  <mass value="{solid.mass:.6g}"/>\n  {values}\n</inertial>'
         edits = difference.draft.insert(own, text)
         yield difference.piece(own, "the <inertial> of {} is missing", "add the <inertial> of {}", edits)
-    elif inertial is not None and child_of(element, "inertia") is not None:
+    else:
         T_link_inertial = placed_by(IDENTITY, inertial.origin)
         moments = turned(solid.inertia, T_link_inertial.inverse().rotation)
         known = zip(_INERTIA, moments, inertial.inertia, strict=True)

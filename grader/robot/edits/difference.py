@@ -94,12 +94,11 @@ class RobotDifference(PieceMaker):
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
-            joint = next((it for it in self.draft.joints() if it.get("name") == old), None) if old != new else None
-            if joint is not None:
-                mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
-                sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
-                every += sets
-                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
+            joint = next(it for it in self.draft.joints() if it.get("name") == old)
+            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
+            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            every += sets
+            yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
             yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
 
@@ -199,7 +198,6 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
             names["joint"][joint.get("name") or ""] = own.get("name") or ""
     mine = [node_of(found) for found in draft.root.iterchildren("material")]
     pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
-    for own_node, like in pairs.both:
-        if own_node.values.get("name"):
-            names["material"][like.values.get("name", "")] = own_node.values["name"]
+    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
+    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
     return names

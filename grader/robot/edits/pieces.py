@@ -163,9 +163,8 @@ def unique(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that change something, each once."""
     found: dict[object, Piece] = {}
     for piece in pieces:
-        if piece.sets or piece.edits:
-            found.setdefault(piece.sets or piece.edits, piece)
-    return list(found.values())
+        found.setdefault(piece.sets or piece.edits, piece)
+    return [piece for changed, piece in found.items() if changed]
 
 
 def _value(element: Element | None, tag: str, attribute: str) -> str:
