@@ -1,4 +1,8 @@
-"""Edits of the text of a file: made for its elements, put together, and applied."""
+"""Edits of the text of a file: made for its elements, put together, and applied.
+
+What to edit is decided in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing` applies
+edits to a submission.
+"""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -29,7 +33,7 @@ class Proposal(NamedTuple):
     @property
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
-        return sum(100 + _changed(edit.old, edit.new) for edit in self.edits)
+        return sum(100 + _change_size(edit.old, edit.new) for edit in self.edits)
 
 
 @runtime_checkable
@@ -55,14 +59,14 @@ class Expanded(Protocol):
         """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
 
 
-def _changed(old: str, new: str) -> int:
+def _change_size(old: str, new: str) -> int:
     """Return the number of characters that differ: without those that both begin or end with."""
     start = len(commonprefix((old, new)))  # noqa: RUF071  of texts, not of paths
     end = len(commonprefix((old[start:][::-1], new[start:][::-1])))  # noqa: RUF071
     return len(old) + len(new) - 2 * (start + end)
 
 
-def text_of(source: Source, start: int) -> str:
+def element_text(source: Source, start: int) -> str:
     """Return the text of the element at an offset."""
     return source.text[start : markup.element_end(source.text, start)]
 
@@ -120,10 +124,10 @@ def merged(old: str, new: str) -> str:
     if len(before) != len(after):
         return new
     pieces = zip(before, after, strict=True)
-    return "".join((" " if space.strip(" ") else space) + _merged(piece, other) for (space, piece), other in pieces)
+    return "".join((" " if space.strip(" ") else space) + _merge_one(piece, other) for (space, piece), other in pieces)
 
 
-def _merged(old: str, new: str) -> str:
+def _merge_one(old: str, new: str) -> str:
     """Return the new number, written as the old one where it is the same or only its sign changes."""
     try:
         before, after = float(old), float(new)
@@ -141,7 +145,7 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
     source = Source(path, text)
     pieces: list[str] = []
     position = 0
-    for start, edit in _placed(source, edits):
+    for start, edit in _offsets(source, edits):
         if start < position or not text.startswith(edit.old, start):
             return None
         pieces += (text[position:start], edit.new)
@@ -157,10 +161,10 @@ def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]
     before, middle = Source(path, text), Source(path, edited(text, path, first) or "")
     spans: list[_Span] = []
     shift = 0
-    for start, edit in _placed(before, first):
+    for start, edit in _offsets(before, first):
         spans.append(_Span(start + shift, start + shift + len(edit.new), None, len(edit.new) - len(edit.old)))
         shift += spans[-1].growth
-    spans += [_Span(start, start + len(edit.old), edit.new) for start, edit in _placed(middle, second)]
+    spans += [_Span(start, start + len(edit.old), edit.new) for start, edit in _offsets(middle, second)]
     shift = 0
     found: list[Edit] = []
     for group in _touching(spans):
@@ -195,5 +199,5 @@ def _touching(spans: Iterable[_Span]) -> list[list[_Span]]:
     return groups
 
 
-def _placed(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
+def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
     return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])

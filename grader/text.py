@@ -19,7 +19,7 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(character if character.isprintable() else _escaped(character) for character in text)
+    return "".join(character if character.isprintable() else _escape(character) for character in text)
 
 
 def without_commands(text: str) -> str:
@@ -27,7 +27,7 @@ def without_commands(text: str) -> str:
     return _LINE_COMMAND.sub(r"\1: ", text).replace("##[", "## [")
 
 
-def _escaped(character: str) -> str:
+def _escape(character: str) -> str:
     if character == "\t":
         return " "
     code = ord(character)

@@ -16,15 +16,15 @@ from grader.mutation import rewritings as seeded
 from grader.mutation.trees import (
     Style,
     add_joint,
+    attribute_numbers,
+    attribute_text,
     end,
     fresh,
     move_frame,
-    numbers_of,
     origin,
     parent_joint,
     pose,
-    put,
-    written,
+    set_pose,
 )
 from grader.robot.transforms import IDENTITY
 from grader.xml.parsing import Element
@@ -89,7 +89,7 @@ def add_hub(draw: st.DrawFn, tree: Element) -> None:
         return
     hub, child, shift = fresh(tree, "link"), end(joint, "child"), draw(_along_z)
     etree.SubElement(tree, "link", {"name": hub})
-    put(joint, pose(joint) @ shift)
+    set_pose(joint, pose(joint) @ shift)
     add_joint(tree, fresh(tree, "joint"), hub, child.get("link", ""), shift.inverse())
     child.set("link", hub)
 
@@ -125,17 +125,17 @@ def turn_visual(draw: st.DrawFn, tree: Element) -> None:
     match shape.tag:
         case "box":
             turn = draw(st.sampled_from(_QUARTERS))
-            length, width, height = numbers_of(shape, "size")
-            shape.set("size", written(map(abs, turn.unrotate((length, width, height)))))
+            length, width, height = attribute_numbers(shape, "size")
+            shape.set("size", attribute_text(map(abs, turn.unrotate((length, width, height)))))
         case "cylinder":
             turn = draw(_about_z) @ draw(st.sampled_from((IDENTITY, _FLIP)))
         case _:
             turn = draw(_rotations)
-    put(visual, pose(visual) @ turn)
+    set_pose(visual, pose(visual) @ turn)
 
 
 def _turns_about_z(joint: Element) -> bool:
-    x, y, z = numbers_of(joint.find("axis"), "xyz", "1 0 0")
+    x, y, z = attribute_numbers(joint.find("axis"), "xyz", "1 0 0")
     return joint.get("type") == "fixed" or (hypot(x, y) < 1e-9 * abs(z))
 
 
@@ -167,13 +167,13 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
         (shape, str(name))
         for shape in tree.iter("box", "cylinder", "sphere")
         for name in shape.attrib
-        if all(numbers_of(shape, str(name)))
+        if all(attribute_numbers(shape, str(name)))
     ]
     count = draw(st.integers(1, 3))
     off = st.floats(-0.001 / count, 0.001 / count)
     for _ in range(count):
         element, name = draw(st.sampled_from(locations + sizes))
-        element.set(name, written(value + draw(off) for value in numbers_of(element, name)))
+        element.set(name, attribute_text(value + draw(off) for value in attribute_numbers(element, name)))
 
 
 def shade(draw: st.DrawFn, tree: Element) -> None:
@@ -184,7 +184,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
     for colour in tree.iter("color"):
         material = colour.getparent()
         assert material is not None
-        *channels, alpha = numbers_of(colour, "rgba")
+        *channels, alpha = attribute_numbers(colour, "rgba")
         if alpha == 0:
             continue
         if material.get("name") == "white" and min(channels) == max(channels) >= 0.75:
@@ -192,7 +192,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
         if material.get("name") == "gray":
             alpha = draw(st.floats(0.1, 1))
         changed = [value + draw(st.floats(-0.005, 0.005)) for value in (*channels, alpha)]
-        colour.set("rgba", written(min(1.0, max(0.0, value)) for value in changed))
+        colour.set("rgba", attribute_text(min(1.0, max(0.0, value)) for value in changed))
 
 
 # --- Steps that add what changes nothing ------------------------------------------------------------------------------
@@ -232,7 +232,7 @@ def add_physics(draw: st.DrawFn, tree: Element) -> None:
     assert joint is not None
     match draw(st.sampled_from(("collision", "inertial", "dynamics", "limit"))):
         case "collision":
-            put(_add_shape(link, "collision", "box", {"size": "2 2 2"}), draw(_poses))
+            set_pose(_add_shape(link, "collision", "box", {"size": "2 2 2"}), draw(_poses))
         case "inertial" if link.find("inertial") is None:
             inertial = etree.SubElement(link, "inertial")
             etree.SubElement(inertial, "mass", {"value": "1.5"})

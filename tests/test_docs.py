@@ -5,6 +5,7 @@ import re
 import runpy
 import tomllib
 from collections.abc import Iterator
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,10 @@ from grader import __version__
 from grader.classroom.run import pool
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
+from grader.cli.rubric import run_test
 from grader.documents import collection, converter, document, pictures
 from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.mutation.testing import MAX_MUTANTS
 from grader.package import package
 from grader.robot import diagnostics
 from grader.static_python import closed, closed_values
@@ -143,7 +144,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
             closed_values.MAX_PARTS,
         ),
     },
-    "rubric-test.md": {"(default: {}, sampled": (MAX_MUTANTS,)},
+    "rubric-test.md": {"(default: {}, sampled": (signature(run_test).parameters["mutants"].default,)},
     "grade-a-class.md": {
         "up to {} MiB and {} megapixels": (pictures.MAX_BYTES / MIB, pictures.MAX_PIXELS / 1_000_000),
     },

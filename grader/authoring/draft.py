@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.oddities import Doubts, oddities
-from grader.authoring.rubric_text import Head, criterion_ids, literal, rubric_text
+from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
 from grader.checks.registry import check_names, declared, usable_check
@@ -33,7 +33,7 @@ class RubricDraft(NamedTuple):
 
 def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test. Raises InputError."""
-    found = _measured(solution)
+    found = _measure(solution)
     if len(found) > MAX_FACTS:
         raise InputError(
             f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
@@ -45,7 +45,7 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
         rows = criterion_ids(facts)
         data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
-        lost = _lost(rubric)
+        lost = _losses(rubric)
         if not lost:
             return RubricDraft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
         for name, outcome in lost.items():
@@ -64,7 +64,7 @@ def _instead(fact: Fact) -> list[Fact]:
     return [replace(it, about=fact.about) for it in fact.otherwise]
 
 
-def _lost(rubric: Rubric) -> dict[str, Outcome]:
+def _losses(rubric: Rubric) -> dict[str, Outcome]:
     """Return what the reference does not pass, with the outcome; for a skipped criterion, that of its cause."""
     assert rubric.solution is not None
     results = {it.criterion.id: it for it in grade(rubric, rubric.solution.submission).results}
@@ -72,9 +72,9 @@ def _lost(rubric: Rubric) -> dict[str, Outcome]:
     return {name: (results[it.because] if it.because else it).outcome for name, it in lost.items()}
 
 
-def _measured(solution: Solution) -> list[Fact | Omission]:
+def _measure(solution: Solution) -> list[Fact | Omission]:
     """Return what the checks measure: first the file, then each link, the robot, elements and the package."""
-    found = list(islice(chain.from_iterable(_measured_by(name, solution) for name in check_names()), MAX_FACTS + 1))
+    found = list(islice(chain.from_iterable(_measures_of(name, solution) for name in check_names()), MAX_FACTS + 1))
     headings = [THE_FILE, *(link.name for link in solution.links), THE_ROBOT]
     others = dict.fromkeys(it.about for it in found if isinstance(it, Fact) and it.about not in headings)
     headings += [*sorted(others, key=THE_PACKAGE.__eq__)]
@@ -84,7 +84,7 @@ def _measured(solution: Solution) -> list[Fact | Omission]:
     return [*found, *(Omission(f"the package {other.name}", "a rubric is about one package") for other in unused)]
 
 
-def _measured_by(name: str, solution: Solution) -> Iterator[Fact | Omission]:
+def _measures_of(name: str, solution: Solution) -> Iterator[Fact | Omission]:
     """Yield what a check measures, if it does. Raises InputError for a check of another package that fails at it."""
     check = usable_check(name)
     if check is None or not check.about.measure:
@@ -101,7 +101,7 @@ def _measured_by(name: str, solution: Solution) -> Iterator[Fact | Omission]:
 
 def _usable(facts: Iterable[Fact]) -> list[Fact]:
     """Return the facts that a rubric can hold: with arguments that the check takes, and without duplicates."""
-    different = {(fact.check, literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
+    different = {(fact.check, toml_literal(fact.arguments)): fact for fact in facts if not _why_invalid(fact)}
     return list(different.values())
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from itertools import chain, combinations
 
-from grader.checks.measures.elements import texts_in
-from grader.checks.measures.fact import Fact, Solution, shown
+from grader.checks.measures.elements import foreign_words
+from grader.checks.measures.fact import Fact, Solution, in_title
 from grader.checks.outcome import Outcome
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import is_of_one_machine, one_machine_only
@@ -32,7 +32,7 @@ def oddities(solution: Solution) -> Iterator[str]:
             names.setdefault(what, []).append(joint.name)
     yield from (f"{enumerated(found, _MAX_NAMED)}: {what}" for what, found in names.items())
     yield from _mirrored_wheels(solution)
-    words = texts_in(solution.reading.root) if solution.reading.root is not None else ()
+    words = foreign_words(solution.reading.root) if solution.reading.root is not None else ()
     yield from (one_machine_only(word) for word in sorted(words) if is_of_one_machine(word))
 
 
@@ -53,7 +53,7 @@ def _mass(solution: Solution, link: Link) -> Iterator[str]:
     root = solution.reading.root
     if link.inertial is not None:
         if not link.inertial.mass > 0:
-            yield f"the mass is {shown([link.inertial.mass])} kg"
+            yield f"the mass is {in_title([link.inertial.mass])} kg"
     elif (link.visuals or link.collisions) and any(
         root is not None and root.find(tag) is not None for tag in _IN_SIMULATION
     ):

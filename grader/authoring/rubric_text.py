@@ -16,7 +16,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 def assignment(key: str, value: Any) -> str:
     """Return a line that sets a key."""
-    return f"{_key(key)} = {literal(value)}"
+    return f"{_key(key)} = {toml_literal(value)}"
 
 
 def table(path: str, values: Mapping[str, Any]) -> Iterator[str]:
@@ -30,14 +30,14 @@ def table(path: str, values: Mapping[str, Any]) -> Iterator[str]:
     inner = {name: value for name, value in values.items() if isinstance(value, Mapping)}
     for name, value in values.items():
         if name not in inner:
-            yield from wrapped(name, value)
+            yield from toml_lines(name, value)
     for name, value in inner.items():
         yield from ("", f"[{path}.{_key(name)}]")
         for deeper, item in value.items():
-            yield from wrapped(deeper, item)
+            yield from toml_lines(deeper, item)
 
 
-def literal(value: Any) -> str:
+def toml_literal(value: Any) -> str:
     """Return a value as TOML, in one line."""
     match value:
         case bool():
@@ -50,17 +50,17 @@ def literal(value: Any) -> str:
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case Mapping():
             return f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
-    return f"[{', '.join(map(literal, value))}]"
+    return f"[{', '.join(map(toml_literal, value))}]"
 
 
-def wrapped(key: str, value: Any) -> Iterator[str]:
+def toml_lines(key: str, value: Any) -> Iterator[str]:
     """Yield a line that sets a key, or, of a list that is too long for one, a line for each item."""
     line = assignment(key, value)
     if len(line) <= WIDTH or not isinstance(value, list):
         yield line
         return
     yield f"{_key(key)} = ["
-    yield from (f"    {literal(item)}," for item in value)
+    yield from (f"    {toml_literal(item)}," for item in value)
     yield "]"
 
 
@@ -70,7 +70,7 @@ def _number(value: float) -> str:
 
 
 def _key(key: str) -> str:
-    return key if _BARE_KEY.fullmatch(key) else literal(key)
+    return key if _BARE_KEY.fullmatch(key) else toml_literal(key)
 
 
 _ROBOT, _PACKAGE = "robot", "package"
@@ -109,7 +109,7 @@ def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored
         lines += _criterion(name, fact)
     lines += ["", _heading(_MUTANTS)] if ignored else []
     for patterns, reason in ignored:
-        lines += ["", "[[test.ignore]]", *wrapped("mutants", patterns), assignment("reason", reason)]
+        lines += ["", "[[test.ignore]]", *toml_lines("mutants", patterns), assignment("reason", reason)]
     return "\n".join(lines) + "\n"
 
 
@@ -175,6 +175,6 @@ def _criterion(name: str, fact: Fact) -> Iterator[str]:
     if fact.about:
         yield assignment("about", printable(fact.about))
     yield assignment("title", printable(fact.title))
-    yield f"check = {literal(fact.check)}"
+    yield f"check = {toml_literal(fact.check)}"
     if fact.arguments:
         yield from table("criterion.with", fact.arguments)

@@ -6,17 +6,7 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.checks.check import MEASURES, METRES, About
-from grader.checks.outcome import (
-    Outcome,
-    failed,
-    judged,
-    measured,
-    other_unit,
-    passed,
-    place,
-    point,
-    within,
-)
+from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
 from grader.checks.visuals import all_within, main_visual, rgba, shape_name, visuals
 from grader.errors import MissingElement
@@ -46,7 +36,7 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
         size: The lengths of the edges along the link's x, y and z axes, in metres.
         tolerance: How far each length may be off, in metres.
     """
-    edges = [(_edges(visual, box), visual) for visual, box in _shown(robot, link, Box)]
+    edges = [(_edges(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
     actual, visual = min(edges, key=lambda pair: _difference(pair[0], size))
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
@@ -72,7 +62,7 @@ def shows_cylinder(
         tolerance: How far radius and length may each be off, in metres.
     """
     expected = (radius, length)
-    sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _shown(robot, link, Cylinder)]
+    sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
     actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
     fine = all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
@@ -91,7 +81,7 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
         radius: The radius, in metres.
         tolerance: How far the radius may be off, in metres.
     """
-    spheres = (sphere for _, sphere in _shown(robot, link, Sphere))
+    spheres = (sphere for _, sphere in _visuals_of_kind(robot, link, Sphere))
     best = min(spheres, key=lambda sphere: abs(abs(sphere.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows is"
     return measured(what, abs(best.radius), radius, tolerance, at=place(best.location, "radius"))
@@ -114,7 +104,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     return failed(message, shown[0].location)
 
 
-def _shown(robot: Configuration, link: str, kind: type[Shown]) -> list[tuple[Visual, Shown]]:
+def _visuals_of_kind(robot: Configuration, link: str, kind: type[Shown]) -> list[tuple[Visual, Shown]]:
     """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is none."""
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
     found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]

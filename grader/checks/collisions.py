@@ -50,10 +50,10 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     if not lonely and not others:
         return passed(f"{link!r} has {counted(len(solid), 'collision shape')}, as shown")
     if not lonely:
-        message = f"{link!r} has a collision shape that it does not show: {_described(others[0])}"
+        message = f"{link!r} has a collision shape that it does not show: {_description(others[0])}"
         return failed(message, others[0].location)
     if not others:
-        return failed(f"no collision shape of {link!r} is {_described(lonely[0])}, as shown", lonely[0].location)
+        return failed(f"no collision shape of {link!r} is {_description(lonely[0])}, as shown", lonely[0].location)
     return _unlike(link, lonely, others, tolerance)
 
 
@@ -92,7 +92,7 @@ def collides_as(
     if len(shapes) != 1:
         raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
     [wanted] = shapes
-    what = _sized(wanted)
+    what = _shape_text(wanted)
     what += f" at {point(xyz)} m" if xyz else ""
     what += f" with rpy {point(rpy)}" if any(rpy or ()) else ""
     what += f" in {relative_to!r}" if relative_to else ""
@@ -112,7 +112,7 @@ def collides_as(
         return _differs(f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance)
     other = next((one for one in solid if one is not fitting), None)
     if only and other is not None:
-        message = f"{link!r} has another collision shape, {_described(other)}; it should have only {what}"
+        message = f"{link!r} has another collision shape, {_description(other)}; it should have only {what}"
         return failed(message, other.location)
     return passed(f"{link!r} collides as {what}")
 
@@ -178,7 +178,7 @@ def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], to
             return pending(f"{what} cannot be determined: {cause}; needs manual grading", cause)
     pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
     off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
-    return _differs(f"no collision shape of {link!r} is {_described(visual)}, as shown", nearest, off, tolerance)
+    return _differs(f"no collision shape of {link!r} is {_description(visual)}, as shown", nearest, off, tolerance)
 
 
 def _rank(off: Mismatch | None) -> tuple[bool, float]:
@@ -188,7 +188,7 @@ def _rank(off: Mismatch | None) -> tuple[bool, float]:
 
 def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: float) -> Outcome:
     """Return a failure that says how the nearest shape differs from the one that should be, at the place to look at."""
-    message += f"; the nearest is {_described(nearest)}"
+    message += f"; the nearest is {_description(nearest)}"
     if off is None:
         return failed(message, nearest.geometry.location or nearest.location)
     found = [
@@ -201,12 +201,12 @@ def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: 
     return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
 
 
-def _described(element: Visual | Collision) -> str:
+def _description(element: Visual | Collision) -> str:
     """Return a shape with its sizes, and its place in the link."""
-    return f"{_sized(element.geometry)} at {point(element.origin.xyz)} m"
+    return f"{_shape_text(element.geometry)} at {point(element.origin.xyz)} m"
 
 
-def _sized(geometry: Geometry) -> str:
+def _shape_text(geometry: Geometry) -> str:
     match geometry:
         case Box(size=size):
             return f"a box {point(size)} m"

@@ -1,16 +1,7 @@
 """Checks of the colour in which a link is shown."""
 
 from grader.checks.check import MEASURES, About, Usual
-from grader.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    judged,
-    pending,
-    place,
-    point,
-    within,
-)
+from grader.checks.outcome import SLACK, Outcome, failed, judged, pending, place, point, within
 from grader.checks.toml_types import Colour, NonNegative
 from grader.checks.visuals import ShapeName, all_within, main_visual, rgba
 from grader.robot.kinematics import Configuration

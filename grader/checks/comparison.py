@@ -27,7 +27,7 @@ class Number(NamedTuple):
         return not within(self.actual, self.expected, self.tolerance)
 
 
-def numbers_of(values: Mapping[str, tuple[float, float | None]], tolerance: float) -> list[Number]:
+def expected_numbers(values: Mapping[str, tuple[float, float | None]], tolerance: float) -> list[Number]:
     """Return the numbers that are compared, by attribute: those with an expected value."""
     return [
         Number(

@@ -18,7 +18,7 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
 
 
 ABOUT = {
-    "counts": About(("joint", "joint@type", "link"), measure=f"{MEASURES}.joints:counts", breaks_under=_breaks_under),
+    "counts": About(("joint", "joint@type", "link"), measure=f"{MEASURES}.joints:counts", breaks_under=_breaks_under)
 }
 
 
@@ -58,7 +58,7 @@ def counts(
         "fixed joint": fixed,
     }
     expected = {noun: number for noun, number in wanted.items() if number is not None}
-    found = _counted(robot, expected)
+    found = _count(robot, expected)
     numbers = tuple(found[noun] for noun in expected), tuple(expected.values())
     wrong = [noun for noun, number in expected.items() if found[noun] != number]
     shown = {noun: counted(found[noun], noun) for noun in expected}
@@ -69,7 +69,7 @@ def counts(
     return judged(False, "; ".join(faults), *numbers)
 
 
-def _counted(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
+def _count(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro leaves one open."""
     tree = robot.main_tree
     found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})

@@ -18,14 +18,14 @@ from grader.xml.parsing import Element
 from grader.xml.wanted_element import (
     FoundElement,
     WantedElement,
-    attribute,
+    attribute_of,
     elements_at,
     name_of,
-    numbers_of,
+    numbers_in,
     readable,
     steps_of,
-    text_of,
     texts_at,
+    xml_text,
 )
 
 
@@ -41,7 +41,7 @@ ABOUT = {
         ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
         measure=f"{MEASURES}.elements:elements",
         breaks_under=_breaks_under,
-    ),
+    )
 }
 
 _PARTS = ("inertial", "visual", "collision")  # of a link
@@ -80,8 +80,8 @@ def element_present(
         if reading.undetermined:
             raise NotDecided(reading.undetermined)
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
-    outcome = _searched(reading, root, wanted)
-    is_dropped = outcome.status == "passed" and tag == "link" and _having(_kept(robot, root), wanted) is None
+    outcome = _search(reading, root, wanted)
+    is_dropped = outcome.status == "passed" and tag == "link" and _having(_without_dropped(robot, root), wanted) is None
     if outcome.status == "failed" or is_dropped:
         _check_known(reading, root, wanted)
     if is_dropped:
@@ -90,11 +90,11 @@ def element_present(
         steps = (step for key in (path, *wanted.values) for step in steps_of(key))
         part = next(step for step in steps if step in _PARTS)
         message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
-        raise MissingElement(part, attribute(link, "name") or "", message=message, location=at)
+        raise MissingElement(part, attribute_of(link, "name") or "", message=message, location=at)
     return outcome
 
 
-def _kept(robot: Configuration, root: Element) -> Element:
+def _without_dropped(robot: Configuration, root: Element) -> Element:
     """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2 drops."""
     parts = (part for link in robot.robot.links for part in (link.inertial, *link.visuals, *link.collisions))
     tags = {part.location.tag for part in parts if part is not None and part.location is not None}
@@ -113,7 +113,7 @@ def _having(root: Element, wanted: WantedElement) -> Element | None:
     return next((it for it in fitting if not all(map(wanted.wrong, elements_at(it, steps)))), None)
 
 
-def _searched(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
+def _search(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     if _having(root, wanted) is not None:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     tags = [child for child in root if name_of(child) == wanted.tag]
@@ -146,13 +146,13 @@ def _no_tag(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
 
 
 def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElement) -> Outcome:
-    given = [{key: attribute(element, key) for key in wanted.attributes} for element in tags]
+    given = [{key: attribute_of(element, key) for key in wanted.attributes} for element in tags]
     texts = (" ".join(f'{key}="{value}"' for key, value in one.items() if value is not None) for one in given)
     shown = dict.fromkeys(f"<{wanted.tag} {text}>" if text else f"<{wanted.tag}>" for text in texts)
     detail = f"; the file has {enumerated([*shown], _MAX_NAMED)}"
     for key, value in wanted.attributes.items():
         found = [one[key] or "" for one in given]
-        detail += _case(found, [value]) or did_you_mean(text_of(value), filter(None, found))
+        detail += _case(found, [value]) or did_you_mean(xml_text(value), filter(None, found))
     return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
 
 
@@ -179,11 +179,11 @@ def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wan
 def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     wanted = expected if isinstance(expected, list) else [expected]
-    should = f"it should be {enumerated([_shown(value) for value in wanted])}"
+    should = f"it should be {enumerated([_value_text(value) for value in wanted])}"
     if not found:
         return f"{key!r} is missing; {should}"
     texts = [readable(text.text) for text in found]
-    return f"{key!r} is {enumerated([*map(_shown, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
+    return f"{key!r} is {enumerated([*map(_value_text, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
 
 
 def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
@@ -193,9 +193,9 @@ def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
     return " (upper and lower case differ)" if is_alike else ""
 
 
-def _shown(value: Scalar) -> str:
-    text = text_of(value)
-    return text if not isinstance(value, str) or numbers_of(text) else quoted(text)
+def _value_text(value: Scalar) -> str:
+    text = xml_text(value)
+    return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
 
 
 def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:

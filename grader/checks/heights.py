@@ -63,7 +63,7 @@ def bottoms_at_height(
         tolerance: How far each height may be off, in metres.
     """
     robot.link(relative_to)
-    lowest, missing = _measured(links, lambda link: span(robot, link, relative_to, _UP)[0])
+    lowest, missing = _measure_each(links, lambda link: span(robot, link, relative_to, _UP)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
     actual = tuple(lowest.values())
     if not wrong and missing is not None:
@@ -92,7 +92,7 @@ def under_the_base(
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
     turned = turn_between(T_link_base.rotation, IDENTITY_ROTATION)
-    lowest, missing = _measured(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
+    lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = []
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
@@ -112,7 +112,7 @@ def under_the_base(
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
 
 
-def _measured(
+def _measure_each(
     links: Sequence[str], measure: Callable[[str], float]
 ) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
     """Return what can be measured of each link; and why one of them cannot, so that it does not hide the others."""

@@ -5,13 +5,20 @@ from itertools import combinations, combinations_with_replacement
 from math import hypot, isfinite, nan
 
 from grader.checks.check import MEASURES, About, Usual
-from grader.checks.inertia_mistakes import mistake_of, rounded
+from grader.checks.inertia_mistakes import mistake_of, round_factor
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES, check_resolved
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
-from grader.robot.inertia import MassProperties, difference, principal_moments, turned, uniform_solid, with_volume
+from grader.robot.inertia import (
+    MassProperties,
+    largest_difference,
+    principal_moments,
+    turned,
+    uniform_solid,
+    with_volume,
+)
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Geometry, Inertial, Link, Mesh
 from grader.robot.separation import penetration
@@ -80,7 +87,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         message = f"the inertia of {link!r} cannot be compared: the volume of its {what} is too large"
         return failed(message, robot.link(link).location)
     largest = principal_moments(solid.inertia)[2]
-    off = 100.0 * difference(given.inertia, solid.inertia) / largest if largest > 0.0 else nan
+    off = 100.0 * largest_difference(given.inertia, solid.inertia) / largest if largest > 0.0 else nan
     distance = hypot(*minus(given.centre, solid.centre))
     at = place(inertial.location, None, "inertia")
     if not isfinite(off + distance):
@@ -88,7 +95,9 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     wrong = []
     if not within(off, 0.0, tolerance):
         reason = mistake_of(given.inertia, solid, shapes) or _components(inertial, solid, T_link_inertial, tolerance)
-        wrong.append(f"the inertia of {link!r} is {rounded(off)} % off that of a uniform solid of its {what}: {reason}")
+        wrong.append(
+            f"the inertia of {link!r} is {round_factor(off)} % off that of a uniform solid of its {what}: {reason}"
+        )
     if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"

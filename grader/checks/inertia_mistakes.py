@@ -3,7 +3,15 @@
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from grader.robot.inertia import MassProperties, Tensor, difference, principal_moments, shifted, solid_inertia, turned
+from grader.robot.inertia import (
+    MassProperties,
+    Tensor,
+    largest_difference,
+    principal_moments,
+    shifted,
+    solid_inertia,
+    turned,
+)
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import IDENTITY_ROTATION, Transform, Vector
@@ -25,14 +33,14 @@ _UNITS = (
 def mistake_of(inertia: Tensor, solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]) -> str:
     """Return the known mistake that explains a wrong inertia of a solid, as a clause; empty if none does."""
     for cause, candidate in _candidates(solid, shapes):
-        is_distinct = difference(candidate, solid.inertia) > _DISTINCT * principal_moments(solid.inertia)[2]
+        is_distinct = largest_difference(candidate, solid.inertia) > _DISTINCT * principal_moments(solid.inertia)[2]
         if is_distinct and _is_near(inertia, candidate):
             return f"it would fit if {cause}"
-    return _scaled(inertia, solid)
+    return _scale_mistake(inertia, solid)
 
 
 def _is_near(inertia: Tensor, candidate: Tensor) -> bool:
-    return difference(inertia, candidate) <= _FIT * principal_moments(candidate)[2]
+    return largest_difference(inertia, candidate) <= _FIT * principal_moments(candidate)[2]
 
 
 def _candidates(solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]) -> Iterator[tuple[str, Tensor]]:
@@ -81,7 +89,7 @@ def _about(cylinder: Cylinder, mass: float, axis: Vector) -> Tensor:
     return (x, 0.0, 0.0, y, 0.0, z)
 
 
-def _scaled(inertia: Tensor, solid: MassProperties) -> str:
+def _scale_mistake(inertia: Tensor, solid: MassProperties) -> str:
     """Return how many times too large an inertia is, if that is its only mistake, and what may be the cause."""
     xx, xy, xz, yy, yz, zz = solid.inertia
     factor = (inertia[0] + inertia[3] + inertia[5]) / (xx + yy + zz)
@@ -95,12 +103,12 @@ def _scaled(inertia: Tensor, solid: MassProperties) -> str:
 
 def _times(factor: float) -> str:
     if factor >= 3.0:
-        return f"{rounded(factor)} times too large"
+        return f"{round_factor(factor)} times too large"
     if factor <= 1.0 / 3.0:
-        return f"{rounded(1.0 / factor)} times too small"
+        return f"{round_factor(1.0 / factor)} times too small"
     return f"{100.0 * abs(factor - 1.0):.3g} % too {'large' if factor > 1.0 else 'small'}"
 
 
-def rounded(factor: float) -> str:
+def round_factor(factor: float) -> str:
     """Return a factor or percentage rounded for reading: 61.2, 1,000."""
     return f"{factor:.3g}" if not 1e3 <= factor < 1e10 else f"{factor:,.0f}"

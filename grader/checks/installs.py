@@ -43,7 +43,7 @@ def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
     files = files_of(package, kind, name)
     if not files:
         raise package.missing(kind)
-    return _installed(package, files, kind)
+    return _require_installed(package, files, kind)
 
 
 def installs_files(package: Package, *, files: list[str]) -> Outcome:
@@ -56,7 +56,7 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
     if not found:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")
         raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
-    return _installed(package, found, None)
+    return _require_installed(package, found, None)
 
 
 def setup_imports(package: Package) -> Outcome:
@@ -104,11 +104,11 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     return setup
 
 
-def _installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
+def _require_installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
     setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
-    stopped = _stopped(package, setup, files, kind)
+    stopped = _build_stop(package, setup, files, kind)
     if stopped is not None:
         return stopped
     copies = [copy for copy in setup.copies if copy.source in files]
@@ -128,10 +128,10 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake)
-    raise _not_installed(package, setup, files, kind)
+    raise _why_not_installed(package, setup, files, kind)
 
 
-def _stopped(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> Outcome | None:
+def _build_stop(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> Outcome | None:
     """Return that a build stops at the entry for these files; other criteria report a missing package.xml."""
     folders = {posixpath.dirname(path) for path in files}
     for stop in setup.stops:
@@ -144,13 +144,13 @@ def _stopped(package: Package, setup: "Setup", files: Sequence[str], kind: FileK
     return None
 
 
-def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
+def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
     """Return why a build does not install files: no call of setup(), no entry, or a pattern without a match."""
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"
         return MissingElement("call of setup", package.folder, message=message)
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
-    empty = _meant(setup.empty, files, kind)
+    empty = _pattern_for(setup.empty, files, kind)
     if empty is None:
         message += ": no entry of data_files in setup.py names it"
         return MissingElement(what, package.folder, message=message)
@@ -162,7 +162,7 @@ def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind:
     return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
 
 
-def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":
+def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":
     """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})

@@ -3,7 +3,7 @@
 from math import degrees, hypot, isfinite
 
 from grader.checks.check import DEGREES, MEASURES, About
-from grader.checks.comparison import EXACT, Number, check_known, compared, named, number_text, numbers_of
+from grader.checks.comparison import EXACT, Number, check_known, compared, expected_numbers, named, number_text
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
@@ -60,7 +60,7 @@ def joint_limits(
     numbers = [
         Number("lower", low, lower, tolerance, fault),
         Number("upper", high, upper, tolerance, fault),
-        *numbers_of({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, EXACT),
+        *expected_numbers({"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}, EXACT),
     ]
     is_meant = all(map(within, as_other, (lower, upper), (tolerance, tolerance)))
     if (
@@ -147,7 +147,7 @@ def joint_dynamics(
     given = joint.dynamics
     check_known(joint, "dynamics", link, is_there=given is not None)
     found = given or Dynamics()
-    numbers = numbers_of({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
+    numbers = expected_numbers({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
         return failed(f"{message}; it should have one", joint.location, detail=named(joint))

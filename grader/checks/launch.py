@@ -8,17 +8,13 @@ from grader.checks.check import MEASURES, About
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
-from grader.package.launch.places import (
-    is_launch_named,
-    is_of_one_machine,
-    one_machine_only,
-)
+from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only
 from grader.package.package import Package
 from grader.source import Location
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import Launch, StartedNode
+    from grader.package.launch.model import Launch
 
 # What the edits for hints may change.
 ABOUT = {
@@ -58,10 +54,10 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     """
     launch = _launch(package, name)
     if launch.faults and not launch.nodes:
-        raise _stopped(package, name, launch)
+        raise _fault_that_stops(package, name, launch)
     if launch.faults:
         return failed(_faults(launch), launch.faults[0].location, problem=launch.faults[0].message)
-    started = {_name_of(node) for node in launch.nodes if node.when}
+    started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
     listed = ", ".join(" or ".join(choice) for choice in missing)
     if missing and _may_start(launch, missing):
@@ -79,18 +75,18 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
 
 def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:
     """Return whether each of the missing nodes may be started by what is not known."""
-    uncertain = {_name_of(node) for node in launch.nodes if node.when is None}
+    uncertain = {node.name for node in launch.nodes if node.when is None}
     return bool(launch.unknown) or not any(uncertain.isdisjoint(choice) for choice in missing)
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
     """Return why a launch file does not start nodes that should be started, in a sentence, and where to look."""
     for node in launch.forgotten:
-        if _name_of(node) in missing:
+        if node.name in missing:
             reason = f". It creates the node {node.executable}, but the LaunchDescription does not contain it"
             return reason, node.location
     for node in launch.nodes:
-        if node.when is False and _name_of(node) in missing:
+        if node.when is False and node.name in missing:
             return f". A condition keeps {node.executable} from starting, unless an argument is given", node.location
     similar = (node for node in launch.nodes if node.when and {node.package, node.executable} & missing)
     return "", next((node.location for node in similar), None)
@@ -136,7 +132,7 @@ def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
 def _no_files(package: Package, name: str, launch: "Launch") -> Outcome:
     """Return why a launch file names neither a URDF nor an RViz file."""
     if launch.faults:
-        raise _stopped(package, name, launch)
+        raise _fault_that_stops(package, name, launch)
     if launch.unknown:
         return pending(f"{_UNKNOWN_FILES}: {launch.unknown[0].message}; needs manual grading", _UNKNOWN_FILES)
     raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
@@ -172,7 +168,7 @@ def _launch(package: Package, name: str) -> "Launch":
     return launch
 
 
-def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
+def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
     """Return the fault of a launch file that starts nothing because of it."""
     path, first = _path(package, name), launch.faults[0]
     return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
@@ -181,7 +177,3 @@ def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
 def _faults(launch: "Launch") -> str:
     messages = list(dict.fromkeys(fault.message for fault in launch.faults))
     return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]
-
-
-def _name_of(node: "StartedNode") -> str:
-    return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"

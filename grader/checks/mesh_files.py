@@ -48,7 +48,7 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     found = _SCHEME.fullmatch(filename)
     scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
-    shared = _found_by_xacro(rest) if is_expanded and scheme in ("", "file") else None
+    shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
     if shared is not None:
         written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
         return MeshFile(written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)")
@@ -94,10 +94,10 @@ def why_not_found(mesh: MeshFile, submission: Submission) -> str:
             raise NotDecided(f"{name} may be in an archive that could not be opened", "an archive could not be opened")
         similar = closest(name, map(posixpath.basename, package.tree.files))
         return f"is not in the package {package.name!r}{f'; there is {quoted(similar)}' if similar else ''}"
-    return _not_installed(package, f"share/{mesh.package}/{path}", held)
+    return _why_not_installed(package, f"share/{mesh.package}/{path}", held)
 
 
-def _found_by_xacro(path: str) -> tuple[str, str] | None:
+def _path_from_xacro(path: str) -> tuple[str, str] | None:
     """Return the package and the path in it where $(find ...) has given a path."""
     from grader.xacro.texts import INSTALLED  # late: most URDFs are no xacro
 
@@ -116,7 +116,7 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
     return f"names the package {quoted(name)}{hint}"
 
 
-def _not_installed(package: Package, target: str, held: list[str]) -> str:
+def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
     setup = package.setup
     if package.is_cmake:

@@ -88,7 +88,7 @@ def shows_mesh(
     if not named:
         return _another_file(meshes, file)
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
-    outcomes = [_examined(robot, submission, it, wanted) for it in named]
+    outcomes = [_examine(robot, submission, it, wanted) for it in named]
     return min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
 
 
@@ -102,7 +102,7 @@ def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
     return failed(f"{message}; its path should end in {quoted(file)}{reason}", place(it.mesh.location, "filename"))
 
 
-def _examined(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
+def _examine(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
     """Return the outcome for one mesh of the right name."""
     name, fault, doubt, cause = file_name(it.file.written), it.file.fault, it.file.doubt, it.file.doubt
     try:

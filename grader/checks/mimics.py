@@ -1,7 +1,7 @@
 """The check of a joint that mimics another one."""
 
 from grader.checks.check import MEASURES, About
-from grader.checks.comparison import EXACT, check_known, compared, named, numbers_of
+from grader.checks.comparison import EXACT, check_known, compared, expected_numbers, named
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative
 from grader.errors import MissingElement
@@ -33,7 +33,7 @@ def mimics(
         tolerance: How far multiplier and offset may be off, in their units.
     """
     joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
-    followed = _followed(robot, joint, link)
+    followed = _mimic_chain(robot, joint, link)
     at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
     if leading.name not in followed:
         message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
@@ -50,11 +50,11 @@ def mimics(
         return failed(message, at, detail=detail)
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
-    numbers = numbers_of({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
+    numbers = expected_numbers({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
     return compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 
-def _followed(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
+def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
     """Return the joints that a joint mimics, directly and through others, each with the multiplier and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.

@@ -26,6 +26,10 @@ class Outcome(NamedTuple):
     joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds
     nothing of that kind. `problem` is the message of the problem of the file, at `location`, that the outcome reports,
     where its own message says more; of an answer or a picture what is in doubt, in a few words.
+
+    Example: the message "there is no link 'chassis'; the file has: 'base', 'arm'" has the mistake "there is no link
+    'chassis'"; what follows is the `detail` that `failed` appends. The message "ROS 2 cannot read "x" (and 2 more such
+    problems)" has the problem "ROS 2 cannot read "x"", so that the report does not list that one again.
     """
 
     status: Status

@@ -3,15 +3,7 @@
 from math import acos, degrees
 
 from grader.checks.check import MEASURES, METRES, About, Usual
-from grader.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    location_of,
-    measured_point,
-    place,
-)
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
 from grader.robot.kinematics import Configuration
@@ -59,7 +51,7 @@ def frame_at(
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
     return (
-        _turned(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, at)
+        _with_orientation(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, at)
         if angle < _ANY_ANGLE
         else placed
     )
@@ -97,15 +89,15 @@ def centre_at(
     loose = _loose_joint(robot, link, relative_to) if rigid else None
     if loose is not None:
         return loose
-    at = _moved_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
+    at = _origin_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
     placed = measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
     if angle >= _ANY_AXIS:
         return placed
     cosine = abs(dot(pose.rotate(_UP), unit(axis) or axis))
-    return _turned(placed, degrees(acos(min(1.0, cosine))), angle, at)
+    return _with_orientation(placed, degrees(acos(min(1.0, cosine))), angle, at)
 
 
-def _turned(placed: Outcome, turned: float, angle: float, at: LazyLocation | None) -> Outcome:
+def _with_orientation(placed: Outcome, turned: float, angle: float, at: LazyLocation | None) -> Outcome:
     """Return the outcome of a position, or its failure where the orientation is more than `angle` degrees off."""
     if turned <= angle + SLACK:
         return placed
@@ -128,7 +120,7 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     return failed(message, place(loose.location, "type"), detail=detail)
 
 
-def _moved_by(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:
+def _origin_by(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:
     """Return the origin that puts a visual off: its own if it moves the visual along that line, else the joint's.
 
     In the frame of its own link, nothing but the visual's own origin moves it.

@@ -101,7 +101,7 @@ ABOUT = {
         measure=f"{MEASURES}.joints:motions",
         usual=Usual({"samples": 20}, "random positions, besides the ends of each range"),
         breaks_under=_breaks_under,
-    ),
+    )
 }
 
 MatchBy = Literal["name", "order"]
@@ -137,15 +137,15 @@ def kinematics_match_reference(
             robot if it has no link of this name.
     """
     bases = _bases(robot, reference, links, relative_to)
-    pairs = [(_selected(robot, link), _of_reference(reference, link)) for link in links]
-    joints = _paired(robot, reference, bases, pairs, match)
+    pairs = [(_link_name(robot, link), _of_reference(reference, link)) for link in links]
+    joints = _pair_joints(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
         return joints
     pair = RobotPair((robot, reference), bases, pairs, joints, tolerance, angle)
     return MotionComparison(pair, samples).outcome()
 
 
-def _selected(robot: Configuration, link: str) -> str:
+def _link_name(robot: Configuration, link: str) -> str:
     name = selected_link(robot.robot, robot.parent_joints, link)
     robot.link(name)
     return name
@@ -154,7 +154,7 @@ def _selected(robot: Configuration, link: str) -> str:
 def _of_reference(reference: Configuration, link: str) -> str:
     """Return the name of a link of the reference. Raises RubricError, because no student can do anything about it."""
     try:
-        return _selected(reference, link)
+        return _link_name(reference, link)
     except (MissingElement, NotDecided) as error:
         raise RubricError((f"the reference solution cannot be compared with: {error}",)) from None
 
@@ -162,12 +162,12 @@ def _of_reference(reference: Configuration, link: str) -> str:
 def _bases(robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str) -> tuple[str, str]:
     """Return the links in whose frames the poses of the robot and of the reference are compared."""
     if relative_to:
-        return _selected(robot, relative_to), _of_reference(reference, relative_to)
+        return _link_name(robot, relative_to), _of_reference(reference, relative_to)
     root = reference.root_of(_of_reference(reference, links[0]))
-    return root if robot.robot.has_link(root) else _selected(robot, "@root"), root
+    return root if robot.robot.has_link(root) else _link_name(robot, "@root"), root
 
 
-def _paired(
+def _pair_joints(
     robot: Configuration,
     reference: Configuration,
     bases: tuple[str, str],
@@ -181,7 +181,7 @@ def _paired(
     if match == "order":
         if len(own) != len(others):
             message = f"{counted(len(own), 'joint')} on the chains to {shown}; there should be {len(others)}"
-            return failed(message, detail=f" (joints {_named(own) or 'none'})")
+            return failed(message, detail=f" (joints {_list_names(own) or 'none'})")
         joints = [*zip(own.values(), others.values(), strict=True)]
     else:
         _check_names(robot, [*others])
@@ -193,7 +193,7 @@ def _paired(
     return next(filter(None, (_wrong_type(*found) for found in joints)), joints)
 
 
-def _named(names: Sequence[str] | dict[str, Joint]) -> str:
+def _list_names(names: Sequence[str] | dict[str, Joint]) -> str:
     return enumerated([*map(quoted, names)], _MAX_NAMED)
 
 
@@ -205,7 +205,7 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
     robot.robot.check_complete()
     known = tuple(joint.name for joint in robot.robot.joints)
     message = f"there is no joint {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no joint')}"
-    guess = did_you_mean(missing[0], known) or f"; the file has: {_named(known) or 'none'}"
+    guess = did_you_mean(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
     raise MissingElement("joint", missing[0], known, message=message, detail=guess)
 
 

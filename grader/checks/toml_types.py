@@ -122,7 +122,7 @@ def _union(members: "list[TomlType]") -> TomlType:
         return members[0]
     name = " or ".join(member.name for member in members)
     choices = {"anyOf": [member.schema for member in members]}
-    return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))
+    return simple_type(name, choices, lambda _: True, partial(_parse_any, members))
 
 
 def _table(inner: tuple[Any, ...]) -> TomlType:
@@ -157,7 +157,7 @@ def constrained(base: TomlType, *constraints: Constraint) -> TomlType:
     return TomlType(base.name, schema, parse)
 
 
-def _first_parsed(members: list[TomlType], value: Any) -> Any:
+def _parse_any(members: list[TomlType], value: Any) -> Any:
     for member in members:
         with suppress(WrongValue):
             return member.parse(value)

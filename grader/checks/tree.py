@@ -30,7 +30,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
     problems = [problem for problem in urdf.problems if problem.kind.effect == "rejects" or problem.kind.detaches_links]
     raw = next((problem for problem in urdf.problems if problem.kind is RAW_XACRO), None)
     if raw is not None and urdf.verdict != "clean":
-        return _not_expanded(urdf, raw)
+        return _raw_xacro_failure(urdf, raw)
     if not problems and urdf.verdict != "rejected":
         return passed("ROS 2 loads the file, and all links form one tree")
     undetermined = [problem for problem in urdf.problems if problem.kind.effect == "undetermined"]
@@ -46,7 +46,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 
 
-def _not_expanded(urdf: Reading, raw: Problem) -> Outcome:
+def _raw_xacro_failure(urdf: Reading, raw: Problem) -> Outcome:
     """Return the failure of xacro that is loaded without xacro, with what ROS 2 does about it."""
     lost = (problem.message for problem in urdf.problems if problem.kind.effect in ("rejects", "drops"))
     effect = next(lost, "ROS 2 ignores its tags, and the robot lacks what they stand for")

@@ -64,9 +64,9 @@ def xacro_uses(
     found = _inventory(source, submission)
     included = [path for (by, _), every in source.includes.items() if by in paths for path in every]
     lacks = [
-        *_unused("property", "properties", properties, found.properties, found.used, paths),
-        *_unused("macro", "macros", macros, found.macros, found.called, paths),
-        *_not_included(includes, [*dict.fromkeys(included)]),
+        *_missing_uses("property", "properties", properties, found.properties, found.used, paths),
+        *_missing_uses("macro", "macros", macros, found.macros, found.called, paths),
+        *_missing_includes(includes, [*dict.fromkeys(included)]),
     ]
     if not lacks:
         names = [path.rpartition("/")[2] for path in paths]
@@ -105,7 +105,7 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     assert isinstance(urdf, Read)  # else there is none that is needed
     source = reading.source
     if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
-        source = _expanded(submission, urdf.path, urdf.data)
+        source = _expand(submission, urdf.path, urdf.data)
     if isinstance(source, ExpandedSource):
         if not file or submission.is_single or any(_ends(path, file) for path in source.documents):
             return source
@@ -135,7 +135,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     if not found:
         raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
     try:
-        source = _expanded(submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT))
+        source = _expand(submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT))
     except InputError as error:
         raise NotDecided(str(error), "a file cannot be read") from None
     if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
@@ -143,7 +143,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     return failed(f"{found[0]} has no expression and no tag of xacro", Location(found[0], 1, 1))
 
 
-def _expanded(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
+def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
     from grader.submission.surroundings import Surroundings
     from grader.xacro.expanded_source import ExpandedSource
@@ -177,7 +177,7 @@ def _expansion(submission: Submission) -> Outcome:
     return passed(f"{urdf.path} is written in xacro, and is expanded before ROS 2 reads it")
 
 
-def _unused(
+def _missing_uses(
     kind: str, plural: str, wanted: int | list[str], defined: "Definitions", used: Collection[str], paths: Sequence[str]
 ) -> Iterator[_Lack]:
     """Yield what is missing of definitions that are used: some of the named ones, or of a number."""
@@ -201,7 +201,7 @@ def _unused(
             )
 
 
-def _not_included(wanted: int | list[str], included: Sequence[str]) -> Iterator[_Lack]:
+def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Iterator[_Lack]:
     if isinstance(wanted, int):
         if len(included) < wanted:
             yield _Lack(f"{counted(len(included), 'file')} included; there should be {wanted}")

@@ -9,7 +9,7 @@ from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.tree import urdf_loads
 from grader.errors import MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
-from grader.grading.explanation import explained
+from grader.grading.explanation import explain
 from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
@@ -29,18 +29,16 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
             yield grading.results[criterion.id]
 
 
-def _graded_manually(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     """Return what a submission lacks, and why, whose criteria then need manual grading by the rubric.
 
     Without a URDF, `without_urdf` decides for the package as well.
     """
-    keys = {"URDF": rubric.without_urdf, "package": rubric.without_package}
-    if "manual" not in keys.values():
-        return {}
-    lacking = missing_work(rubric, submission)
-    if "URDF" in lacking and rubric.without_urdf == "manual":
+    is_wanted = "manual" in (rubric.without_urdf, rubric.without_package)
+    lacking = missing_work(rubric, submission) if is_wanted else {}
+    if rubric.without_urdf == "manual" and "URDF" in lacking:
         return lacking
-    return {kind: reason for kind, reason in lacking.items() if keys[kind] == "manual"}
+    return {"package": lacking["package"]} if rubric.without_package == "manual" and "package" in lacking else {}
 
 
 class _Grading:
@@ -48,7 +46,7 @@ class _Grading:
 
     def __init__(self, rubric: Rubric, submission: Submission) -> None:
         self._rubric, self.submission = rubric, submission
-        self._manual = _graded_manually(rubric, submission)
+        self._manual = _manual_subjects(rubric, submission)
         if "URDF" in self._manual:
             submission = replace(submission, urdf=Absent())
         if "package" in self._manual:
@@ -59,10 +57,10 @@ class _Grading:
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
-        cause = self._cause(criterion) if criterion.requires or self._subjects.robot is None else None
-        result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
+        cause = self._cause(criterion)
+        result = Result(criterion, _skip_outcome(cause), cause) if cause else self._check(criterion)
         self.results[criterion.id] = (
-            self._carried(result, criterion.carried) if criterion.carried and result.is_lost else result
+            self._carry(result, criterion.carried) if criterion.carried and result.is_lost else result
         )
 
     def _cause(self, criterion: Criterion) -> str | None:
@@ -83,9 +81,9 @@ class _Grading:
             return self._miss(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=explained(result.outcome, self._subjects.problems, self._subjects.source))
+        return result._replace(outcome=explain(result.outcome, self._subjects.problems, self._subjects.source))
 
-    def _carried(self, result: Result, carried: Carried) -> Result:
+    def _carry(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
         cause = self._cause_of(result, carried.causes)
         if cause is None:
@@ -121,7 +119,7 @@ class _Grading:
             if criterion.at and not fault:
                 pose = self._subjects.pose_text(criterion.at)
                 outcome = outcome._replace(message=f"{outcome.message} (with {pose})")
-            return Result(criterion, _errored(check, fault) if fault else outcome)
+            return Result(criterion, _fault_outcome(check, fault) if fault else outcome)
         except MissingElement:
             raise
         except RubricError as error:
@@ -135,7 +133,7 @@ class _Grading:
         except BaseException as error:  # noqa: BLE001
             from traceback import format_exc  # needed only for a fault of the grader
 
-            return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())
+            return Result(criterion, _fault_outcome(check, _text_of(error)), traceback=format_exc())
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
@@ -146,13 +144,13 @@ class _Grading:
             missing = another_robot(self._rubric, robot)
         first = self._first_miss(criterion, (missing.kind, missing.name))
         if first != criterion.id:
-            return Result(criterion, _skipped(first), first)
+            return Result(criterion, _skip_outcome(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
         return Result(
-            criterion, explained(outcome, self._subjects.problems, self._subjects.source, missing.kind, missing.name)
+            criterion, explain(outcome, self._subjects.problems, self._subjects.source, missing.kind, missing.name)
         )
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
@@ -163,7 +161,7 @@ class _Grading:
         return first
 
 
-def _skipped(cause: str) -> Outcome:
+def _skip_outcome(cause: str) -> Outcome:
     return Outcome("skipped", f"skipped because {cause} failed")
 
 
@@ -177,7 +175,7 @@ def _text_of(error: BaseException) -> str:
         return type(error).__name__
 
 
-def _errored(check: Check, fault: str) -> Outcome:
+def _fault_outcome(check: Check, fault: str) -> Outcome:
     """Return the outcome of a faulty check; the message names the installed package that it comes from."""
     if check.distribution:
         return Outcome("errored", f"the check {check.name} of the package {check.distribution} is faulty: {fault}")

@@ -33,7 +33,7 @@ _DROPPING = {
 }
 
 
-def explained(
+def explain(
     outcome: Outcome, problems: Iterable[Problem], source: Source | None, part: str = "", link: str = ""
 ) -> Outcome:
     """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a mistake at its place.

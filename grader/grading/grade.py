@@ -44,7 +44,7 @@ def grade(
     parts.
     """
     is_whole = is_one_of_class or not submission.is_single
-    chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_whole)
+    chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
     graded = GradedSubmission.of(submission, tuple(missing_work(rubric, submission)))
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
     results = without_gifts(decide(rubric, submission, wanted), graded)
@@ -69,7 +69,7 @@ def grade(
     )
 
 
-def _chosen_parts(
+def _choose_parts(
     rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the graded parts, and notes for the report: what is not whole is graded only on parts that need a URDF."""
@@ -99,7 +99,7 @@ def _evidence_of(
     from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
     from grader.documents.evidence_files import as_evidence
 
-    graded = {evidence.id: _graded_names(evidence, rubric) for evidence in wanted}
+    graded = {evidence.id: _names_in_criteria(evidence, rubric) for evidence in wanted}
     # A file that may be meant for several pieces is listed where a criterion lists it, too.
     ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
     names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
@@ -111,7 +111,7 @@ def _evidence_of(
     return found_files, as_evidence(others[:_MAX_PICTURES])
 
 
-def _graded_names(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
+def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
     """Return the names of the criteria about a piece of evidence: a file that counts for a criterion is not missing."""
     shown = (row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown)
     return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))

@@ -178,10 +178,7 @@ IGNORE = KeyTable(
     },
     required=("mutants", "reason"),
 )
-TEST = KeyTable(
-    "test table",
-    {"ignore": described(IGNORE.rows, "Mutants that may keep full marks, with the reason.")},
-)
+TEST = KeyTable("test table", {"ignore": described(IGNORE.rows, "Mutants that may keep full marks, with the reason.")})
 RUBRIC = KeyTable(
     "rubric",
     {

@@ -25,7 +25,7 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
     paths = _files(result) or tuple(
         labelled.file.path for labelled in submission.labelled_files if _is_evidence(result)
     )
-    return tuple(_limited(found for path in paths for found in _at(path, result, submission)))
+    return tuple(_limit(found for path in paths for found in _at(path, result, submission)))
 
 
 def may_have_pictures(result: Result) -> bool:
@@ -110,7 +110,7 @@ def _last(document: Document, head: Heading) -> int:
     return end
 
 
-def _limited(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:
+def _limit(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
     for count, one in enumerate(found):

@@ -148,7 +148,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         id=rubric["id"],
         title=rubric["title"],
         parts=tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
-        criteria=tuple(_adjusted(row, adjusted) for row in criteria),
+        criteria=tuple(_adjust(row, adjusted) for row in criteria),
         urdf=rubric.get("urdf", _URDF),
         reference=rubric.get("reference", ""),
         data=data,
@@ -193,7 +193,7 @@ def _criterion(
     return Criterion(**own, carried=Carried(*carried) if carried is not None else None)
 
 
-def _adjusted(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:
+def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:
     """Return a criterion with its adjustment, if there is one."""
     adjustment = adjustments.get(criterion.id)
     if adjustment is None:

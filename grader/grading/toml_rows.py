@@ -62,7 +62,7 @@ class TomlRowReader:
             try:
                 parsed[key] = table.keys[key].parse(value)
             except WrongValue as error:
-                self.complain((*where, key), f"{key} must be {error}, not {shown(value)}")
+                self.complain((*where, key), f"{key} must be {error}, not {shorten_value(value)}")
         for key in table.required:
             if key not in row and key not in defaults:
                 self.complain(where, f"this {table.name} has no {key}")
@@ -78,14 +78,14 @@ class TomlRowReader:
         self.complaints.append((where, message))
 
 
-def shown(value: Any) -> str:
+def shorten_value(value: Any) -> str:
     """Return a value of TOML in a few characters."""
     match value:
         case list():
-            text = ", ".join(map(shown, value[:6]))
+            text = ", ".join(map(shorten_value, value[:6]))
             return f"[{text}{', ...' if len(value) > 6 else ''}]"
         case dict():
-            text = f"{{ {', '.join(f'{key} = {shown(it)}' for key, it in value.items())} }}" if value else "{}"
+            text = f"{{ {', '.join(f'{key} = {shorten_value(it)}' for key, it in value.items())} }}" if value else "{}"
         case bool():
             return str(value).lower()
         case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits

@@ -12,7 +12,7 @@ from grader.errors import InputError
 from grader.grading import keys
 from grader.grading.criterion import TOTAL
 from grader.grading.toml_file import TomlPath
-from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shown
+from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
@@ -52,7 +52,7 @@ class Validation:
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
-        self.adjusted = self._adjusted(positions)
+        self.adjusted = self._adjustments(positions)
         self._check_totals()
 
     @property
@@ -69,7 +69,7 @@ class Validation:
             if (bound := self._arguments(where, row)) is not None:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
-            self.carried.append(self._carried(where, row, positions))
+            self.carried.append(self._bind_carried(where, row, positions))
             if row.get("id") == TOTAL:
                 self._complain((*where, "id"), f"the id {TOTAL!r} is reserved for final marks: choose another one")
 
@@ -84,10 +84,10 @@ class Validation:
             where: TomlPath = ("defaults", "with", name)
             check = self._check(where, name)
             if not isinstance(given, dict):
-                self._complain(where, f"the arguments of {name} must be a table, not {shown(given)}")
+                self._complain(where, f"the arguments of {name} must be a table, not {shorten_value(given)}")
             elif check is not None:
                 unset = dict.fromkeys(given)  # invalid ones are complained of once, not at each criterion
-                self._default_arguments[name] = unset | self._parsed_arguments(where, check, given)
+                self._default_arguments[name] = unset | self._parse_arguments(where, check, given)
         self._defaults = defaults
 
     def _check_subject(self, where: TomlPath, row: TomlRow, check: Check) -> None:
@@ -135,7 +135,7 @@ class Validation:
                 message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)
 
-    def _carried(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
+    def _bind_carried(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
         if "carried" not in row:
             return None
         where = (*where, "carried")
@@ -144,14 +144,14 @@ class Validation:
         bound = self._arguments(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None
 
-    def _adjusted(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
+    def _adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""
         for name in (adjusted := self.rubric.get("adjust", {})):
             if name not in positions:
                 hint = self._guess(name, positions)
                 self._complain(("adjust", name), f"adjusts {name!r}, which does not exist{hint}")
             elif not isinstance(adjusted[name], dict):
-                message = f"the adjustment of {name} must be a table, not {shown(adjusted[name])}"
+                message = f"the adjustment of {name} must be a table, not {shorten_value(adjusted[name])}"
                 self._complain(("adjust", name), message)
         return {
             name: self._row(("adjust", name), row, keys.ADJUSTMENT)
@@ -165,14 +165,14 @@ class Validation:
         check = self._check((*where, "check"), name) if name is not None else None
         if check is None:
             return None
-        arguments = self._parsed_arguments((*where, "with"), check, given)
+        arguments = self._parse_arguments((*where, "with"), check, given)
         defaults = self._default_arguments.get(check.name, {})
         for key, parameter in check.parameters.items():
             if parameter.required and key not in given and key not in defaults:
                 self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
         return check, {**{key: value for key, value in defaults.items() if key not in given}, **arguments}
 
-    def _parsed_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
+    def _parse_arguments(self, where: TomlPath, check: Check, given: TomlRow) -> TomlRow:
         """Return the valid arguments of a check, converted; complain of the others."""
         arguments: TomlRow = {}
         for key, value in given.items():
@@ -185,7 +185,7 @@ class Validation:
             try:
                 arguments[key] = parameter.type.parse(value)
             except WrongValue as error:
-                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shown(value)}")
+                self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shorten_value(value)}")
         return arguments
 
     def _check(self, where: TomlPath, name: str) -> Check | None:

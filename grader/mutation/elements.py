@@ -69,10 +69,10 @@ def elements(text: str) -> list[Element]:
         elif token[0].startswith("</") and open_ones:
             index = open_ones.pop()
             found[index] = found[index]._replace(end=token.end())
-    return _labelled(text, found)
+    return _label(text, found)
 
 
-def text_of(text: str, element: Element) -> tuple[int, int] | None:
+def text_span(text: str, element: Element) -> tuple[int, int] | None:
     """Return the offsets of the text in an element, without white space around it; None if it has none, or children."""
     end = text.rfind("</", element.head_end, element.end)
     inner = text[element.head_end : end] if end >= 0 else ""
@@ -82,7 +82,7 @@ def text_of(text: str, element: Element) -> tuple[int, int] | None:
     return start, start + len(inner.strip())
 
 
-def names(text: str, found: Iterable[Element], tag: str) -> list[str]:
+def names_of_tag(text: str, found: Iterable[Element], tag: str) -> list[str]:
     """Return the names of the elements with a tag, each once."""
     own = (attribute for element in found if element.tag == tag for attribute in element.attributes)
     return list(dict.fromkeys(text[slice(*attribute.value)] for attribute in own if attribute.name == "name"))
@@ -93,7 +93,7 @@ def _attributes(text: str, token: re.Match[str]) -> Iterator[AttributeSpan]:
         yield AttributeSpan(found[1], found.start(1), found.span(2 if found[2] is not None else 3), found.end())
 
 
-def _labelled(text: str, found: list[Element]) -> list[Element]:
+def _label(text: str, found: list[Element]) -> list[Element]:
     """Return the elements with their labels; equal siblings are counted from the second on: `visual 2`."""
     counts: Counter[tuple[int, str]] = Counter()
     labelled: list[Element] = []

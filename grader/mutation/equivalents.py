@@ -46,7 +46,7 @@ def with_properties(random: Random, text: str) -> str | None:
         if text[start:end] in names:
             text = f"{text[:start]}${{{names[text[start:end]]}}}{text[end:]}"
     properties = "".join(f'\n  <xacro:property name="{name}" value="{number}"/>' for number, name in names.items())
-    return _inserted(text, properties)
+    return _insert(text, properties)
 
 
 def with_macro(random: Random, text: str) -> str | None:
@@ -59,14 +59,14 @@ def with_macro(random: Random, text: str) -> str | None:
     body = f"{text[link.start : start]}${{name}}{text[end : link.end]}"
     call = f'<xacro:part name="{text[start:end]}"/>'
     macro = f'\n  <xacro:macro name="part" params="name">\n  {body}\n  </xacro:macro>'
-    return _inserted(text[: link.start] + call + text[link.end :], macro)
+    return _insert(text[: link.start] + call + text[link.end :], macro)
 
 
 def _name(text: str, link: TextElement) -> str:
     return next((text[slice(*found.value)] for found in link.attributes if found.name == "name"), "")
 
 
-def _inserted(text: str, content: str) -> str:
+def _insert(text: str, content: str) -> str:
     """Return the text with content at the start of its root, which declares the namespace of xacro."""
     root = elements(text)[0]
     end = root.head_end - 1
@@ -119,17 +119,17 @@ class Equivalents:
         """Yield the rewritings, of each family some."""
         for family in FAMILIES:
             for number in range(_OF_SEVERAL if family == SEVERAL else _OF_EACH):
-                found = self._made(family, number)
+                found = self._make(family, number)
                 if found is not None:
                     yield found
 
-    def _made(self, family: str, number: int) -> Equivalent | None:
+    def _make(self, family: str, number: int) -> Equivalent | None:
         random = Random(f"{self._seed} {family} {number}")
         tree = copied(self._root)
         before = _plain(tree)
         names = [family] if family != SEVERAL else self._several(random)
         done = [name for name in names if name not in _STEPS or _STEPS[name](random, tree, self._around)]
-        text = self._styled(random, tree, done)
+        text = self._restyle(random, tree, done)
         for name in [name for name in done if name in _AS_XACRO]:
             rewritten = _AS_XACRO[name](random, text)
             done = done if rewritten is not None else [other for other in done if other != name]
@@ -144,7 +144,7 @@ class Equivalents:
         others = [name for name in (_SPELLING, _LAYOUT) if random.random() < 0.5]
         return chosen + others + ([random.choice(list(_AS_XACRO))] if random.random() < 0.3 else [])
 
-    def _styled(self, random: Random, tree: Element, families: list[str]) -> str:
+    def _restyle(self, random: Random, tree: Element, families: list[str]) -> str:
         if _LAYOUT in families:
             blanks = ("", " ", "\n", "\n\n    ")
             return Style(random, blanks, "\"'", _SPELLING in families, comments=True, orders=True).text(tree)

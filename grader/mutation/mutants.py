@@ -6,7 +6,7 @@ from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
 
-from grader.mutation.elements import AttributeSpan, Element, elements, names, text_of
+from grader.mutation.elements import AttributeSpan, Element, elements, names_of_tag, text_span
 from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
@@ -91,11 +91,11 @@ def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[
 
 def _changes(text: str) -> Iterator[MutantEdit]:
     found = elements(text)
-    known = {tag: names(text, found, tag) for tag in ("link", "joint", "material")}
+    known = {tag: names_of_tag(text, found, tag) for tag in ("link", "joint", "material")}
     for element in found:
         for attribute in element.attributes:
             yield from _of_attribute(text, element, attribute, known)
-        span = text_of(text, element)
+        span = text_span(text, element)
         if span is not None and element.parent >= 0:
             yield from of_value(text, element.label, span, "", (*element.tags, "@"))
         if element.parent >= 0:
@@ -153,7 +153,7 @@ def of_value(
     label = f"{label} {name}".rstrip()
     parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
     for part, (low, high) in zip(parts, pieces, strict=True):
-        for family, number in _altered(float(text[low:high])):
+        for family, number in _alternatives(float(text[low:high])):
             yield MutantEdit(family, part, low, high, f"{number:.6g}", tags=tags)
     for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
         swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
@@ -170,7 +170,7 @@ def _parts(name: str, count: int) -> list[str]:
     return [""] if count == 1 else [f".{part}" for part in (known if len(known) == count else range(1, count + 1))]
 
 
-def _altered(value: float) -> Iterable[tuple[str, float]]:
+def _alternatives(value: float) -> Iterable[tuple[str, float]]:
     return (
         ("number negated", -value),
         ("number x10", value * 10),

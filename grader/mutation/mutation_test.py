@@ -89,7 +89,7 @@ class MutationTest:
             self.same,
             tuple(found for found in self.survivors if not found.reason),
             tuple(found for found in self.survivors if found.reason),
-            self._unused(),
+            self._unused_patterns(),
             tuple(self.idle),
             tuple(self.margins.values()),
             tuple(self.faults),
@@ -100,7 +100,7 @@ class MutationTest:
         submission = self.trial.submission(mutant)
         results = list(self.trial.results(mutant, submission, self.trial.expected)) if submission is not None else []
         faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
-        tolerated = self._observed(results)
+        tolerated = self._observe(results)
         if faults:
             self.faults.append(Loss(mutant.id, faults, self._diff(mutant)))
         elif submission is None or any(map(self.trial.is_lost, results)):
@@ -110,7 +110,7 @@ class MutationTest:
         else:
             self.survivors.append(self._survivor(mutant, submission, tolerated))
 
-    def _observed(self, results: Iterable[Result]) -> list[str]:
+    def _observe(self, results: Iterable[Result]) -> list[str]:
         """Learn from results which criteria are not idle; return those that measure another value."""
         tolerated: list[str] = []
         for result in results:
@@ -148,7 +148,7 @@ class MutationTest:
                     if result.outcome.status == "failed":
                         self.idle.pop(result.criterion.id, None)
 
-    def _unused(self) -> tuple[str, ...]:
+    def _unused_patterns(self) -> tuple[str, ...]:
         patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]
         return tuple(pattern for pattern in patterns if not any(_is_match(mutant, pattern) for mutant in self.all))
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 
-from grader.mutation.elements import elements, text_of
+from grader.mutation.elements import elements, text_span
 from grader.mutation.mutants import Mutant, MutantEdit, as_mutants, misspelt, mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
 from grader.package.edits.trees import line_span, scalar_span
@@ -59,7 +59,7 @@ def _manifest(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     """Yield changes of the name and the build type; the dependencies are not read here."""
     del path
     for element in elements(text):
-        span = text_of(text, element)
+        span = text_span(text, element)
         if element.tag not in ("name", "build_type") or span is None:
             continue
         place, tags = f"{label} {element.tag}", (MANIFEST,)

@@ -30,7 +30,7 @@ def setup_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     tags = ("setup.py",)
     for call in file.calls("setup"):
         entries = keyword(call, "data_files")
-        yield from _removed(file, "data_files entry deleted", label, _items(entries.value if entries else None), tags)
+        yield from _removals(file, "data_files entry deleted", label, _items(entries.value if entries else None), tags)
     for node in file.imports:
         start, end = file.span(node)
         yield MutantEdit("import deleted", f"{label} {file.segment(node)}", start, end, "pass", tags=tags)
@@ -42,7 +42,7 @@ def launch_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     file = PythonFile(Source(path, text))
     tags = ("launch",)
     for call in file.calls("LaunchDescription"):
-        yield from _removed(file, "action removed", label, _items(call.args[0] if call.args else None), tags)
+        yield from _removals(file, "action removed", label, _items(call.args[0] if call.args else None), tags)
     for call in file.calls("add_action"):
         start, end = file.span(call)
         yield MutantEdit(
@@ -60,7 +60,7 @@ def _items(value: ast.expr | None) -> list[ast.expr]:
     return value.elts if isinstance(value, ast.List | ast.Tuple) else []
 
 
-def _removed(
+def _removals(
     file: PythonFile, family: str, label: str, items: Iterable[ast.expr], tags: tuple[str, ...]
 ) -> Iterator[MutantEdit]:
     """Yield the removal of each item of a list, with the comma after it."""

@@ -9,18 +9,18 @@ from grader.mutation.elements import FOREIGN
 from grader.mutation.trees import (
     add_joint,
     add_link,
+    attribute_numbers,
+    attribute_text,
     end,
     fresh,
     move_frame,
-    numbers_of,
     origin,
     own_elements,
     parent_joint,
     pose,
-    put,
+    set_pose,
     some,
     vector_of,
-    written,
 )
 from grader.robot.transforms import Transform, unit
 from grader.xml.parsing import Element
@@ -85,11 +85,11 @@ def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bo
     second = first.inverse() @ pose(joint)
     if is_first:
         add_joint(tree, fresh(tree, "joint"), middle, child.get("link", ""), second)
-        put(joint, first)
+        set_pose(joint, first)
         child.set("link", middle)
     else:
         add_joint(tree, fresh(tree, "joint"), parent.get("link", ""), middle, first)
-        put(joint, second)
+        set_pose(joint, second)
         parent.set("link", middle)
 
 
@@ -99,14 +99,14 @@ def move_frames(random: Random, tree: Element, around: RewritingRules) -> bool:
     moved = False
     for link in some(random, links):
         joint = parent_joint(tree, link.get("name", ""))
-        change = _allowed_move(random, joint) if joint is not None else None
+        change = _free_move(random, joint) if joint is not None else None
         if change is not None:
             move_frame(tree, link, change)
             moved = True
     return moved
 
 
-def _allowed_move(random: Random, joint: Element) -> Transform | None:
+def _free_move(random: Random, joint: Element) -> Transform | None:
     """Return a change of a child's frame that leaves the motion of the joint as it is; None if there is none."""
     kind, change = joint.get("type"), _any_pose(random)
     if kind in ("fixed", _SLIDING):
@@ -124,7 +124,7 @@ def turn_fully(random: Random, tree: Element, around: RewritingRules) -> bool:
     del around
     origins = list(own_elements(tree, "origin"))
     for found in some(random, origins):
-        found.set("rpy", written(other_angles(random, numbers_of(found, "rpy"))))
+        found.set("rpy", attribute_text(other_angles(random, attribute_numbers(found, "rpy"))))
     return bool(origins)
 
 
@@ -142,21 +142,21 @@ def scale_axes(random: Random, tree: Element, around: RewritingRules) -> bool:
     axes = list(own_elements(tree, "axis"))
     for axis in some(random, axes):
         factor = 10 ** random.uniform(-2, 2)
-        axis.set("xyz", written(factor * number for number in numbers_of(axis, "xyz")))
+        axis.set("xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz")))
     return bool(axes)
 
 
 def rename_links(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename links and materials that nothing but this file refers to."""
-    return _renamed(random, tree, around, ("link", "material"))
+    return _rename_around(random, tree, around, ("link", "material"))
 
 
 def rename_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
-    return _renamed(random, tree, around, ("joint",))
+    return _rename_around(random, tree, around, ("joint",))
 
 
-def _renamed(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
+def _rename_around(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
     changed = False
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
     if "joint" in tags and len(set(children)) < len(children):  # of two parents, the joint that is last by name counts

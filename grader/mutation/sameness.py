@@ -66,11 +66,11 @@ def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
 
 
 def _same_links(one: Robot, other: Robot, kept: Collection[str]) -> bool:
-    mine, others = _named(one, kept), _named(other, kept)
+    mine, others = _links_by_name(one, kept), _links_by_name(other, kept)
     return list(mine) == list(others) and all(_same_link(mine[name], others[name]) for name in mine)
 
 
-def _named(robot: Robot, kept: Collection[str]) -> dict[str, Link]:
+def _links_by_name(robot: Robot, kept: Collection[str]) -> dict[str, Link]:
     """Return the links by names, sorted; those that nothing refers to by a number."""
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
     named = (
@@ -82,10 +82,12 @@ def _named(robot: Robot, kept: Collection[str]) -> dict[str, Link]:
 
 def _same_link(one: Link, other: Link) -> bool:
     pairs = ((one.visuals, other.visuals), (one.collisions, other.collisions))
-    return all(is_same_set(_shown(a), _shown(b), is_same_shape) for a, b in pairs) and is_same(_mass(one), _mass(other))
+    return all(is_same_set(_shapes(a), _shapes(b), is_same_shape) for a, b in pairs) and is_same(
+        _mass(one), _mass(other)
+    )
 
 
-def _shown(shapes: Sequence[Visual | Collision]) -> list[Shown]:
+def _shapes(shapes: Sequence[Visual | Collision]) -> list[Shown]:
     found = []
     for shape in shapes:
         if not is_empty(shape.geometry):

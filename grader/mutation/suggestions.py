@@ -37,18 +37,18 @@ def suggestion(
         return f"{effect}; try {check}"
     checks = _checks_for(mutant.tags, known)
     names = _names(mutant, robot)
-    near = [found for found in rubric.criteria if found.check.name in checks and names & _measured(found)]
+    near = [found for found in rubric.criteria if found.check.name in checks and names & _measures(found)]
     others = [name for name in checks if name not in {found.check.name for found in near}][:2]
     tolerant = [found.id for found in near if found.id in tolerated]
     if tolerant:
-        return f"{_listed(tolerant, 'measure')} it, within the tolerance"
+        return f"{_list(tolerant, 'measure')} it, within the tolerance"
     attempt = f"; try {enumerated(others, word='or')}" if others else "; check the arguments" if near else ""
     if near:
-        return f"{_listed([found.id for found in near], 'pass')} nevertheless{attempt}"
+        return f"{_list([found.id for found in near], 'pass')} nevertheless{attempt}"
     return f"no criterion looks at it{attempt or ', and no check does'}"
 
 
-def _listed(ids: Sequence[str], verb: str) -> str:
+def _list(ids: Sequence[str], verb: str) -> str:
     """Return the first criteria with a verb."""
     ending = "" if len(ids) > 1 else "es" if verb.endswith("s") else "s"
     return f"{enumerated(ids, 3)} {verb}{ending}"
@@ -67,7 +67,7 @@ def _depth(place: str, tags: Sequence[str]) -> int:
     return tags.index(names[-1]) + 1 if all(name in tags for name in names) else 0
 
 
-def _measured(criterion: Criterion) -> set[str]:
+def _measures(criterion: Criterion) -> set[str]:
     """Return the names of what a criterion measures, without the frames that it measures in."""
     return {name for key in _MEASURED for name in texts(criterion.arguments.get(key, ""))}
 

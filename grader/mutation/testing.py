@@ -30,7 +30,7 @@ def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
     for equivalent in Equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed).all():
         submission = _submission(trial.reference, urdf, equivalent)
         tried[equivalent.family] += 1
-        lost = dict(_lost(trial, submission, equivalent))
+        lost = dict(_first_loss(trial, submission, equivalent))
         if lost:
             diff = hunk(urdf.path, equivalent.before, equivalent.text)
             losses.append(Loss(equivalent.name, lost, diff))
@@ -47,20 +47,19 @@ def _submission(reference: Submission, urdf: Read, equivalent: Equivalent) -> Su
     return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
 
 
-def _lost(trial: Trial, submission: Submission, equivalent: Equivalent) -> Iterator[tuple[str, str]]:
-    for result in decide(trial.rubric, submission, _asked(trial, submission, equivalent)):
+def _first_loss(trial: Trial, submission: Submission, equivalent: Equivalent) -> Iterator[tuple[str, str]]:
+    for result in decide(trial.rubric, submission, _criteria_to_pass(trial, submission, equivalent)):
         if trial.is_lost(result):
             yield result.criterion.id, result.outcome.message
 
 
-def _asked(trial: Trial, submission: Submission, equivalent: Equivalent) -> Collection[str]:
+def _criteria_to_pass(trial: Trial, submission: Submission, equivalent: Equivalent) -> Collection[str]:
     """Return the criteria on the robot that must still pass; for a URDF on its own, those that need nothing else."""
     criteria = (trial.expected[name].criterion for name in trial.tested)
     others = ("package", "submission") if submission.is_single else ("package",)
     return [it.id for it in criteria if it.check.subject not in others and not breaking(it, equivalent.families)]
 
 
-MAX_MUTANTS = 500  # by default
 Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 

@@ -40,12 +40,12 @@ def origin(xyz: Iterable[float], rpy: Iterable[float]) -> Transform:
     return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
 
 
-def written(values: Iterable[float]) -> str:
+def attribute_text(values: Iterable[float]) -> str:
     """Return numbers as an attribute contains them."""
     return " ".join(f"{value + 0.0:.13g}" for value in values)
 
 
-def numbers_of(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
+def attribute_numbers(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
     """Return the numbers of an attribute."""
     text = default if element is None else element.get(attribute, default)
     return [float(piece) for piece in text.split()]
@@ -53,25 +53,25 @@ def numbers_of(element: Element | None, attribute: str, default: str = "0 0 0") 
 
 def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
     """Return the three numbers of an attribute."""
-    x, y, z = numbers_of(element, attribute, default)
+    x, y, z = attribute_numbers(element, attribute, default)
     return x, y, z
 
 
 def pose(owner: Element) -> Transform:
     """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
     found = owner.find("origin")
-    return origin(numbers_of(found, "xyz"), numbers_of(found, "rpy"))
+    return origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
 
 
-def put(owner: Element, transform: Transform) -> None:
+def set_pose(owner: Element, transform: Transform) -> None:
     """Write a pose into the `<origin>` of an element."""
     found = owner.find("origin")
     if found is None:
         if transform == IDENTITY:
             return
         found = etree.SubElement(owner, "origin")
-    found.set("xyz", written(transform.translation))
-    found.set("rpy", written(transform.rpy))
+    found.set("xyz", attribute_text(transform.translation))
+    found.set("rpy", attribute_text(transform.rpy))
 
 
 def end(joint: Element, role: str) -> Element:
@@ -92,17 +92,17 @@ def move_frame(tree: Element, link: Element, change: Transform) -> None:
     held = parent_joint(tree, name)
     assert held is not None
     back = change.inverse()
-    put(held, pose(held) @ change)
+    set_pose(held, pose(held) @ change)
     axis = held.find("axis")
     if axis is not None:
-        axis.set("xyz", written(back.rotate(vector_of(axis, "xyz"))))
+        axis.set("xyz", attribute_text(back.rotate(vector_of(axis, "xyz"))))
     elif held.get("type") != "fixed":
-        etree.SubElement(held, "axis", {"xyz": written(back.rotate((1.0, 0.0, 0.0)))})
+        etree.SubElement(held, "axis", {"xyz": attribute_text(back.rotate((1.0, 0.0, 0.0)))})
     for element in link.iterchildren("visual", "collision", "inertial"):
-        put(element, back @ pose(element))
+        set_pose(element, back @ pose(element))
     for joint in tree.iterchildren("joint"):
         if end(joint, "parent").get("link") == name:
-            put(joint, back @ pose(joint))
+            set_pose(joint, back @ pose(joint))
 
 
 def fresh(tree: Element, kind: str) -> str:
@@ -115,7 +115,7 @@ def add_joint(tree: Element, name: str, parent: str, child: str, transform: Tran
     joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
     etree.SubElement(joint, "parent", {"link": parent})
     etree.SubElement(joint, "child", {"link": child})
-    put(joint, transform)
+    set_pose(joint, transform)
     return joint
 
 

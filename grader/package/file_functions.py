@@ -44,10 +44,10 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     for name, test in tests.items():
         functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
         functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
-    return {name: partial(_evaluated, function, listing) for name, function in functions.items()}
+    return {name: partial(_evaluate, function, listing) for name, function in functions.items()}
 
 
-def _evaluated(
+def _evaluate(
     function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
     """Evaluate a search, count its steps and record whether the order of files in a folder, or of a set, matters."""

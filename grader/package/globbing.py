@@ -124,7 +124,7 @@ class PackageListing:
         for index, part in enumerate(parts):
             last = index == len(parts) - 1
             steps = (self._path_step(_join(start or "", path), path, part, last=last) for path in found)
-            found = _bounded(list(dict.fromkeys(chain.from_iterable(steps))))
+            found = _limit(list(dict.fromkeys(chain.from_iterable(steps))))
         return found
 
     def _path_step(self, real: str, path: str, part: str, *, last: bool) -> list[str]:
@@ -157,7 +157,7 @@ class _GlobSearch:
         found: list[str] = []
         for path in dict.fromkeys(folders):
             found += [posixpath.join(path, name) for name in self._in_folder(path, last, folders_only=folders_only)]
-            _bounded(found)
+            _limit(found)
         return found
 
     def _in_folder(self, folder: str, part: str, *, folders_only: bool) -> Iterator[str]:
@@ -200,7 +200,7 @@ def _join(folder: str, name: str) -> str:
     return f"{folder}/{name}" if folder and name else folder or name
 
 
-def _bounded(found: list[str]) -> list[str]:
+def _limit(found: list[str]) -> list[str]:
     if len(found) > _MAX_FOUND:
         raise SearchError("it finds too many files")
     return found

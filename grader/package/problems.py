@@ -21,17 +21,17 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted by location."""
     found: list[Problem] = []
     if package.manifest is not None:
-        found += _sorted(package.manifest.problems)
+        found += _sort(package.manifest.problems)
     if package.setup is not None:
-        found += _sorted(_setup_problems(package, package.setup))
+        found += _sort(_setup_problems(package, package.setup))
     for path in package.launch_files[:_MAX_FILES]:
-        found += _sorted(_launch_problems(package.launch(path)))
+        found += _sort(_launch_problems(package.launch(path)))
     for path in package.rviz_files[:_MAX_FILES]:
-        found += _sorted(package.rviz(path).problems)
+        found += _sort(package.rviz(path).problems)
     return tuple(found)
 
 
-def _sorted(problems: Iterable[Problem]) -> list[Problem]:
+def _sort(problems: Iterable[Problem]) -> list[Problem]:
     return sorted(problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message))
 
 

@@ -39,11 +39,11 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
     pairs = [pair for name in names if (pair := _pair(robot, reference, name, base)) is not None]
     if len(pairs) < _MIN_POINTS or 2 * sum(dist(*pair) <= _NEAR for pair in pairs) >= len(pairs):
         return None  # too few points, or most are where they should be: the quick answer for most robots
-    count, T_base_other = max((_fitted(pairs, rotation) for rotation in _quarter_turns()), key=lambda fit: fit[0])
+    count, T_base_other = max((_fit(pairs, rotation) for rotation in _quarter_turns()), key=lambda fit: fit[0])
     description = _description(T_base_other)
     if not description or count < max(_MIN_POINTS, len(pairs) - 1):
         return None
-    return Convention(description, _reframed(robot, reference, base, T_base_other))
+    return Convention(description, _reframe(robot, reference, base, T_base_other))
 
 
 def _pair(robot: Configuration, reference: Configuration, link: str, base: str) -> tuple[Vector, Vector] | None:
@@ -69,7 +69,7 @@ def _quarter_turns() -> Iterator[Rotation]:
             yield a, b, c, d, e, f, g, h, i
 
 
-def _fitted(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
+def _fit(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
     """Return how many points a rotation and the best translation lay over each other, and both."""
     turned = Transform(rotation)
     offsets = [minus(ours, turned.apply(theirs)) for ours, theirs in pairs]
@@ -89,7 +89,7 @@ def _description(T: Transform) -> str:
     return " and ".join(words)
 
 
-def _reframed(robot: Configuration, reference: Configuration, base: str, T_base_other: Transform) -> Robot:
+def _reframe(robot: Configuration, reference: Configuration, base: str, T_base_other: Transform) -> Robot:
     """Return a robot with another frame of its base, and of each link that is turned alike; nothing in it moves."""
     turned = Transform(T_base_other.rotation)
     frames = {base: T_base_other}
@@ -112,9 +112,9 @@ def _link(link: Link, T_link_other: Transform) -> Link:
     if T_link_other == IDENTITY:
         return link
     back = T_link_other.inverse()
-    visuals = tuple(replace(it, origin=_placed(back, it.origin)) for it in link.visuals)
+    visuals = tuple(replace(it, origin=_place(back, it.origin)) for it in link.visuals)
     return replace(
-        link, visuals=visuals, collisions=tuple(replace(it, origin=_placed(back, it.origin)) for it in link.collisions)
+        link, visuals=visuals, collisions=tuple(replace(it, origin=_place(back, it.origin)) for it in link.collisions)
     )
 
 
@@ -126,6 +126,6 @@ def _joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) ->
     return replace(joint, origin=origin, axis=T_child_other.unrotate(joint.axis) if joint.axis is not None else None)
 
 
-def _placed(T: Transform, origin: Origin) -> Origin:
+def _place(T: Transform, origin: Origin) -> Origin:
     moved = placed_by(T, origin)
     return replace(origin, xyz=moved.translation, rpy=moved.rpy)

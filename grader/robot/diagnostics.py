@@ -184,7 +184,7 @@ class ElementReader:
         try:
             return parse(text)
         except NumberError as error:
-            self.fail(f"cannot read {attribute}={shown(text)} of <{element.tag}>: {error}", element, attribute)
+            self.fail(f"cannot read {attribute}={quote_value(text)} of <{element.tag}>: {error}", element, attribute)
             if element.tag in _PRINTED:
                 self._problems.check_printed(text, element, attribute)
             return default
@@ -198,6 +198,6 @@ def first_children(element: Element) -> dict[str, Element]:
     return first
 
 
-def shown(text: str) -> str:
+def quote_value(text: str) -> str:
     """Return a value of the file between double quotes, cut where it is very long."""
     return f'"{cut(text, 60)}"'

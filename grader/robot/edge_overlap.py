@@ -34,7 +34,7 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
     best = straight[:, 0]
     for _ in range(3):
         lines = [plane @ np.array((np.cos(turns), np.sin(turns))) for plane, turns in rims]
-        normals = np.concatenate([_spanned(p, q) for p, q in combinations([straight, *lines], 2)], axis=1)
+        normals = np.concatenate([_cross_products(p, q) for p, q in combinations([straight, *lines], 2)], axis=1)
         lengths = np.sqrt((normals * normals).sum(axis=0))
         lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span no normal
         normals /= lengths
@@ -46,7 +46,7 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
     return (x, y, z)
 
 
-def _spanned(p: Array, q: Array) -> Array:
+def _cross_products(p: Array, q: Array) -> Array:
     """Return the cross products of directions of shape (3, n) and (3, m), as (3, n m). np.cross is far slower."""
     (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)

@@ -94,7 +94,7 @@ def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
     return _tensor(about + mass * square for about, square in zip(inertia, away, strict=True))
 
 
-def difference(a: Tensor, b: Tensor) -> float:
+def largest_difference(a: Tensor, b: Tensor) -> float:
     """Return the largest moment, in size, of the difference of two inertias, about any axis; NaN where it overflows."""
     moments = principal_moments(_tensor(one - other for one, other in zip(a, b, strict=True)))
     return max(abs(moments[0]), abs(moments[2]))

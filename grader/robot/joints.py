@@ -28,8 +28,8 @@ def read_joint(element: Element, problems: Problems) -> Joint:
         problems.add(catalogue.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
     _check_type(element, kind, label, problems)
     inside = first_children(element)
-    parent = _linked(element, inside, "parent", label, problems)
-    child = _linked(element, inside, "child", label, problems)
+    parent = _link_name(element, inside, "parent", label, problems)
+    child = _link_name(element, inside, "child", label, problems)
     reader = ElementReader(problems, catalogue.BAD_JOINT_ORIGIN)
     origin = reader.origin(inside.get("origin"))
     axis = _read_axis(element, inside.get("axis"), kind, problems)
@@ -72,7 +72,7 @@ def _check_type(element: Element, kind: str, label: str, problems: Problems) -> 
         problems.add(catalogue.TYPE_UNKNOWN, message, element, "type")
 
 
-def _linked(element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems) -> str:
+def _link_name(element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems) -> str:
     """Return the link that a joint names as its parent or child; empty if it names none."""
     named = inside.get(role)
     link = named.get("link") if named is not None else None

@@ -6,17 +6,7 @@ The colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `
 from grader.robot import catalogue
 from grader.robot.diagnostics import ElementReader, Problems, first_children
 from grader.robot.materials import Materials
-from grader.robot.model import (
-    Box,
-    Collision,
-    Cylinder,
-    Geometry,
-    Inertial,
-    Link,
-    Mesh,
-    Sphere,
-    Visual,
-)
+from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
 from grader.source import LazyLocation
 from grader.xml.parsing import Element
 

@@ -1,11 +1,8 @@
 """The materials of a robot: where each is defined, and which one a visual gets."""
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import Problems, first_children, shown
-from grader.robot.model import (
-    Material,
-    UnresolvedPart,
-)
+from grader.robot.diagnostics import Problems, first_children, quote_value
+from grader.robot.model import Material, UnresolvedPart
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -49,7 +46,7 @@ class Materials:
         found = self.known.get(name) if name else own
         if own is None:
             if found is None and name and not reported:
-                self._undefined(name, element, link)
+                self._note_undefined(name, element, link)
                 found = self._elsewhere(name)
         elif found is None:
             found = self.known[name] = own
@@ -68,12 +65,12 @@ class Materials:
             try:
                 channels = rgba(text)
                 if channels is None:
-                    message = f"rgba={shown(text)} needs exactly four numbers; ROS 2 silently shows black"
+                    message = f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently shows black"
                     self._problems.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:
                 reported = True
-                message = f"cannot read rgba={shown(text)}: {error}; {consequence}"
+                message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
                 self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
                 self._problems.check_printed(f"{name} {text}", colour, "rgba")
         unresolved = self._problems.parts(element)
@@ -90,7 +87,7 @@ class Materials:
             return None
         return Material(name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))})
 
-    def _undefined(self, name: str, element: Element, link: str) -> None:
+    def _note_undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
         if self._defined is None:
             every = [other for other in problems.root.iter("material") if len(other)]

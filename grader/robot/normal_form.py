@@ -21,8 +21,8 @@ def normal_form(robot: Robot) -> tuple[Any, ...]:
     """
     mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
-    links = (_renamed(link, connected) for link in robot.links)
-    joints = (_renamed(joint, mimicked) for joint in robot.joints)
+    links = (_with_name(link, connected) for link in robot.links)
+    joints = (_with_name(joint, mimicked) for joint in robot.joints)
     return tuple(sorted(links, key=repr)), tuple(sorted(joints, key=repr))
 
 
@@ -52,7 +52,7 @@ def _content(element: Element) -> tuple[Any, ...]:
     )
 
 
-def _renamed(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
+def _with_name(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
     return element.name if element.name in kept else "", _plain(element, ignored=("name",))
 
 

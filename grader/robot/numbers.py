@@ -26,13 +26,13 @@ class NumberError(ValueError):
     """Text that ROS 2 does not read as a number; the message says why."""
 
 
-def _cached(read: Callable[[str], Value]) -> Callable[[str], Value]:
+def _cache(read: Callable[[str], Value]) -> Callable[[str], Value]:
     """Return a reader that keeps values: the files of a class contain the same few texts thousands of times."""
     cached = lru_cache(maxsize=4096)(read)
     return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))
 
 
-@_cached
+@_cache
 def number(text: str) -> float:
     """Return the value of one number as urdfdom's strToDouble does; raises NumberError."""
     if _NUMBER.fullmatch(text) is None:
@@ -48,7 +48,7 @@ def numbers(text: str) -> list[float]:
     return [number(piece) for piece in text.split(" ") if piece]
 
 
-@_cached
+@_cache
 def vector(text: str) -> Vector:
     """Return three numbers as urdfdom's Vector3::init does; raises NumberError."""
     values = numbers(text)

@@ -51,21 +51,21 @@ class RobotPair(NamedTuple):
             for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
             if joint.mimic is None  # a mimic joint follows
         }
-        posed = _posed(self.robots[0], own)
+        posed = _pose_of(self.robots[0], own)
         found = []
-        for (name, _), wanted in zip(self.links, self._expected(positions), strict=True):
+        for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
             found.append(Offset(name, distance, _angle(pose, wanted), positions))
         return max(found, key=lambda offset: (self.times(offset), offset.distance))
 
-    def _expected(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
+    def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
         """Return the poses of the other robot's links, computed once for all robots that are compared with it."""
         known = _EXPECTED.setdefault(self.robots[1], {})
         names, links = (tuple(joint.name for _, joint in self.joints), tuple(link for _, link in self.links))
         key = (self.bases[1], links, names, positions)
         if key not in known:
-            posed = _posed(self.robots[1], dict(zip(names, positions, strict=True)))
+            posed = _pose_of(self.robots[1], dict(zip(names, positions, strict=True)))
             known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
         return known[key]
 
@@ -75,7 +75,7 @@ class RobotPair(NamedTuple):
         return max(round(share, 6) if share >= 0 else inf for share in shares)
 
 
-def _posed(robot: Configuration, positions: Mapping[str, float]) -> Configuration:
+def _pose_of(robot: Configuration, positions: Mapping[str, float]) -> Configuration:
     return Configuration(robot.robot, positions, holding=robot.parent_joints)
 
 

@@ -61,10 +61,12 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
         inner = {parents[link].parent for link in places if link != root}
         tips = {link for link, place in places.items() if place.depth == most and link not in inner}
         return _only(robot, tips, name)
-    return _only(robot, _moved(places, parents, int(found[1]), most, name), name)
+    return _only(robot, _links_of(places, parents, int(found[1]), most, name), name)
 
 
-def _moved(places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str) -> set[str]:
+def _links_of(
+    places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
+) -> set[str]:
     """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"

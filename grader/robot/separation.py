@@ -43,7 +43,7 @@ def separation(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Separa
     size = max(bounding_radius(a), bounding_radius(b), *map(abs, T_w_a.translation + T_w_b.translation))
     scale = 1.0 if size <= _MAX_LENGTH else min(size, 1e308)
     a, b = shrunk(a, scale), shrunk(b, scale)
-    T_a_b = _moved_in(T_w_a, scale).inverse() @ _moved_in(T_w_b, scale)
+    T_a_b = _scale_pose(T_w_a, scale).inverse() @ _scale_pose(T_w_b, scale)
     direction = _separating_direction(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
     return Separation(-_overlap(a, b, T_a_b, direction) * scale, T_w_a.rotate(direction))
 
@@ -139,7 +139,7 @@ def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
     return (x, y, z)
 
 
-def _moved_in(pose: Transform, scale: float) -> Transform:
+def _scale_pose(pose: Transform, scale: float) -> Transform:
     x, y, z = pose.translation
     return Transform(pose.rotation, (x / scale, y / scale, z / scale))
 

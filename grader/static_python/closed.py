@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from grader.static_python.closed_functions import call
 from grader.static_python.closed_operators import attribute, compare, operate, subscript
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, items_of, run
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, call_plain, items_of
 
 _MAX_LENGTH = 4_000  # characters of an expression
 _MAX_KEPT = 200  # characters of an expression that is kept once it is parsed
@@ -28,7 +28,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     if len(text) > _MAX_LENGTH:
         raise Undetermined("the expression is too long")
     budget.charge(len(text))
-    node = _parsed(text) if len(text) > _MAX_KEPT else _kept(text)
+    node = _parse(text) if len(text) > _MAX_KEPT else _kept(text)
     if isinstance(node, str):
         raise ExpressionFails(node)
     try:
@@ -37,7 +37,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is nested too deeply") from None
 
 
-def _parsed(text: str) -> ast.expr | str:
+def _parse(text: str) -> ast.expr | str:
     """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
     try:
         with warnings.catch_warnings():
@@ -51,7 +51,7 @@ def _parsed(text: str) -> ast.expr | str:
         return f"{type(error).__name__}: {error}"
 
 
-_kept = lru_cache(1_000)(_parsed)
+_kept = lru_cache(1_000)(_parse)
 
 
 # What makes a value that no function has measured yet.
@@ -85,7 +85,7 @@ class _Evaluator:
         return operate(node.op, self.value(node.left, local), self.value(node.right, local), self._budget)
 
     def _ifexp(self, node: ast.IfExp, local: Mapping[str, Value]) -> Value:
-        return self.value(node.body if run(bool, self.value(node.test, local)) else node.orelse, local)
+        return self.value(node.body if call_plain(bool, self.value(node.test, local)) else node.orelse, local)
 
     def _attribute(self, node: ast.Attribute, local: Mapping[str, Value]) -> Value:
         return attribute(self.value(node.value, local), node.attr, self._budget)
@@ -96,7 +96,7 @@ class _Evaluator:
     def _unaryop(self, node: ast.UnaryOp, local: Mapping[str, Value]) -> Value:
         if type(node.op) not in _UNARY:
             raise Undetermined("an expression of this kind is not supported")
-        return run(_UNARY[type(node.op)], self.value(node.operand, local))
+        return call_plain(_UNARY[type(node.op)], self.value(node.operand, local))
 
     def _list(self, node: ast.List | ast.Tuple, local: Mapping[str, Value]) -> list[Value]:
         return [self.value(element, local) for element in node.elts]

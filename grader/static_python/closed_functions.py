@@ -12,10 +12,10 @@ from grader.static_python.closed_values import (
     Items,
     Undetermined,
     Value,
+    call_plain,
     checked_key,
     items_of,
-    run,
-    text_of,
+    str_of,
     too_large,
 )
 
@@ -27,21 +27,21 @@ def call(function: Value, args: list[Value], kwargs: dict[str, Value], budget: B
     """Return what a call of a function of the allow-list returns."""
     budget.measure([args, list(kwargs.values())])
     if not isinstance(function, ClosedFunction):
-        return run(function, *args, **kwargs) if not callable(function) else _refuse("this call")
+        return call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
     if function is BUILTINS["map"] and args and not kwargs:
         mapped, *lists = args
         try:
             return Items([call(mapped, list(items), {}, budget) for items in zip(*map(items_of, lists), strict=False)])
         except ExpressionFails as error:  # only where a loop gets there
             raise Undetermined(f"a map of items that fails is not supported: {error}") from None
-    return budget.checked(run(function.run, *args, **kwargs))
+    return budget.checked(call_plain(function.run, *args, **kwargs))
 
 
 def _refuse(what: str) -> Value:
     raise Undetermined(f"{what} is not supported")
 
 
-def _unsupported(name: str) -> Callable[..., Value]:
+def _refuse_function(name: str) -> Callable[..., Value]:
     return lambda *_, **__: _refuse(f"the function {name}")
 
 
@@ -98,11 +98,11 @@ def _range(*bounds: int) -> range:
 
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "list": _of_items(list), "dict": make_dict, "str": lambda *args: text_of(*args) if args else "",
+    "list": _of_items(list), "dict": make_dict, "str": lambda *args: str_of(*args) if args else "",
     "float": float, "int": int, "bool": bool, "len": len, "abs": abs, "ord": ord, "round": _round, "range": _range,
     "min": _largest(min), "max": _largest(max), "sorted": _of_items(sorted), "sum": _sum,
     **{
-        name: _unsupported(name)
+        name: _refuse_function(name)
         for name in ("all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance",
                      "issubclass", "map", "repr", "reversed", "set", "slice", "tuple", "type", "vars", "zip")
     },

@@ -19,9 +19,9 @@ from grader.static_python.closed_values import (
     Namespace,
     Undetermined,
     Value,
+    call_plain,
     items_of,
-    run,
-    text_of,
+    str_of,
     too_large,
 )
 
@@ -54,7 +54,7 @@ def _call(
     """Call a method; its arguments are charged."""
     if method is not dict.get:
         budget.charge(budget.measure(owner), sum(search_cost(owner, value) for value in args))
-    return run(method, owner, *args, **kwargs)
+    return call_plain(method, owner, *args, **kwargs)
 
 
 def search_cost(text: Value, part: Value) -> int:
@@ -66,7 +66,7 @@ def percent_format(template: str, value: Value) -> str:
     """Return template % value."""
     if _WIDE.search(template):
         raise Undetermined("this format is not supported")
-    text_of(value)
+    str_of(value)
     return str(template % value)
 
 
@@ -123,7 +123,7 @@ def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Valu
         budget.charge(max(made, 0))
     elif isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > MAX_BITS:
         too_large("number")
-    return budget.checked(run(operation, left, right))
+    return budget.checked(call_plain(operation, left, right))
 
 
 def compare(op: ast.cmpop, left: Value, right: Value, budget: Budget) -> bool:
@@ -136,7 +136,7 @@ def compare(op: ast.cmpop, left: Value, right: Value, budget: Budget) -> bool:
         raise Undetermined("which values are one object is not defined")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
         budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
-    return bool(run(_COMPARISONS[type(op)], left, right))
+    return bool(call_plain(_COMPARISONS[type(op)], left, right))
 
 
 def subscript(owner: Value, key: Value, budget: Budget) -> Value:
@@ -149,7 +149,7 @@ def subscript(owner: Value, key: Value, budget: Budget) -> Value:
         budget.measure(key)  # it is hashed, and shown where it is missing
     elif isinstance(owner, str | list | tuple):
         budget.charge(len(owner))
-    return budget.checked(run(operator.getitem, owner, key))
+    return budget.checked(call_plain(operator.getitem, owner, key))
 
 
 _OPERATORS: dict[type[ast.operator], Callable[[Value, Value], Value]] = {

@@ -137,7 +137,7 @@ class DottedDict(dict[Value, Value]):
     """A dict whose items are also attributes, as xacro makes them of YAML."""
 
 
-def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
+def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
     """Return what a function of plain values returns; what it raises is ExpressionFails."""
     try:
         return function(*args, **kwargs)
@@ -156,7 +156,7 @@ def items_of(value: Value) -> list[Value]:
         value.values = [] if value.is_iterator else items
         return items
     if isinstance(value, PLAIN):
-        return list(run(iter, value))
+        return list(call_plain(iter, value))
     raise Undetermined("this loop is not supported")
 
 
@@ -167,7 +167,7 @@ def checked_key(key: Value) -> Value:
     return key
 
 
-def text_of(value: Value) -> str:
+def str_of(value: Value) -> str:
     """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
     if not isinstance(value, PLAIN) or not _has_text(value):
         raise Undetermined("the text of this value differs between runs")

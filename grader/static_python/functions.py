@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.methods import in_order
+from grader.static_python.methods import sort_items
 from grader.static_python.operators import extend
 from grader.static_python.values import (
     MAX_ITEMS,
@@ -90,14 +90,14 @@ def _of_items(function: Callable[[Evaluation, list[Value], Call], Value], evalua
     return function(evaluation, items, call)
 
 
-def _joined(evaluation: Evaluation, items: list[Value], call: Call) -> Value:
+def _join_items(evaluation: Evaluation, items: list[Value], call: Call) -> Value:
     joined: list[Value] = []
     for value in items:
         extend(evaluation, joined, value, call.at)
     return joined
 
 
-def _enumerated(_: Evaluation, items: list[Value], call: Call) -> Value:
+def _enumerate(_: Evaluation, items: list[Value], call: Call) -> Value:
     start = call.args[1] if len(call.args) > 1 else call.kwargs.get("start", 0)
     return (
         list(enumerate(items, start)) if type(start) is int else call.unknown("the numbers are known only at run time")
@@ -107,7 +107,7 @@ def _enumerated(_: Evaluation, items: list[Value], call: Call) -> Value:
 def _sum(evaluation: Evaluation, call: Call) -> Value:
     items = items_of(call.args[0]) if call.args else []
     if (len(call.args) == 2 and isinstance(call.args[1], list)) or (items and isinstance(items[0], list)):
-        return _of_items(_joined, evaluation, call)
+        return _of_items(_join_items, evaluation, call)
     return call.unknown("a sum of this kind is not supported")
 
 
@@ -173,9 +173,9 @@ _OF_ITEMS: dict[tuple[str, ...], Callable[[Evaluation, list[Value], Call], Any]]
     ("builtins.list", "builtins.tuple", "builtins.iter"): lambda _, items, __: items,
     ("builtins.set", "builtins.frozenset"): _set,
     ("builtins.reversed",): lambda _, items, __: items[::-1],
-    ("builtins.enumerate",): _enumerated,
-    ("builtins.sorted",): in_order,
-    ("itertools.chain.from_iterable",): _joined,
+    ("builtins.enumerate",): _enumerate,
+    ("builtins.sorted",): sort_items,
+    ("itertools.chain.from_iterable",): _join_items,
 }
 _FUNCTIONS: FunctionTable = {
     **{name: partial(_of_items, run) for names, run in _OF_ITEMS.items() for name in names},
@@ -191,5 +191,5 @@ _FUNCTIONS: FunctionTable = {
     "builtins.zip": _zip,
     "builtins.range": _range,
     "builtins.sum": _sum,
-    "itertools.chain": lambda evaluation, call: _joined(evaluation, call.args, call),
+    "itertools.chain": lambda evaluation, call: _join_items(evaluation, call.args, call),
 }

@@ -135,7 +135,7 @@ class Interpreter(StatementEvaluator):
         if not node.handlers:
             self._block(node.body, scope)
         else:
-            raised, may_have_failed = self._guarded(node.body, scope)
+            raised, may_have_failed = self._guard(node.body, scope)
             if raised is not None:
                 self._handle(node, raised, scope)
             elif may_have_failed:
@@ -147,7 +147,7 @@ class Interpreter(StatementEvaluator):
 
     _asyncfor, _trystar = _for, _try
 
-    def _guarded(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
+    def _guard(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
         """Evaluate a block whose errors are caught; return the certainly raised error, and whether another may be."""
         before, failed_before, self.may_have_failed = self.uncertainty, self.may_have_failed, False
         self.handlers += 1

@@ -75,7 +75,7 @@ def call_method(evaluation: Evaluation, owner: Value, name: str, call: Call) -> 
             return Unknown(f"the method {name} of this value is not supported", call.at)
 
 
-def in_order(evaluation: Evaluation, items: list[Value], call: Call) -> list[Value]:
+def sort_items(evaluation: Evaluation, items: list[Value], call: Call) -> list[Value]:
     """Return a list in the order that sorted, or its own sort, gives it."""
     evaluation.step(len(items) // 16)
     key, is_reversed = call.kwargs.get("key"), call.kwargs.get("reverse", False)
@@ -138,7 +138,7 @@ def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> 
         case "extend", [value]:
             extend(evaluation, items, value, call.at)
         case "sort", [] if is_known:
-            items[:] = in_order(evaluation, items, call)
+            items[:] = sort_items(evaluation, items, call)
         case _:
             return _list_method(items, name, call, is_known=is_known)
     return None

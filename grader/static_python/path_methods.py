@@ -5,12 +5,7 @@ from pathlib import PurePosixPath
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.operators import join_path
 from grader.static_python.parse import Position
-from grader.static_python.values import (
-    PACKAGE_FOLDER,
-    Call,
-    Unknown,
-    Value,
-)
+from grader.static_python.values import PACKAGE_FOLDER, Call, Unknown, Value
 
 _MAX_PARTS = 100  # of a path
 _MAX_NAME = 255  # characters of a file name

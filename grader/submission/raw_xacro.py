@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from grader.edits import Proposal
-from grader.package.edits.with_xacro import with_xacro
+from grader.package.edits.python_file import with_xacro
 from grader.source import Edit
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

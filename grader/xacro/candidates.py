@@ -90,9 +90,9 @@ class Candidates:
         self, site: Written, root: Written, slot: re.Match[str], uses: Sequence[Use]
     ) -> Iterator[tuple[int, str]]:
         """Yield the text with the number, or its inverse, that the first use needs, with more and more digits."""
-        first = next((use for use in uses if not is_same(use.old, use.new)), uses[0])
+        first = next((use for use in uses if not is_equal_value(use.old, use.new)), uses[0])
         pairs = enumerate(zip(first.old.split(), first.new.split(), strict=False))
-        index = next((index for index, pair in pairs if not is_same(*pair)), 0)
+        index = next((index for index, pair in pairs if not is_equal_value(*pair)), 0)
 
         def at(text: str | None) -> float:
             words = (text or "").split()
@@ -154,7 +154,7 @@ def near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
     return text == wanted or (is_alike and all(isclose(a, b, rel_tol=tolerance, abs_tol=1e-6) for a, b in pairs))
 
 
-def is_same(one: str, other: str) -> bool:
+def is_equal_value(one: str, other: str) -> bool:
     """Return whether two texts are equal, or their numbers nearly are."""
     return near(one, other, 1e-9)
 

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader import markup
-from grader.edits import Proposal, text_of, with_attribute, with_child, with_sibling
+from grader.edits import Proposal, element_text, with_attribute, with_child, with_sibling
 from grader.names import closest
 from grader.source import Edit, Edits, Source
 from grader.xacro.nodes import XacroNode
@@ -48,27 +48,27 @@ class Corrector:
                 for node in (it for tag in _DEFINING for it in self._nodes(tag) if _name_of(it) == unknown.name):
                     edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
                     yield Proposal(edits, f"<{node.tag}> without xacro:", f"write <xacro:{node.tag}>")
-                for edits in self._respelled(refusal.place, refusal.attribute, unknown):
+                for edits in self._respell(refusal.place, refusal.attribute, unknown):
                     yield Proposal(edits, _UNKNOWN, "correct the name")
                 source, start = refusal.place.source.element(0)
-                for xml, cause, action in self._added(source.path, unknown, numbers):
+                for xml, cause, action in self._additions(source.path, unknown, numbers):
                     yield Proposal((with_child(source, start, xml),), cause, action)
             what = " and ".join(lacking)
             for value in self._values(refusal.place, lacking, [*numbers, *names]) if lacking else ():
-                edits = self._given(refusal.place, lacking, value)
+                edits = self._give(refusal.place, lacking, value)
                 yield Proposal(edits, f"this call gives no value for {what}", f"give {what} a value")
         yield from self._calls_of_macros(names)
 
-    def _respelled(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
+    def _respell(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
         """Yield the edits that correct an unknown name where it is used or a similar one defined; add a parameter."""
         near = closest(unknown.name, unknown.known)
         is_few = attribute is None and len(unknown.known) <= _MAX_NAMES
         ways: list[Edits] = []
         for name in [near] if near is not None else unknown.known if is_few else ():
-            ways.append(_renamed(place, attribute, unknown.name, name))
+            ways.append(_rename(place, attribute, unknown.name, name))
             at, where = unknown.known[name] or (place, None)
             if where is not None and name == near:
-                ways.append(_renamed(at, where, name, unknown.name))
+                ways.append(_rename(at, where, name, unknown.name))
             elif where == "params":
                 source, start = at.source.element(at.tag)
                 params = markup.attribute(source.text, start, "params")
@@ -76,7 +76,7 @@ class Corrector:
                 ways.append((with_attribute(source, start, "params", f"{given} {unknown.name}".strip()),))
         yield from filter(None, ways)
 
-    def _added(self, path: str, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    def _additions(self, path: str, unknown: UnknownName, numbers: Sequence[str]) -> Iterator[tuple[str, str, str]]:
         """Yield what may define a name: the include of a file that does, or a property with one of the numbers."""
         name, is_included = unknown.name, False
         definition = re.compile(rf"<xacro:(?:macro|property|arg)\b[^>]*\bname\s*=\s*[\"']{re.escape(name)}[\"']")
@@ -114,11 +114,11 @@ class Corrector:
         parameters = next((it.attributes.get("params", "").split() for it in macros), [])
         for node in self._nodes(tag):
             if node.place[:2] != place[:2]:
-                blocks = [text_of(*child.place.source.element(child.place.tag)) for child in node.elements]
+                blocks = [element_text(*child.place.source.element(child.place.tag)) for child in node.elements]
                 names = [name for name in parameters if name.startswith("*")]
                 yield {**node.attributes, **dict(zip(names, blocks, strict=False))}
 
-    def _given(self, place: ScopePlace, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
+    def _give(self, place: ScopePlace, lacking: Sequence[str], values: Mapping[str, str]) -> Edits:
         source, start = place.source.element(place.tag)
         blocks = [values[name] for name in lacking if name.startswith("*")]
         if blocks:
@@ -159,7 +159,7 @@ def _name_of(macro: XacroNode) -> str:
     return macro.attributes.get("name", "").removeprefix("xacro:")
 
 
-def _renamed(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
+def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
     """Return the edit of an attribute's value; without an attribute, of an attribute's name, the tag, or any value."""
     source, start = place.source.element(place.tag)
     tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()

@@ -11,10 +11,10 @@ from itertools import islice, product
 from grader import markup
 from grader.edits import merged, with_attribute
 from grader.source import Edit, Edits
-from grader.xacro.candidates import ARGUMENT, EXPRESSION, NAME, TOKEN, Candidates, is_same, near
+from grader.xacro.candidates import ARGUMENT, EXPRESSION, NAME, TOKEN, Candidates, is_equal_value, near
 from grader.xacro.scopes import Definition, ScopePlace, XacroScope
 from grader.xacro.texts import PIECE, Texts
-from grader.xacro.written import TextChange, Use, Written, defined, edits_of, written
+from grader.xacro.written import TextChange, Use, Written, definition_text, edits_of, find_text
 
 _MAX_WAYS = 8
 _MAX_SITES = 10  # texts that one value is computed from
@@ -36,8 +36,8 @@ class Rewriter:
 
         Those with which all uses get what they should be come first, then those for the changed ones.
         """
-        text = written(place, attribute, uses[0].scope)
-        changed = [use for use in uses if not is_same(use.old, use.new)]
+        text = find_text(place, attribute, uses[0].scope)
+        changed = [use for use in uses if not is_equal_value(use.old, use.new)]
         found: list[Edits] = []
         for several in dict.fromkeys((tuple(uses), tuple(changed))) if changed else ():
             if text is not None:
@@ -54,7 +54,9 @@ class Rewriter:
     def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes with which a text is what its uses need, each with its rank."""
         values = [self._candidates.value(text.text, use.scope) for use in uses]
-        if any(value is not None and not is_same(value, use.old) for value, use in zip(values, uses, strict=True)):
+        if any(
+            value is not None and not is_equal_value(value, use.old) for value, use in zip(values, uses, strict=True)
+        ):
             return  # a name has another value by now
         yield from self._changes(text, uses)
         if None not in values:
@@ -81,7 +83,7 @@ class Rewriter:
         """Yield changes of all tokens that are wrong, together."""
         wrong: list[list[tuple[int, Way]]] = []
         for token, own in zip(tokens, uses, strict=True):
-            if not all(is_same(use.old, use.new) for use in own):
+            if not all(is_equal_value(use.old, use.new) for use in own):
                 ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
                 wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
         for parts in islice(product(*wrong), 4 * _MAX_WAYS):
@@ -89,7 +91,7 @@ class Rewriter:
 
     def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
         """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
-        changed = [use.scope for use in uses if not is_same(use.old, use.new)] or [uses[0].scope]
+        changed = [use.scope for use in uses if not is_equal_value(use.old, use.new)] or [uses[0].scope]
         sites = {site.key: (rank, site) for scope in changed for rank, site in self._sites(root, scope)}
         for first, site in sites.values():
             for rank, other in self._candidates.of(site, root, uses):
@@ -100,7 +102,7 @@ class Rewriter:
         defaults = [it for it in self._definitions(text, uses[0].scope) if it.attribute == "params"]
         edits: list[Edit] = []
         for use in uses:
-            if not is_same(use.old, use.new) and use.calls:
+            if not is_equal_value(use.old, use.new) and use.calls:
                 for definition in defaults:
                     for value in (use.new, f"'{use.new}'"):
                         if near(self._candidates.value(text.text, use.scope, {definition.key: value}), use.new):
@@ -115,7 +117,7 @@ class Rewriter:
         pending = [root._replace(scope=scope)]
         while pending and len(sites) < _MAX_SITES:
             for definition in self._definitions(pending[0], pending.pop(0).scope):
-                text = defined(definition)
+                text = definition_text(definition)
                 if text is not None and definition.key not in sites:
                     is_given = definition.attribute not in ("params", "value", "default")
                     sites[definition.key] = (0 if is_given else 2, text)

@@ -124,7 +124,7 @@ class Expander:
 
     def start(self, source: XacroNode, scopes: Scopes) -> XacroNode:
         """Return an element with its attributes expanded, without its children."""
-        out = XacroNode(source.tag, self._placed(source.place, scopes.symbols))
+        out = XacroNode(source.tag, self._place(source.place, scopes.symbols))
         out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
@@ -153,7 +153,7 @@ class Expander:
         message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
             return "" if isinstance(error, ExpressionFails) else message
-        location = self._placed(place).at(attribute)
+        location = self._place(place).at(attribute)
         if not isinstance(error, ExpressionFails):
             self.undetermined.append(Open(message, location))
             return message
@@ -177,7 +177,7 @@ class Expander:
             self._listed.add((message, place.source.path, place.tag, attribute))
         return len(self._listed) > known
 
-    def _placed(self, place: ScopePlace, scope: XacroScope | None = None) -> ScopePlace:
+    def _place(self, place: ScopePlace, scope: XacroScope | None = None) -> ScopePlace:
         return place if place.calls is not None else ScopePlace(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:

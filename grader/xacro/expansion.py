@@ -98,7 +98,7 @@ def _not_xml(error: XMLSyntaxError, path: str) -> Problem:
 
 def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]) -> Element:
     """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
-    made = make_element(_name(root.tag), _named(root.attributes))
+    made = make_element(_name(root.tag), _attributes(root.attributes))
     pending: list[tuple[XacroNode, Element]] = [(root, made)]
     while pending:
         node, element = pending.pop()
@@ -109,7 +109,7 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
         for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
             if not is_text:
                 inside = (child for child in found if isinstance(child, XacroNode))
-                children += [(it, make_element(_name(it.tag), _named(it.attributes), element)) for it in inside]
+                children += [(it, make_element(_name(it.tag), _attributes(it.attributes), element)) for it in inside]
             elif children:
                 children[-1][1].tail = "".join(map(str, found))
             else:
@@ -124,6 +124,6 @@ def _name(tag: str) -> str:
     return f"{{{prefix}}}{local}" if colon else tag
 
 
-def _named(attributes: dict[str, str]) -> dict[str, str]:
+def _attributes(attributes: dict[str, str]) -> dict[str, str]:
     is_plain = all(":" not in name for name in attributes)
     return attributes if is_plain else {_name(name): value for name, value in attributes.items()}

@@ -77,22 +77,22 @@ class Files:
         self._workspace.ask(text)
         shared = _SHARED.fullmatch(text)
         if shared is not None:
-            path = self._shared(shared["package"], posixpath.normpath(shared["inside"]))
+            path = self._share_path(shared["package"], posixpath.normpath(shared["inside"]))
         else:
             path = posixpath.normpath(posixpath.join(posixpath.dirname(self.open[-1]), text))
         if text.startswith(f"{INSTALLED}/") and shared is None:
             raise FileFails(f"there is no file {text.partition('/share/')[2]}: is a slash missing after $(find ...)?")
         if path.startswith(("/", "../")) or path == "..":
             raise Undetermined(f"{text} is outside the submission")
-        renamed = path + self._added_ending()
+        renamed = path + self._extra_ending()
         return renamed if path not in self._workspace.paths and renamed in self._workspace.paths else path
 
-    def _added_ending(self) -> str:
+    def _extra_ending(self) -> str:
         """Return what an upload without the package added to the innermost file's name: .txt of a.xacro.txt."""
         added = _ADDED.fullmatch(posixpath.basename(self.open[-1])) if self._workspace.is_part else None
         return added[1] if added is not None else ""
 
-    def _shared(self, package: str, inside: str) -> str:
+    def _share_path(self, package: str, inside: str) -> str:
         """Return the path of a file that $(find package) names."""
         folder, source = self._workspace.package(package), self._workspace.installed(package, inside)
         if folder is None and source is None:

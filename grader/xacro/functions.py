@@ -16,9 +16,9 @@ from grader.static_python.closed_values import (
     Namespace,
     Undetermined,
     Value,
+    call_plain,
     checked_key,
-    run,
-    text_of,
+    str_of,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
@@ -48,13 +48,13 @@ def namespace(name: str, names: Mapping[str, Value]) -> Namespace:
 
 
 def _dotify(value: Value) -> Value:
-    return _dotted(run(make_dict, value))
+    return _dot(call_plain(make_dict, value))
 
 
-def _dotted(value: Value) -> Value:
+def _dot(value: Value) -> Value:
     if isinstance(value, dict):
-        return DottedDict({key: _dotted(item) for key, item in value.items()})
-    return [_dotted(item) for item in value] if isinstance(value, list) else value
+        return DottedDict({key: _dot(item) for key, item in value.items()})
+    return [_dot(item) for item in value] if isinstance(value, list) else value
 
 
 def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:
@@ -72,7 +72,7 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
 
 
 def _fatal(*parts: Value) -> Value:
-    raise ExpressionFails(" ".join(map(text_of, parts)))
+    raise ExpressionFails(" ".join(map(str_of, parts)))
 
 
 def _no_path(*_: Value) -> Value:
@@ -154,7 +154,7 @@ class _Values:
     def _scalar(self, event: Any) -> Value:
         text = event.value
         if event.tag in _UNITS:
-            return run(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
+            return call_plain(float, evaluate(text, self._find, self._budget)) * _UNITS[event.tag]
         match _RESOLVER.resolve(yaml.ScalarNode, text[:_MAX_NUMBER], event.implicit).rpartition(":")[2]:
             case "str":
                 return text

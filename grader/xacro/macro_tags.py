@@ -34,17 +34,17 @@ def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scop
 
 def call_macro(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
-    _call_named(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
+    _call_by_name(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
 
 
 def call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro whose name is a value: <xacro:call macro="${name}"/>."""
     name = expander.texts.text(needed(node, "macro"), scopes.symbols)
     call = renamed(node, f"xacro:{name}", "macro")
-    _call_named(expander, name, call, out, scopes)
+    _call_by_name(expander, name, call, out, scopes)
 
 
-def _call_named(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     found = find_macro(name, *scopes)
     if found is None:
         if expander.texts.names_open is not None:

@@ -53,7 +53,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
     """
-    text = _decoded(data, budget)
+    text = _decode(data, budget)
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
         xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
@@ -69,7 +69,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
-    text = _decoded(data, budget)
+    text = _decode(data, budget)
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
     assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.differences]
@@ -90,7 +90,7 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
     return nodes[root]
 
 
-def _decoded(data: bytes, budget: Budget) -> str:
+def _decode(data: bytes, budget: Budget) -> str:
     """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge its tags."""
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(_OF_TAG * data.count(b"<") + _OF_ATTRIBUTE * data.count(b"=") + prefixes, len(data))

@@ -7,7 +7,7 @@ from keyword import iskeyword
 
 from grader.names import did_you_mean
 from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, str_of
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
@@ -81,16 +81,16 @@ class Texts:
                 raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
-        return self._charged(values[0] if len(values) == 1 else joined(map(self.written, values)))
+        return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
 
-    def _charged(self, value: Value) -> Value:
+    def _charge(self, value: Value) -> Value:
         """Return a value once its text is charged: it is searched, and read as a number."""
         self._budget.charge(1, len(value) if isinstance(value, str) else 0)
         return value
 
     def written(self, value: Value) -> str:
         """Return the text of a value. Raises Undetermined, OutOfBudget."""
-        return value if isinstance(value, str) else text_of(self._budget.checked(value))
+        return value if isinstance(value, str) else str_of(self._budget.checked(value))
 
     def text(self, text: str, scope: XacroScope) -> str:
         """Return the value of a text as it is written into the expanded file."""
@@ -104,7 +104,7 @@ class Texts:
         if holder is not None:
             definition = holder.properties[name].definition if self._supposed is not None else None
             found = self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
-            return self._charged(found)
+            return self._charge(found)
         if name in self._globals:
             return self._globals[name]
         if self.names_open is not None:
@@ -178,7 +178,7 @@ class Texts:
             raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
             raise ExpressionFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
-        found = self._charged(self.share(args[0]) if command == "find" else self.argument(args[0]))
+        found = self._charge(self.share(args[0]) if command == "find" else self.argument(args[0]))
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 
     def share(self, package: str) -> str:

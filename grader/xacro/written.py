@@ -66,7 +66,7 @@ def edits_of(changes: Iterable[TextChange]) -> Edits | None:
     return tuple(edits)
 
 
-def written(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | None:
+def find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | None:
     """Return the value of an attribute, or without a name the text of an element without children.
 
     None where it is missing, too long, or has entities, so that it is not what is read.
@@ -97,9 +97,9 @@ def with_parameters(xml: str, scope: XacroScope) -> str:
     return xml
 
 
-def defined(definition: Definition) -> Written | None:
+def definition_text(definition: Definition) -> Written | None:
     """Return the text that a name is defined with: of a parameter's default the part of `params`."""
-    whole = written(definition.place, definition.attribute, definition.scope)
+    whole = find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
         found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
         if found is None or not whole.text.startswith(definition.text, found.end()):

@@ -26,19 +26,19 @@ class Way(NamedTuple):
     after: str
 
 
-def proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
+def syntax_proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
     """Yield edits that make a text readable, the most plausible first; none where none brings the parser further."""
     search = _SyntaxSearch(Rules(is_strict, is_urdf))
     first = list(search.steps(source.text))
     if first:
-        yield _joined(source, [ways[0] for ways in first])
+        yield _join(source, [ways[0] for ways in first])
     others = ((index, way) for index in reversed(range(len(first))) for way in first[index][1:])
     for number, (index, way) in enumerate(islice(others, _MAX_FOUND), start=1):
         rest = [ways[0] for ways in search.steps(way.after)]
-        yield _joined(source, [*(ways[0] for ways in first[:index]), way, *rest])._replace(way=number)
+        yield _join(source, [*(ways[0] for ways in first[:index]), way, *rest])._replace(way=number)
 
 
-def _joined(source: Source, ways: list[Way]) -> Proposal:
+def _join(source: Source, ways: list[Way]) -> Proposal:
     edits: Edits = ()
     text = source.text
     for way in ways:
@@ -69,12 +69,12 @@ class _SyntaxSearch:
         found: list[tuple[tuple[int, int], Way]] = []
         operations = Operations(text, stop, stop.wrong, self.rules.is_urdf) if stop.wrong else None
         for stage in (operations.likely(), operations.characters()) if operations else ():
-            found = nsmallest(4 * _MAX_WAYS, [*found, *self._ranked(text, stop, stage)], key=lambda pair: pair[0])
+            found = nsmallest(4 * _MAX_WAYS, [*found, *self._rank(text, stop, stage)], key=lambda pair: pair[0])
             if found and not found[0][0][1]:
                 break
         return list({way.after: way for _, way in reversed(found)}.values())[::-1][:_MAX_WAYS]
 
-    def _ranked(
+    def _rank(
         self, text: str, stop: PieceScan, operations: Iterator[Operation]
     ) -> Iterator[tuple[tuple[int, int], Way]]:
         """Yield the ways that bring the parser further, with their distance to the end and the faults for urdfdom."""

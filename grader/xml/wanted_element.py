@@ -28,10 +28,10 @@ class FoundElement(NamedTuple):
 
 def name_of(element: Element) -> str:
     """Return the name of an element as it is written, with its prefix."""
-    return _written(str(element.tag), element)
+    return _name_with_prefix(str(element.tag), element)
 
 
-def _written(name: str, element: Element) -> str:
+def _name_with_prefix(name: str, element: Element) -> str:
     space, _, local = name.removeprefix("{").rpartition("}")
     if not space:
         return local
@@ -56,44 +56,45 @@ def texts_at(element: Element, path: str) -> list[FoundElement]:
     """Return the texts at a path in an element: of attributes where it ends with @name, else of elements."""
     *steps, last = steps_of(path) or ["."]
     if not last.startswith("@"):
-        return [FoundElement(_text(found), found) for found in elements_at(element, steps_of(path))]
-    values = ((found, attribute(found, last[1:])) for found in elements_at(element, steps))
+        return [FoundElement(text_in(found), found) for found in elements_at(element, steps_of(path))]
+    values = ((found, attribute_of(found, last[1:])) for found in elements_at(element, steps))
     return [FoundElement(value, found, last[1:]) for found, value in values if value is not None]
 
 
-def attribute(element: Element, name: str) -> str | None:
+def attribute_of(element: Element, name: str) -> str | None:
     """Return the value of an attribute by its name as it is written; None where the element has none."""
     plain = element.get(name)
     if plain is not None or ":" not in name:
         return plain
-    return next((str(value) for key, value in element.items() if _written(str(key), element) == name), None)
+    return next((str(value) for key, value in element.items() if _name_with_prefix(str(key), element) == name), None)
 
 
-def _text(element: Element) -> str:
+def text_in(element: Element) -> str:
+    """Return the text in an element, without that in its children."""
     return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
 
 
-def is_same(text: str, expected: Scalar, tolerance: float) -> bool:
+def matches_value(text: str, expected: Scalar, tolerance: float) -> bool:
     """Return whether a text is an expected value: numbers and lists are compared as numbers, true and 1 are equal."""
-    wanted = text_of(expected)
+    wanted = xml_text(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
     if "true" in (one, other) or "false" in (one, other):
         return one == other if one not in _BOOLEANS else _BOOLEANS[one] == _BOOLEANS.get(other)
-    actual, numbers = numbers_of(text), numbers_of(wanted)
+    actual, numbers = numbers_in(text), numbers_in(wanted)
     if actual and numbers:
         pairs = zip(actual, numbers, strict=False)
         return len(actual) == len(numbers) and all(abs(a - b) <= tolerance + _SLACK for a, b in pairs)
     return text.split() == wanted.split()
 
 
-def text_of(value: Scalar) -> str:
+def xml_text(value: Scalar) -> str:
     """Return a value as XML writes it."""
     if isinstance(value, bool):
         return str(value).lower()
     return value if isinstance(value, str) else f"{value:.12g}"
 
 
-def numbers_of(text: str) -> list[float]:
+def numbers_in(text: str) -> list[float]:
     """Return the numbers that a text consists of; nothing for any other text."""
     try:
         values = [float(piece) for piece in text.split()]
@@ -108,7 +109,7 @@ def are_there(texts: Sequence[str], expected: Sequence[Scalar], tolerance: float
 
     def place(wanted: int, tried: set[int]) -> bool:
         for index, text in enumerate(texts):
-            if index not in tried and is_same(text, expected[wanted], tolerance):
+            if index not in tried and matches_value(text, expected[wanted], tolerance):
                 tried.add(index)
                 if index not in taken or place(taken[index], tried):
                     taken[index] = wanted
@@ -130,7 +131,7 @@ class WantedElement(NamedTuple):
     @property
     def element(self) -> str:
         """The element below <robot>: <gazebo reference="camera_link">."""
-        given = (f' {key}="{text_of(value)}"' for key, value in self.attributes.items())
+        given = (f' {key}="{xml_text(value)}"' for key, value in self.attributes.items())
         return f"<{self.tag}{''.join(given)}>"
 
     @property
@@ -141,14 +142,14 @@ class WantedElement(NamedTuple):
 
     def fits(self, element: Element) -> bool:
         """Return whether an element has the attributes."""
-        given = ((attribute(element, key), value) for key, value in self.attributes.items())
-        return all(text is not None and is_same(text, value, self.tolerance) for text, value in given)
+        given = ((attribute_of(element, key), value) for key, value in self.attributes.items())
+        return all(text is not None and matches_value(text, value, self.tolerance) for text, value in given)
 
     def may_fit(self, element: Element, unresolved: Unresolved | None) -> bool:
         """Return whether an element, of which not all may be known, can have the attributes."""
         left = {key: value for key, value in self.attributes.items() if unresolved and key not in unresolved.attributes}
         if unresolved is not None and unresolved.content is not None:
-            left = {key: value for key, value in left.items() if attribute(element, key) is not None}
+            left = {key: value for key, value in left.items() if attribute_of(element, key) is not None}
         return self._replace(attributes=left).fits(element) if unresolved else self.fits(element)
 
     def wrong(self, element: Element) -> list[str]:
@@ -169,7 +170,7 @@ class WantedElement(NamedTuple):
         """Return whether a text is the value at a path, or one of several."""
         value = self.values[key]
         wanted = value if isinstance(value, list) else [value]
-        return any(is_same(readable(found.text), one, self.tolerance) for one in wanted)
+        return any(matches_value(readable(found.text), one, self.tolerance) for one in wanted)
 
     def _has(self, element: Element, key: str, value: AttributeValue) -> bool:
         texts = [readable(found.text) for found in texts_at(element, key)]

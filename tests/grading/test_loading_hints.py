@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from grader.grading.grade import grade
-from grader.grading.hints.loading import repaired
+from grader.grading.hints.loading import repair
 from grader.grading.hints.search import FoundHint, HintSearch
 from grader.grading.hints.trials import Trials
 from grader.grading.report import Result
@@ -152,7 +152,7 @@ def test_every_kind_of_problem_is_repaired(tmp_path: Path) -> None:
     for sample in (sample for sample in PROBLEMS if read_urdf(sample.data).verdict != "clean"):
         submission = written(tmp_path, sample.data)
         kinds.add(sample.code)
-        final = repaired(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT)[1].submission
+        final = repair(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT)[1].submission
         if isinstance(final.urdf, Read) and final.urdf.reading.verdict == "clean":
             undone.add(sample.code)
 
@@ -180,8 +180,8 @@ def test_a_chain_of_repairs_ends(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     text = REFERENCE.replace("</robot>", "", 1).replace('rgba="', 'rgba="1 ', 1)
     submission = written(tmp_path, text)
     trials = Trials(LAB6, submission, results_of(submission))
-    full, _ = repaired(trials, REFERENCE_DRAFT)
+    full, _ = repair(trials, REFERENCE_DRAFT)
     monkeypatch.setattr("grader.grading.hints.loading._MAX_STEPS", 1)
     monkeypatch.setattr("grader.grading.hints.loading._MAX_VALUES", 1)
-    first, _ = repaired(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT)
+    first, _ = repair(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT)
     assert (len(first), len(full)) == (1, 2)

@@ -130,7 +130,7 @@ def test_edits_after_which_nothing_can_be_read() -> None:
 
     edit = search(submission).found[0].edits[0]
     trials = Trials(LAB6, replace(submission, reopen=refuse), results_of(submission))
-    assert trials.applied(trials.start, (edit,), whole=True) is None
+    assert trials.apply(trials.start, (edit,), whole=True) is None
 
 
 LAUNCH = "my_robot/launch/my_robot_rviz.launch.py"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grader.robot.inertia import (
     MassProperties,
     Tensor,
-    difference,
+    largest_difference,
     principal_moments,
     shifted,
     solid_inertia,
@@ -108,7 +108,7 @@ def test_principal_moments_are_eigenvalues(inertia: Tensor) -> None:
 @given(_tensor, _tensor)
 def test_the_difference_is_a_norm(a: Tensor, b: Tensor) -> None:
     """The difference of two inertias is the largest moment, in size, of their difference."""
-    assert difference(a, b) == pytest.approx(np.linalg.norm(matrix(a) - matrix(b), 2), abs=1e-12)
+    assert largest_difference(a, b) == pytest.approx(np.linalg.norm(matrix(a) - matrix(b), 2), abs=1e-12)
 
 
 @pytest.mark.parametrize("inertia", [(1e308, 1e308, 0.0, 1e308, 0.0, 1e308), (float("inf"),) * 6, (float("nan"),) * 6])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.robot.edits.readable import is_readable, readable
+from grader.robot.edits.readable import is_readable, readable_values
 
 NUMBERS = (
     ("xyz", "0,15 0 0,225", "0.15 0 0.225", "a decimal comma"),
@@ -26,7 +26,7 @@ NUMBERS = (
 def test_numbers_are_written_as_ros_reads_them(attribute: str, text: str, meant: str, cause: str) -> None:
     """Numbers that ROS 2 cannot read are written as it reads them, named by the first mistake in them."""
     assert not is_readable(attribute, text)
-    found, cause_of, _ = next(readable(attribute, text))
+    found, cause_of, _ = next(readable_values(attribute, text))
     assert is_readable(attribute, found)
     assert (found, cause_of) == (meant, cause)
 
@@ -36,7 +36,7 @@ def test_numbers_are_written_as_ros_reads_them(attribute: str, text: str, meant:
 )
 def test_numbers_are_not_guessed(text: str) -> None:
     """What is no number stands for nothing; numbers that are there are kept, in the count that is needed."""
-    assert {cause for _, cause, _ in readable("xyz", text)} <= {"the count of numbers in xyz"}
+    assert {cause for _, cause, _ in readable_values("xyz", text)} <= {"the count of numbers in xyz"}
 
 
 @pytest.mark.parametrize("text", ["0 0 0.1", " 0.15 0 .2e1", "+1 -2 3."])

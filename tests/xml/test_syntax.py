@@ -7,7 +7,7 @@ import pytest
 from grader.edits import edited
 from grader.source import Source
 from grader.xml.pieces import Rules, remaining, scan
-from grader.xml.syntax import proposals
+from grader.xml.syntax import syntax_proposals
 from tests.examples import light
 from tests.work import limited_work
 
@@ -51,7 +51,7 @@ COSTLY = (1, 5, 7, 11)
 
 def fixed(text: str, *, is_urdf: bool) -> list[tuple[str | None, str]]:
     """Return the texts after the edits that are found, and what was wrong with each."""
-    found = proposals(Source("file", text), is_urdf=is_urdf, is_strict=not is_urdf)
+    found = syntax_proposals(Source("file", text), is_urdf=is_urdf, is_strict=not is_urdf)
     return [(edited(text, "file", proposal.edits), proposal.cause) for proposal in found]
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from grader.checks.measures.fact import Fact, Omission, exact, length, lengths, of_links, shown, whole_angle
+from grader.checks.measures.fact import Fact, Omission, exact, in_title, length, lengths, of_links, whole_angle
 from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
@@ -65,7 +65,7 @@ collisions_as_shown = of_links(_collisions_as_shown)
 def _mass(link: str, mass: float) -> Fact:
     least = abs(mass) * _SHARE
     tolerance = {"tolerance": exact(least)} if least < _MASS_TOLERANCE else {}
-    title = f"The mass of {link} is {shown([mass])} kg"
+    title = f"The mass of {link} is {in_title([mass])} kg"
     return Fact(link, "mass", title, "mass_is", {"link": link, "mass": mass, **tolerance})
 
 
@@ -84,13 +84,14 @@ def _numbers_of(link: str, inertial: Inertial) -> Iterator[Fact]:
     if min(inertial.inertia[index] for index in _DIAGONAL) <= 0:
         return
     moments = dict(zip(_MOMENTS, map(exact, inertial.inertia), strict=True))
-    title = f"The inertia of {link} is {', '.join(f'{key} {shown([value])}' for key, value in moments.items())} kg m^2"
+    parts = ", ".join(f"{key} {in_title([value])}" for key, value in moments.items())
+    title = f"The inertia of {link} is {parts} kg m^2"
     tolerance = exact(max(map(abs, moments.values())) * _INERTIA_SHARE)
     yield _element(
         link, "inertia", title, "inertial/inertia", {f"@{key}": it for key, it in moments.items()}, tolerance
     )
     if any(inertial.origin.xyz):
-        xyz = shown(lengths(inertial.origin.xyz))
+        xyz = in_title(lengths(inertial.origin.xyz))
         title = f"The centre of mass of {link} is at {xyz} m in its frame"
         yield _element(link, "mass-centre", title, "inertial/origin", {"@xyz": xyz}, _CENTRE_TOLERANCE)
 
@@ -101,21 +102,20 @@ def _collision(link: str, collision: Collision, index: int, *, only: bool) -> Fa
     shape: dict[str, Any]
     match collision.geometry:
         case Box(size=size):
-            shape, what = {"box": lengths(size)}, f"box {shown(size)} m"
+            shape, what = {"box": lengths(size)}, f"box {in_title(size)} m"
         case Cylinder(radius=radius, length=long):
             shape = {"cylinder": [length(radius), length(long)]}
-            what = f"cylinder of radius {shown([radius])} m and length {shown([long])} m"
+            what = f"cylinder of radius {in_title([radius])} m and length {in_title([long])} m"
         case Sphere(radius=radius):
-            shape, what = {"sphere": length(radius)}, f"sphere of radius {shown([radius])} m"
+            shape, what = {"sphere": length(radius)}, f"sphere of radius {in_title([radius])} m"
         case Mesh(filename=file, scale=scale):
             values = {"geometry/mesh/@filename": readable(file)}
-            values |= {"geometry/mesh/@scale": shown(scale)} if scale != (1.0, 1.0, 1.0) else {}
-            values |= {"origin/@xyz": shown(xyz)} if any(xyz) else {}
-            title = (
-                f"{link} collides as a mesh {readable(file)}{f' at {shown(xyz)} m in its frame' if any(xyz) else ''}"
-            )
+            values |= {"geometry/mesh/@scale": in_title(scale)} if scale != (1.0, 1.0, 1.0) else {}
+            values |= {"origin/@xyz": in_title(xyz)} if any(xyz) else {}
+            at = f" at {in_title(xyz)} m in its frame" if any(xyz) else ""
+            title = f"{link} collides as a mesh {readable(file)}{at}"
             return _element(link, aspect, title, "collision", values, _CENTRE_TOLERANCE)
-    title = f"{link} collides as a {what}{f' at {shown(xyz)} m in its frame' if any(xyz) else ''}"
+    title = f"{link} collides as a {what}{f' at {in_title(xyz)} m in its frame' if any(xyz) else ''}"
     place = {"xyz": xyz, "rpy": [whole_angle(angle) for angle in collision.origin.rpy]}
     return Fact(
         link, aspect, title, "collides_as", {"link": link, **shape, **place, **({"only": True} if only else {})}

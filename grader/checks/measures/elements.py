@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
-from grader.checks.measures.fact import Fact, Facts, Omission, Solution, shown
+from grader.checks.measures.fact import Fact, Facts, Omission, Solution, in_title
 from grader.package.launch.places import is_of_one_machine
 from grader.text import enumerated
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import name_of, readable
+from grader.xml.wanted_element import name_of, readable, text_in
 
 _FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _OF_CONTINUOUS = ("@effort", "@velocity")
@@ -29,7 +29,7 @@ def elements(solution: Solution) -> Facts:
     root = solution.reading.root
     if root is None:
         return
-    used = texts_in(root)
+    used = foreign_words(root)
     for element in _children(root):
         if name_of(element) in _FOREIGN:
             size = sum(1 + len(inner.attrib) for inner in element.iter())
@@ -47,7 +47,7 @@ def _fact_of_joint(joint: Element, child: Element, *, is_used: bool) -> Facts:
     tag = name_of(child)
     is_limit = tag == "limit" and joint.get("type") == "continuous"
     if tag in _IN_JOINTS or is_limit:
-        values = {key: value for key, value in values_of(child).items() if not is_limit or key in _OF_CONTINUOUS}
+        values = {key: value for key, value in values_by_path(child).items() if not is_limit or key in _OF_CONTINUOUS}
         if is_used:
             yield _fact(joint, tag, values, _label(joint, child))
         elif values:
@@ -64,11 +64,11 @@ def _facts_in(element: Element) -> Iterator[Fact]:
         if _children(child) or child.attrib:
             deep.append(child)
         else:
-            _add(plain, name_of(child), _value(_text(child)))
+            _add(plain, name_of(child), _value(text_in(child)))
     if plain or not deep:
         yield _fact(element, "", plain, _label(element))
     for child in deep:
-        yield _fact(element, name_of(child), values_of(child), _label(element, child))
+        yield _fact(element, name_of(child), values_by_path(child), _label(element, child))
 
 
 def _fact(element: Element, path: str, values: ElementValues, label: str) -> Fact:
@@ -85,22 +85,22 @@ def _fact(element: Element, path: str, values: ElementValues, label: str) -> Fac
 def _title(element: Element, path: str, values: ElementValues) -> str:
     """Return a title: "<gazebo> of camera_link has <sensor> with type camera, update_rate 30 and 8 more"."""
     owner = f"<{name_of(element)}>{f' of {_name(element)}' if _name(element) else ''}"
-    listed = enumerated([f"{key.lstrip('@')} {_shown(value)}" for key, value in values.items()], _MAX_LISTED)
+    listed = enumerated([f"{key.lstrip('@')} {_value_text(value)}" for key, value in values.items()], _MAX_LISTED)
     if not path:
         return f"{owner} has {listed}" if listed else f"There is a {owner}"
     return f"{owner} has <{path}>{f' with {listed}' if listed else ''}"
 
 
-def values_of(element: Element, path: str = "") -> ElementValues:
+def values_by_path(element: Element, path: str = "") -> ElementValues:
     """Return all attributes and texts in an element by their paths; of repeated ones a list."""
     found: ElementValues = {}
     for key, text in element.attrib.items():
         _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
         inner = f"{path}{name_of(child)}"
-        if not _children(child) and (_text(child) or not child.attrib):
-            _add(found, inner, _value(_text(child)))
-        for key, value in values_of(child, f"{inner}/").items():
+        if not _children(child) and (text_in(child) or not child.attrib):
+            _add(found, inner, _value(text_in(child)))
+        for key, value in values_by_path(child, f"{inner}/").items():
             _add(found, key, value)
     return found
 
@@ -130,10 +130,6 @@ def _children(element: Element) -> list[Element]:
     return [child for child in element if isinstance(child.tag, str)]
 
 
-def _text(element: Element) -> str:
-    return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
-
-
 def _name(element: Element) -> str:
     return next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), "")
 
@@ -143,18 +139,18 @@ def _label(*elements: Element) -> str:
     return " ".join(f"{name_of(element)} {_name(element)}" for element in elements)
 
 
-def _shown(value: Any) -> str:
+def _value_text(value: Any) -> str:
     match value:
         case bool():
             return str(value).lower()
         case int() | float():
-            return shown([value])
+            return in_title([value])
         case list():
-            return " and ".join(map(_shown, value))
+            return " and ".join(map(_value_text, value))
     return str(value)
 
 
-def texts_in(root: Element) -> set[str]:
+def foreign_words(root: Element) -> set[str]:
     """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
     found: set[str] = set()
     for element in _children(root):

@@ -156,11 +156,11 @@ def whole_angle(angle: float) -> float:
     return round(radians(whole_degrees(angle)), 4) + 0.0
 
 
-def shown(values: Iterable[float]) -> str:
+def in_title(values: Iterable[float]) -> str:
     """Return numbers for a title: 0.15 0 0.225."""
     return " ".join(f"{value + 0.0:.6g}" for value in values)
 
 
-def is_same(one: float, other: float) -> bool:
+def is_same_number(one: float, other: float) -> bool:
     """Return whether two numbers are equal up to rounding."""
     return isclose(one, other, rel_tol=1e-6, abs_tol=1e-9)

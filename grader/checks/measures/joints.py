@@ -4,7 +4,7 @@ from collections import Counter
 from math import isfinite
 from typing import Any
 
-from grader.checks.measures.elements import texts_in
+from grader.checks.measures.elements import foreign_words
 from grader.checks.measures.fact import (
     THE_FILE,
     THE_ROBOT,
@@ -13,10 +13,10 @@ from grader.checks.measures.fact import (
     Solution,
     direction,
     exact,
+    in_title,
     length,
     lengths,
     of_joints,
-    shown,
     whole_angle,
     whole_degrees,
 )
@@ -39,8 +39,8 @@ def _frame(solution: Solution, joint: Joint) -> Fact:
     link, parent = joint.child, joint.parent
     pose = solution.robot.pose(link, relative_to=parent)
     xyz, rpy = lengths(pose.translation), [whole_angle(angle) for angle in pose.rpy]
-    title = f"The frame {link} is at {shown(xyz)} m in {parent}"
-    title += f", turned by rpy {shown(map(whole_degrees, pose.rpy))} degrees" if any(rpy) else ", not turned"
+    title = f"The frame {link} is at {in_title(xyz)} m in {parent}"
+    title += f", turned by rpy {in_title(map(whole_degrees, pose.rpy))} degrees" if any(rpy) else ", not turned"
     arguments = {"link": link, "relative_to": parent, "xyz": xyz, **({"rpy": rpy} if any(rpy) else {})}
     return Fact(link, "frame", title, "frame_at", arguments)
 
@@ -51,7 +51,7 @@ def _axis(solution: Solution, joint: Joint) -> Fact | None:
     link, parent = joint.child, joint.parent
     along = direction(solution.robot.pose(link, relative_to=parent).rotate(solution.robot.axis(joint)))
     verb = "slides along" if joint.type == "prismatic" else "turns about"
-    title = f"The joint of {link} {verb} {shown(along)} in {parent}"
+    title = f"The joint of {link} {verb} {in_title(along)} in {parent}"
     return Fact(link, "axis", title, "joint_axis", {"link": link, "relative_to": parent, "direction": along})
 
 
@@ -61,14 +61,17 @@ def _limits(solution: Solution, joint: Joint) -> Fact | None:
     if limit is None or not (turns or joint.type == "prismatic"):
         return None
     lower, upper = ((whole_degrees if turns else length)(end) for end in (limit.lower, limit.upper))
-    title = f"The joint of {joint.child} {'turns' if turns else 'slides'} from {shown([lower])} to {shown([upper])}"
+    verb = "turns" if turns else "slides"
+    title = f"The joint of {joint.child} {verb} from {in_title([lower])} to {in_title([upper])}"
     title += " degrees" if turns else " m"
     arguments: dict[str, Any] = {"link": joint.child, "lower": lower, "upper": upper}
     given = {"effort": limit.effort, "velocity": limit.velocity}
     arguments |= {name: exact(value) for name, value in given.items() if isfinite(value)}
     units = ("N m", "rad/s") if turns else ("N", "m/s")
     title += "".join(
-        f", {name} {shown([given[name]])} {unit}" for name, unit in zip(given, units, strict=True) if name in arguments
+        f", {name} {in_title([given[name]])} {unit}"
+        for name, unit in zip(given, units, strict=True)
+        if name in arguments
     )
     return Fact(
         joint.child, "limits", title, "joint_limits", arguments | ({} if turns else {"tolerance": _SLIDING_TOLERANCE})
@@ -80,7 +83,7 @@ def _dynamics(solution: Solution, joint: Joint) -> Fact | None:
     if joint.dynamics is None or joint.type == "fixed":
         return None
     friction, damping = exact(joint.dynamics.friction), exact(joint.dynamics.damping)
-    title = f"The joint of {joint.child} has friction {shown([friction])} and damping {shown([damping])}"
+    title = f"The joint of {joint.child} has friction {in_title([friction])} and damping {in_title([damping])}"
     return Fact(
         joint.child,
         "dynamics",
@@ -97,7 +100,7 @@ def _mimic(solution: Solution, joint: Joint) -> Fact | None:
     multiplier, offset = exact(joint.mimic.multiplier), exact(joint.mimic.offset)
     title = (
         f"The joint of {joint.child} mimics that of {leader}, "
-        f"multiplier {shown([multiplier])}, offset {shown([offset])}"
+        f"multiplier {in_title([multiplier])}, offset {in_title([offset])}"
     )
     arguments = {"link": joint.child, "leader": leader, "multiplier": multiplier, "offset": offset}
     return Fact(joint.child, "mimic", title, "mimics", arguments)
@@ -157,7 +160,7 @@ def motions(solution: Solution) -> Facts:
 
 def names(solution: Solution) -> Facts:
     """Yield the names of joints that other elements use."""
-    words = texts_in(solution.reading.root) if solution.reading.root is not None else set()
+    words = foreign_words(solution.reading.root) if solution.reading.root is not None else set()
     joints = {solution.joints[link.name].name: link.name for link in solution.links if link.name in solution.joints}
     used = {name: link for name, link in joints.items() if name in words}
     if used:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from grader.checks.measures.fact import THE_PACKAGE, Fact, Facts, Measure, Solution
-from grader.package.launch.model import Launch, StartedNode
+from grader.package.launch.model import Launch
 from grader.package.package import Package
 from grader.package.rviz import RvizFile
 from grader.text import enumerated
@@ -27,7 +27,7 @@ def _fact(subject: str, aspect: str, title: str, check: str, **arguments: Any) -
     return Fact(subject, aspect, title, check, arguments, about=THE_PACKAGE, of_package=True)
 
 
-def _installed(kind: str, path: str) -> Fact:
+def _install_fact(kind: str, path: str) -> Fact:
     name = posixpath.basename(path)
     return _fact(f"installs {name}", "", f"A build installs {name}", "build_installs", kind=kind, name=name)
 
@@ -53,12 +53,12 @@ def installed_files(solution: Solution) -> Facts:
     if package is None or path is None:
         return
     if package.holds(path):
-        yield _installed("urdf", path)
-    yield from (_installed("launch", path) for path in package.launch_files)
-    yield from (_installed("rviz", path) for path in package.rviz_files)
+        yield _install_fact("urdf", path)
+    yield from (_install_fact("launch", path) for path in package.launch_files)
+    yield from (_install_fact("rviz", path) for path in package.rviz_files)
 
 
-def _installed_folders(package: Package) -> Iterator[Fact]:
+def _folder_facts(package: Package) -> Iterator[Fact]:
     """Yield a fact for each folder of other files that a build installs, such as meshes."""
     folders: dict[str, None] = {}
     for path in package.installed.values():
@@ -74,15 +74,15 @@ def _launch_files(package: Package) -> Iterator[Fact]:
         yield _fact(name, "found", f"There is a launch file {name}", "launch_found", name=name)
 
 
-def _started_nodes(package: Package) -> Iterator[Fact]:
+def _node_facts(package: Package) -> Iterator[Fact]:
     for path in package.launch_files:
-        name, nodes = posixpath.basename(path), _started(package.launch(path))
+        name, nodes = posixpath.basename(path), _nodes_that_start(package.launch(path))
         if nodes:
             title = f"{name} starts {enumerated(nodes)}"
             yield _fact(name, "nodes", title, "launch_starts", name=name, nodes=nodes)
 
 
-def _opened_files(package: Package) -> Iterator[Fact]:
+def _file_facts(package: Package) -> Iterator[Fact]:
     for path in package.launch_files:
         name = posixpath.basename(path)
         if package.launch(path).named("urdf", "rviz", "include"):
@@ -90,15 +90,11 @@ def _opened_files(package: Package) -> Iterator[Fact]:
             yield _fact(name, "files", title, "launch_finds_files", name=name)
 
 
-def _started(launch: Launch) -> list[str]:
+def _nodes_that_start(launch: Launch) -> list[str]:
     """Return the nodes that start, with what a condition replaces: joint_state_publisher for its GUI, for example."""
-    names = {when: list(dict.fromkeys(_node(it) for it in launch.nodes if it.when is when)) for when in (True, False)}
+    names = {when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when)) for when in (True, False)}
     alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
     return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
-
-
-def _node(node: StartedNode) -> str:
-    return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"
 
 
 def _rviz(package: Package) -> Iterator[tuple[str, RvizFile, Mapping[str, Any]]]:
@@ -116,14 +112,14 @@ def _rviz_files(package: Package) -> Iterator[Fact]:
         yield _fact(name, "found", f"There is an RViz file {name}", "rviz_found", **of)
 
 
-def _fixed_frames(package: Package) -> Iterator[Fact]:
+def _frame_facts(package: Package) -> Iterator[Fact]:
     for name, rviz, of in _rviz(package):
         if rviz.fixed_frame:
             title = f"The Fixed Frame of {name} is {rviz.fixed_frame}"
             yield _fact(name, "frame", title, "rviz_fixed_frame", **of, frame=rviz.fixed_frame)
 
 
-def _shown_robots(package: Package) -> Iterator[Fact]:
+def _robot_facts(package: Package) -> Iterator[Fact]:
     for name, rviz, of in _rviz(package):
         if any(display.enabled and display.kind == "RobotModel" for display in rviz.displays):
             topic = _topic(rviz)
@@ -150,11 +146,11 @@ def _topic(rviz: RvizFile) -> str:
 names = _of_package(_names)
 build_types = _of_package(_build_types)
 setup_names = _of_package(_setup_names)
-installed_folders = _of_package(_installed_folders)
+installed_folders = _of_package(_folder_facts)
 launch_files = _of_package(_launch_files)
-started_nodes = _of_package(_started_nodes)
-opened_files = _of_package(_opened_files)
+started_nodes = _of_package(_node_facts)
+opened_files = _of_package(_file_facts)
 rviz_files = _of_package(_rviz_files)
-fixed_frames = _of_package(_fixed_frames)
-shown_robots = _of_package(_shown_robots)
+fixed_frames = _of_package(_frame_facts)
+shown_robots = _of_package(_robot_facts)
 displays = _of_package(_displays)

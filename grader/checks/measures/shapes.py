@@ -3,7 +3,17 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.checks.measures.fact import Fact, Measure, Omission, direction, is_same, length, lengths, of_links, shown
+from grader.checks.measures.fact import (
+    Fact,
+    Measure,
+    Omission,
+    direction,
+    in_title,
+    is_same_number,
+    length,
+    lengths,
+    of_links,
+)
 from grader.checks.mesh_files import mesh_file
 from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
@@ -107,20 +117,20 @@ colours = of_links(_colours)
 def _box(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
     assert isinstance(visual.geometry, Box)
     edges = _along_axes(visual, visual.geometry)
-    return "shows_box", {"size": edges}, f"box {' x '.join(shown([edge]) for edge in edges)} m"
+    return "shows_box", {"size": edges}, f"box {' x '.join(in_title([edge]) for edge in edges)} m"
 
 
 def _cylinder(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
     assert isinstance(visual.geometry, Cylinder)
     radius, long = length(abs(visual.geometry.radius)), length(abs(visual.geometry.length))
-    title = f"cylinder of radius {shown([radius])} m and length {shown([long])} m"
+    title = f"cylinder of radius {in_title([radius])} m and length {in_title([long])} m"
     return "shows_cylinder", {"radius": radius, "length": long}, title
 
 
 def _sphere(visual: Visual) -> tuple[str, Mapping[str, Any], str]:
     assert isinstance(visual.geometry, Sphere)
     radius = length(abs(visual.geometry.radius))
-    return "shows_sphere", {"radius": radius}, f"sphere of radius {shown([radius])} m"
+    return "shows_sphere", {"radius": radius}, f"sphere of radius {in_title([radius])} m"
 
 
 _SIZES: Mapping[type[Geometry], Callable[[Visual], tuple[str, Mapping[str, Any], str]]] = {
@@ -143,13 +153,13 @@ def _place(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) ->
     """Return where a shape is in its link, and how the axis of a cylinder, or of a box that is turned, lies."""
     xyz = lengths(visual.origin.xyz)
     arguments: dict[str, Any] = {}
-    title = f"The centre of the {kind} of {link} is at {shown(xyz)} m in its frame"
+    title = f"The centre of the {kind} of {link} is at {in_title(xyz)} m in its frame"
     if isinstance(visual.geometry, Cylinder):
         x, y, z = (rotation_from_rpy(visual.origin.rpy)[index] for index in (2, 5, 8))
         axis = direction((x, y, z))
-        arguments = {"axis": axis} if not is_same(abs(z), 1.0) else {}
+        arguments = {"axis": axis} if not is_same_number(abs(z), 1.0) else {}
         arguments["angle"] = 1.0
-        title += f", its axis along {shown(axis if arguments.get('axis') else _Z)}"
+        title += f", its axis along {in_title(axis if arguments.get('axis') else _Z)}"
     place = {"link": link, **selected, "relative_to": link, "xyz": xyz, **arguments}
     return Fact(link, f"{kind}-place" if selected else "place", title, "centre_at", place)
 
@@ -159,7 +169,7 @@ def _colour(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) -
         return
     channels = [round(channel, 4) for channel in visual.material.rgba]
     what = f"{kind} of {link}" if selected else link
-    title = f"{'The ' if selected else ''}{what} is shown in rgba {shown(channels)}"
+    title = f"{'The ' if selected else ''}{what} is shown in rgba {in_title(channels)}"
     aspect = f"{kind}-colour" if selected else "colour"
     yield Fact(link, aspect, title, "shows_colour", {"link": link, **selected, "colour": channels})
 
@@ -170,7 +180,7 @@ def _mesh(link: str, visual: Visual, number: int) -> Fact:
     file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
     scale, xyz, rpy = lengths(mesh.scale), lengths(visual.origin.xyz), lengths(visual.origin.rpy)
     title = f"{link} shows the mesh {file}"
-    title += f", scaled by {shown(scale)}" if scale != [1.0, 1.0, 1.0] else ""
-    title += f", at {shown(xyz)} m in its frame" if any(xyz) else ""
+    title += f", scaled by {in_title(scale)}" if scale != [1.0, 1.0, 1.0] else ""
+    title += f", at {in_title(xyz)} m in its frame" if any(xyz) else ""
     arguments = {"link": link, "file": file, "scale": scale, "xyz": xyz, "rpy": rpy}
     return Fact(link, f"mesh-{number + 1}" if number else "mesh", title, "shows_mesh", arguments)

@@ -11,7 +11,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.hints.slots import slots
 from grader.grading.hints.solving import Solver
 from grader.grading.hints.state_edits import StateEdits
-from grader.grading.hints.trials import State, Trials, as_one, joined
+from grader.grading.hints.trials import State, Trials, as_one, join
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
@@ -52,12 +52,12 @@ class EditChoice:
         options, name = self._options_of(state), criterion.id
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(options, options.relevant(criterion), name),
-            lambda: self._suggested(options, criterion),
+            lambda: self._suggestions(options, criterion),
             lambda: self._package_edits(options, criterion),
-            lambda: self._repaired(options, criterion, SOLVED),
-            lambda: self._solved(options, criterion),
+            lambda: self._repairs(options, criterion, SOLVED),
+            lambda: self._solutions(options, criterion),
             lambda: self._other_frames(options, criterion),
-            lambda: self._repaired(options, criterion, STRUCTURE),
+            lambda: self._repairs(options, criterion, STRUCTURE),
             lambda: self._together(options, criterion),
         )
         best: Proven | None = None
@@ -73,12 +73,9 @@ class EditChoice:
         if options.draft is None or len(options.lost) < _MIN_WHOLE:
             return None
         pieces = [piece for piece in conventions(options.difference) if len(options.passing(piece)) >= _MIN_WHOLE - 1]
-        for piece in sorted(pieces, key=lambda piece: -len(options.passing(piece))):
-            for proposal in islice(options.proposals(piece), 1):
-                after = self._trials.applied(state, proposal.edits)
-                if after is not None and not after.lost:
-                    return proposal
-        return None
+        pieces.sort(key=lambda piece: -len(options.passing(piece)))
+        firsts = (it for piece in pieces for it in islice(options.proposals(piece), 1))
+        return next((it for it in firsts if self._trials.loses_nothing(state, it.edits)), None)
 
     def _best(self, state: State, name: str, proposals: Iterable[Proposal]) -> Proven | None:
         """Return the proven edit that gains most, of equals the smallest; one that gains all ends the search."""
@@ -92,7 +89,7 @@ class EditChoice:
         return min(found, key=_order, default=None)
 
     def _proven(self, state: State, proposal: Proposal, name: str) -> Proven | None:
-        after = self._trials.applied(state, proposal.edits)
+        after = self._trials.apply(state, proposal.edits)
         if after is None or after.lost or after.results[name].outcome.status != "passed":
             return None
         return Proven(proposal, after.score - state.score)
@@ -114,7 +111,7 @@ class EditChoice:
         if options.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(options, other_frames(options.difference), criterion.id)
 
-    def _suggested(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+    def _suggestions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the edits that the check suggests itself."""
         place = criterion.check.about.suggests
         if options.draft is not None and place:
@@ -130,20 +127,20 @@ class EditChoice:
             if self._trials.passing(options.state, proposal.edits, (criterion.id,)):
                 yield proposal
 
-    def _solved(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+    def _solutions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         if options.draft is None or criterion.check.subject != "robot":
             return
         shown, moved = options.targets(criterion)
         solver = Solver(options.quick, options.difference, criterion.id, options.state.results[criterion.id].outcome)
         yield from self._passing(options, solver.pieces(slots(options.draft, shown, moved)), criterion.id)
 
-    def _repaired(self, options: StateEdits, criterion: Criterion, rank: int) -> Iterator[Proposal]:
+    def _repairs(self, options: StateEdits, criterion: Criterion, rank: int) -> Iterator[Proposal]:
         """Yield two edits up to a rank: the first makes a criterion pass and others fail, which the second repairs."""
         name = criterion.id
         plausible = [piece for piece in options.relevant(criterion) if piece.rank <= rank]
         firsts = [piece for piece in plausible if name in options.passing(piece)]
         for first in islice((it for piece in firsts for it in islice(options.proposals(piece), 1)), _MAX_FIRST):
-            middle = self._trials.applied(options.state, first.edits)
+            middle = self._trials.apply(options.state, first.edits)
             if middle is None or not middle.lost:
                 continue
             broken = middle.lost
@@ -152,7 +149,7 @@ class EditChoice:
             for piece in other.relevant(target):
                 if piece.rank <= rank and broken in other.passing(piece, (broken,)):
                     for second in islice(other.proposals(piece), 1):
-                        edits = joined(options.state.submission, first.edits, second.edits)
+                        edits = join(options.state.submission, first.edits, second.edits)
                         yield as_one([first, second], edits)
 
     def _together(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
@@ -165,8 +162,7 @@ class EditChoice:
             self.causes[criterion.id] = list(dict.fromkeys(piece.cause for piece in kept))[:_MAX_PLACES]
         elif len(kept) > 1:
             proposals = [it for piece in kept for it in islice(options.proposals(piece), 1)]
-            if len(proposals) == len(kept):
-                yield as_one(proposals, tuple(edit for it in proposals for edit in it.edits))
+            yield as_one(proposals, tuple(edit for it in proposals for edit in it.edits))
 
     def _fewest(self, options: StateEdits, pieces: list[Piece], name: str) -> list[Piece]:
         """Return few of these pieces with which a criterion passes; none if it does not pass with all of them."""

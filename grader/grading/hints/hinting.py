@@ -60,7 +60,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
             text = message(found, level, submission, shown_by)
             hints[name] = _hint(found, text, shown_by(found), keeps_edits=keep_edits or level == "edit")
     causes = search.causes if level in ("cause", "edit") else {}
-    with_hints = [_explained(result, hints.get(result.criterion.id), causes) for result in report.results]
+    with_hints = [_explain(result, hints.get(result.criterion.id), causes) for result in report.results]
     is_complete = search.is_complete or submission.is_costly
     report = replace(report, results=tuple(with_hints), hints_complete=is_complete)
     return HintedReport(report, search.final.edits, trials.faults)
@@ -80,7 +80,7 @@ def fixed(found: HintedReport, submission: Submission) -> Fix:
     return Fix(files, grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single), why_nothing)
 
 
-def _explained(result: Result, hint: Hint | None, causes: Mapping[str, list[str]]) -> Result:
+def _explain(result: Result, hint: Hint | None, causes: Mapping[str, list[str]]) -> Result:
     """Return a result with its hint; without one, its message says what is wrong at several places."""
     if hint is not None:
         return result._replace(hint=hint)

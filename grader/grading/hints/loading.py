@@ -5,7 +5,7 @@ from itertools import chain, islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.trials import State, Trials, joined
+from grader.grading.hints.trials import State, Trials, join
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
@@ -17,7 +17,7 @@ from grader.source import Edits
 from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
 from grader.xml.pieces import remaining
-from grader.xml.syntax import proposals as syntax_proposals
+from grader.xml.syntax import syntax_proposals
 
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # kinds of edits of one step that are graded, to choose the best
@@ -54,7 +54,7 @@ def _loose(robot: Robot | None) -> int:
     return len(robot.links) - len({joint.child for joint in robot.joints}) if robot is not None else 0
 
 
-def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], State]:
+def repair(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], State]:
     """Return the repairs of a URDF as it is, without edits where one needs those before it; and the state after all.
 
     Raises NoTrialsLeft.
@@ -62,10 +62,10 @@ def repaired(trials: Trials, reference: Draft | None) -> tuple[list[Proposal], S
     final = trials.start
     taken: list[Proposal] = []
     for step in _steps(trials, reference):
-        edits = joined(trials.start.submission, final.edits, step.proposal.edits)
+        edits = join(trials.start.submission, final.edits, step.proposal.edits)
         taken.append(step.proposal._replace(edits=_alone(edits, final.edits)))
         final = step.after._replace(edits=edits)
-    return _grouped(taken), final
+    return _group(taken), final
 
 
 def _steps(trials: Trials, reference: Draft | None) -> Iterator[LoadingStep]:
@@ -125,7 +125,7 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     better: list[tuple[Defects, int, Proposal]] = []
     complete: list[str] = []
     for order, proposal in enumerate(proposals):
-        edited = trials.edited(state, proposal.edits)
+        edited = trials.edit(state, proposal.edits)
         urdf = edited.urdf if edited is not None else None
         left = defects(urdf.loaded) if isinstance(urdf, Read) else now
         if left < now:
@@ -139,14 +139,14 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     near = [(left, it) for left, _, it in better if it.cause in causes][: _MAX_VALUES if is_read else 1]
     ranked = []
     for left, proposal in near:
-        after = trials.applied(state, proposal.edits)
+        after = trials.apply(state, proposal.edits)
         if after is not None and not after.lost:
             rank = (left[0] < 0, after.score, tuple(-count for count in left), -proposal.way, -proposal.size)
             ranked.append((rank, LoadingStep(proposal, state, after)))
     return max(ranked, key=lambda found: found[0])[1] if ranked else None
 
 
-def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
+def _group(proposals: Iterable[Proposal]) -> list[Proposal]:
     """Return steps with those that correct the same mistake as one; what is added for one link stays apart."""
     groups: dict[tuple[str, str, str], list[Proposal]] = {}
     for proposal in proposals:

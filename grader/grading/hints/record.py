@@ -25,7 +25,7 @@ def hints_to_record(report: Report) -> str:
         if result.hint is not None:
             hints[result.hint.shown_by] = result.hint
             criteria.setdefault(result.hint.shown_by, []).append(result.criterion.id)
-    stored = [_stored(hint, criteria[name], report.submission.path) for name, hint in hints.items()]
+    stored = [_data_of(hint, criteria[name], report.submission.path) for name, hint in hints.items()]
     return json.dumps({"hints": stored, "complete": report.hints_complete}, separators=(",", ":"))
 
 
@@ -50,18 +50,18 @@ def add_stored_hints(report: Report, text: str) -> Report:
     hints: dict[str, Hint] = {}
     for stored in record["hints"]:
         hint = _hint(stored)
-        edits = tuple(_moved(edit, main) for edit in hint.edits) if level == "edit" else ()
+        edits = tuple(_with_path(edit, main) for edit in hint.edits) if level == "edit" else ()
         at = replace(hint.at, path=hint.at.path or main)
         hints |= dict.fromkeys(stored["criteria"], hint._replace(at=at, edits=edits))
     results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results, hints_complete=record["complete"])
 
 
-def _moved(edit: Edit, main: str) -> Edit:
+def _with_path(edit: Edit, main: str) -> Edit:
     return edit if edit.path != _MAIN else edit._replace(path=main)
 
 
-def _stored(hint: Hint, criteria: list[str], main: str | None) -> dict[str, Any]:
+def _data_of(hint: Hint, criteria: list[str], main: str | None) -> dict[str, Any]:
     return {
         **hint._asdict(),
         "at": (_MAIN if hint.at.path == main else hint.at.path, hint.at.line, hint.at.column),

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
 from grader.grading.hints.choice import EditChoice
-from grader.grading.hints.trials import NoTrialsLeft, Results, State, Trials, as_one, costs_of, gained, joined
+from grader.grading.hints.trials import NoTrialsLeft, Results, State, Trials, as_one, costs_of, gains_of, join
 from grader.grading.missing_work import is_another_robot, robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
@@ -75,10 +75,10 @@ class HintSearch:
     def _convention(self) -> None:
         """Correct a convention of the whole robot first: one hint instead of one for each consequence."""
         best = None if self._is_another_robot else self._choice.convention(self.final)
-        after = self.trials.applied(self.final, best.edits) if best is not None else None
-        name = next(iter(gained(self.final.results, after.results))) if after is not None else ""
+        after = self.trials.apply(self.final, best.edits) if best is not None else None
+        name = next(iter(gains_of(self.final.results, after.results))) if after is not None else ""
         if best is not None and after is not None and self._prove(self.final, best, name):
-            self.final = after._replace(edits=joined(self.trials.start.submission, self.final.edits, best.edits))
+            self.final = after._replace(edits=join(self.trials.start.submission, self.final.edits, best.edits))
 
     def _rounds(self) -> None:
         for is_solving in (False, True):  # what the reference has comes first
@@ -99,10 +99,10 @@ class HintSearch:
             if best is None or not self._prove(state, best, name):
                 self._given_up.add((state.edits, name, is_solving))
                 continue
-            after = self.trials.applied(state, (*taken, *best.edits), current.results)
+            after = self.trials.apply(state, (*taken, *best.edits), current.results)
             if after is not None and not after.lost:
                 taken, current = after.edits, after
-                self.final = current._replace(edits=joined(self.trials.start.submission, state.edits, taken))
+                self.final = current._replace(edits=join(self.trials.start.submission, state.edits, taken))
         return bool(taken)
 
     def _load(self) -> None:
@@ -110,12 +110,12 @@ class HintSearch:
         urdf = self.final.submission.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and not _has_remains(urdf.loaded):
             return
-        from grader.grading.hints.loading import repaired  # late: most robots load
+        from grader.grading.hints.loading import repair  # late: most robots load
 
-        repairs, self.final = repaired(self.trials, self._reference)
+        repairs, self.final = repair(self.trials, self._reference)
         is_each = len(repairs) > 1 and [self._add(it, it.edits) for it in repairs if it.edits] == [True] * len(repairs)
         known = {name for found in self.found for name in found.gains}
-        if set(gained(self.trials.start.results, self.final.results)) - known:
+        if set(gains_of(self.trials.start.results, self.final.results)) - known:
             whole, after = (_UNION, tuple(self.found)) if is_each else (as_one(repairs, self.final.edits), ())
             self._add(whole, self.final.edits, after=after)
 
@@ -127,10 +127,10 @@ class HintSearch:
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
         """Add a proven edit of the submission as it is: alone, else together with one or all of those before it."""
         submission = self.trials.start.submission
-        all_edits = joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
+        all_edits = join(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
         if len(alone) + len(state.edits) == len(all_edits):
-            tried = ((joined(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found))
+            tried = ((join(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found))
             if self._add(proposal, alone, name) or any(self._add(proposal, edits, name, it) for edits, it in tried):
                 return True
         return self._add(proposal, all_edits, name, tuple(self.found))
@@ -138,10 +138,10 @@ class HintSearch:
     def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:
         """Add edits if they, graded from scratch, gain the points of a criterion; return whether they do."""
         start = self.trials.start
-        state = self.trials.applied(start, edits, whole=True)
+        state = self.trials.apply(start, edits, whole=True)
         if state is None or state.lost:
             return False
-        gains = gained(start.results, state.results)
+        gains = gains_of(start.results, state.results)
         edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed or creates(start.submission, edit))
         is_proven = bool(gains) and name in (*gains, "")
         if is_proven:

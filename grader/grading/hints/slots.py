@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of
-from grader.robot.edits.numbers import Values, values_of, written
+from grader.robot.edits.numbers import Values, format_numbers, values_of
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, TAGS
 
@@ -21,7 +21,7 @@ class Slot(NamedTuple):
     values: Values
     unit: str
 
-    def sets(self, values: Values, text: Callable[[Values], str] = written) -> tuple[Set, ...]:
+    def sets(self, values: Values, text: Callable[[Values], str] = format_numbers) -> tuple[Set, ...]:
         """Return what is set to give the numbers these values."""
         if len(self.attributes) == 1:
             return (Set(self.owner, self.tag, self.attributes[0], text(values)),) if values != self.values else ()
@@ -31,10 +31,10 @@ class Slot(NamedTuple):
 
 def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[Slot]:
     """Yield the numbers of the joints that move links, and of what links show."""
-    links = _known(map(draft.link, shown))
+    links = _without_none(map(draft.link, shown))
     parts = [part for own in links for part in own.iterchildren("visual", "inertial")]
     colours = (draft.material(used.get("name") or "") for part in parts for used in part.iterchildren("material"))
-    for owner in (*_known(map(draft.joint_of, moved)), *parts, *_known(colours)):
+    for owner in (*_without_none(map(draft.joint_of, moved)), *parts, *_without_none(colours)):
         tags = ("origin",) if owner.get("type") in ("fixed", "floating") else _ADDED
         for tag in (tag for tag in tags if tag in CHILDREN[str(owner.tag)]):
             yield from _slots(owner, tag)
@@ -42,7 +42,7 @@ def slots(draft: Draft, shown: Sequence[str], moved: Sequence[str]) -> Iterator[
             yield from _slots(element, "")
 
 
-def _known(found: Iterable[Element | None]) -> Iterator[Element]:
+def _without_none(found: Iterable[Element | None]) -> Iterator[Element]:
     return (element for element in found if element is not None)
 
 

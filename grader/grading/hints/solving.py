@@ -13,12 +13,11 @@ from grader.checks.outcome import Outcome
 from grader.grading.hints.slots import Slot
 from grader.grading.hints.state_edits import QuickGrading
 from grader.robot.edits.difference import RobotDifference
-from grader.robot.edits.numbers import Values, plausible, rounded
+from grader.robot.edits.numbers import Values, plausible, round_numbers
 from grader.robot.edits.pieces import FITTED, SOLVED, Piece
 
 _EXACT = 0.05  # of the tolerance: an edit brings a value to the expected one, not just into the tolerance
 _STEP = 1e-4
-_ROUNDS = 6
 _FLAT, _WILD = 1e-6, 1e3  # slopes that are none, and that are a leap
 _DIGITS = range(2, 7)
 _SHORT = 3  # decimals of a number that a person would write
@@ -43,24 +42,22 @@ class Solver:
 
     def pieces(self, found: Iterator[Slot]) -> Iterator[Piece]:
         """Yield the pieces that set one slot; none for a criterion that measures no number."""
-        if self._expected is None:
+        if self._start is None:
             return
         for slot in islice(found, _MAX_SLOTS):
             is_size = slot.unit == "m" and slot.tag != "origin"
-            for values in dict.fromkeys(self._values(slot)):
-                if slot.sets(values) and not (is_size and min(values) <= 0.0):
-                    is_one = sum(old != new for old, new in zip(slot.values, values, strict=True)) == 1
-                    is_short = slot.unit == "rad" or all(
-                        rounded((new,), _SHORT)[0] == new
-                        for old, new in zip(slot.values, values, strict=True)
-                        if old != new
-                    )
-                    yield self._difference.of_sets(slot.sets(values), SOLVED if is_short and is_one else FITTED)
+            solved = dict.fromkeys(self._values(slot, self._start))
+            for values in (it for it in solved if slot.sets(it) and not (is_size and min(it) <= 0.0)):
+                changed = [new for old, new in zip(slot.values, values, strict=True) if old != new]
+                is_short = slot.unit == "rad" or all(round_numbers((new,), _SHORT)[0] == new for new in changed)
+                yield self._difference.of_sets(slot.sets(values), SOLVED if is_short and len(changed) == 1 else FITTED)
 
-    def _values(self, slot: Slot) -> Iterator[Values]:
+    def _values(self, slot: Slot, start: Values) -> Iterator[Values]:
         @cache
         def residual_of(values: Values) -> Values | None:
-            return self._start if values == slot.values else self._residual(slot, values)
+            if values == slot.values:
+                return start
+            return self._residual(slot, values) if all(map(isfinite, values)) else None
 
         columns = [self._jacobian_column(residual_of, slot.values, index) for index in range(len(slot.values))]
         touched = [index for index, column in enumerate(columns) if column is None or any(column)]
@@ -70,65 +67,49 @@ class Solver:
             for values in plausible(slot.unit, slot.values):
                 if self._is_exact(residual_of(values)):
                     yield values
-        start = residual_of(slot.values)
-        if start is None:
-            return
         known = {index: column for index in touched if (column := columns[index]) is not None}
         subsets = [(index,) for index in known] + ([tuple(known)] if len(known) > 1 else [])
         for subset in subsets:
-            solved = self._solved(residual_of, slot.values, start, {index: known[index] for index in subset})
+            solved = self._solve(residual_of, slot.values, start, {index: known[index] for index in subset})
             if solved is not None:
                 yield solved
 
-    def _solved(
+    def _solve(
         self, residual_of: Residuals, old: Values, start: Values, columns: Mapping[int, Values]
     ) -> Values | None:
         """Return values that leave no residual: by Newton's method, then with as few digits as possible."""
         values, residual = old, start
-        for _ in range(_ROUNDS):
+        while not self._is_exact(residual) or hypot(*residual) >= 1e-9:
             step = least_squares([columns[index] for index in columns], residual)
             if step is None:
                 return None
             values = tuple(
                 value - dict(zip(columns, step, strict=True)).get(index, 0.0) for index, value in enumerate(values)
             )
-            if not all(map(isfinite, values)):
-                return None
             after = residual_of(values)
             if after is None or hypot(*after) > 0.9 * hypot(*residual):
                 return self._short(residual_of, old, values) if self._is_exact(after) else None
             residual = after
-            if self._is_exact(after) and hypot(*after) < 1e-9:
-                break
             found = {index: self._jacobian_column(residual_of, values, index) for index in columns}
             columns = {index: column for index, column in found.items() if column is not None}
-            if not columns:
-                return None
-        return self._short(residual_of, old, values) if self._is_exact(residual) else None
+        return self._short(residual_of, old, values)
 
     def _short(self, residual_of: Residuals, old: Values, values: Values) -> Values | None:
-        for digits in _DIGITS:
-            short = tuple(
+        shorts = [
+            tuple(
                 before if abs(before - value) < _STEP / 10 else value
-                for before, value in zip(old, rounded(values, digits), strict=True)
+                for before, value in zip(old, round_numbers(values, digits), strict=True)
             )
-            if self._is_exact(residual_of(short)):
-                return short
-        return values if max(map(abs, values)) < 0.01 and self._is_exact(residual_of(values)) else None
+            for digits in _DIGITS
+        ]
+        shorts += [values] if max(map(abs, values)) < 0.01 else []
+        return next((short for short in shorts if self._is_exact(residual_of(short))), None)
 
     def _jacobian_column(self, residual_of: Residuals, values: Values, index: int) -> Values | None:
         """Return how what is measured changes with one of the values; None where it cannot be told."""
         size = _STEP * max(abs(values[index]), 1e-2 if abs(values[index]) < 1e-2 and values[index] else 1.0)
-        before = residual_of(values)
-        found: list[Values] = []
-        for step in (size, -size):  # a channel of a colour ends at 1
-            after = residual_of(tuple(value + step if other == index else value for other, value in enumerate(values)))
-            if before is not None and after is not None:
-                found.append(tuple((b - a) / step for a, b in zip(before, after, strict=True)))
-                if max(map(abs, found[-1])) < _WILD:
-                    break
-        column = min(found, key=lambda column: max(map(abs, column)), default=None)
-        return tuple(value if abs(value) > _FLAT else 0.0 for value in column) if column is not None else None
+        slopes = (_slope(residual_of, values, index, step) for step in (size, -size))  # a channel of a colour ends at 1
+        return next((slope for slope in slopes if slope and max(map(abs, slope)) < _WILD), None)
 
     def _residual(self, slot: Slot, values: Values) -> Values | None:
         sets = self._difference.with_twins(slot.sets(values, lambda values: " ".join(map(repr, values))))
@@ -144,6 +125,14 @@ class Solver:
         return residual is not None and all(abs(value) <= self._exact for value in residual)
 
 
+def _slope(residual_of: Residuals, values: Values, index: int, step: float) -> Values:
+    """Return how what is measured changes with one of the values, from this one on; empty where it cannot be told."""
+    before = residual_of(values)
+    after = residual_of(tuple(value + step if other == index else value for other, value in enumerate(values)))
+    slope = ((b - a) / step for a, b in zip(before, after, strict=True)) if before and after else ()
+    return tuple(value if abs(value) > _FLAT else 0.0 for value in slope)
+
+
 def _is_nonlinear(slot: Slot) -> bool:
     """Return whether numbers do not change what is measured in proportion: angles, and the directions of axes."""
     return slot.unit in ("rad", "1")
@@ -151,9 +140,7 @@ def _is_nonlinear(slot: Slot) -> bool:
 
 def _vector(value: object) -> Values | None:
     """Return numbers that a check measured or expects."""
-    if isinstance(value, bool):
-        return None
-    if isinstance(value, int | float):
+    if isinstance(value, int | float) and not isinstance(value, bool):
         return (float(value),)
     if isinstance(value, tuple) and value and all(isinstance(one, int | float) for one in value):
         return tuple(map(float, value))

@@ -17,7 +17,7 @@ from grader.grading.subjects import named_links
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set
-from grader.robot.edits.numbers import values_of, written
+from grader.robot.edits.numbers import format_numbers, values_of
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_robot
@@ -93,13 +93,13 @@ class StateEdits:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The difference to the reference."""
-        if self.draft is None:
-            return []
-        with self.trials.isolated():
-            corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
-            found = (Piece(it.cause, it.action, "", (), it.edits) for it in corrections)
-            return [*found, *self.difference.pieces]
-        return []
+        found: list[Piece] = []
+        if self.draft is not None:
+            with self.trials.isolated():
+                corrections = self.draft.corrections(self.difference.names, self.difference.numbers)
+                found = [Piece(it.cause, it.action, "", (), it.edits) for it in corrections]
+                found += self.difference.pieces
+        return found
 
     def with_links(self, criterion: Criterion) -> Criterion:
         """Return a criterion with the names of the links that selectors mean, where each means one."""
@@ -149,8 +149,7 @@ class StateEdits:
         """Yield the edits of the text that a piece stands for."""
         assert self.draft is not None
         for way, edits in enumerate(self.draft.ways(piece.sets) if piece.sets else [piece.edits]):
-            if any(edit.old.split() != edit.new.split() or edit.renamed for edit in edits):
-                yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
+            yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
 
     def of_package(self, criterion: Criterion) -> list[Proposal]:
         """Return the edits of the package for a criterion, and of xacro that is loaded as it stands."""
@@ -176,4 +175,4 @@ def _fewer(piece: Piece) -> Iterator[list[Set]]:
         old, new = values_of(one.element.get(one.attribute) if one.element is not None else None), values_of(one.value)
         off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
         for index in off if len(old) == len(new) and len(off) > 1 else ():
-            yield [one._replace(value=written((*new[:index], old[index], *new[index + 1 :])))]
+            yield [one._replace(value=format_numbers((*new[:index], old[index], *new[index + 1 :])))]

@@ -78,18 +78,16 @@ class Trials:
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, at a quick look. Raises NoTrialsLeft."""
-        edited = self.edited(state, edits)
+        edited = self.edit(state, edits)
         results = decide(self.rubric, edited, wanted) if edited is not None else ()
         return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
 
-    def applied(
-        self, state: State, edits: Edits, against: Results | None = None, *, whole: bool = False
-    ) -> State | None:
+    def apply(self, state: State, edits: Edits, against: Results | None = None, *, whole: bool = False) -> State | None:
         """Return the state after edits of this one, None if they do not fit; `whole` reads the submission from scratch.
 
         Raises NoTrialsLeft.
         """
-        edited = self._from_scratch(state, edits) if whole else self.edited(state, edits)
+        edited = self._from_scratch(state, edits) if whole else self.edit(state, edits)
         if edited is None:
             return None
         self._charge_reading(edited)
@@ -106,10 +104,10 @@ class Trials:
 
     def loses_nothing(self, state: State, edits: Edits) -> bool:
         """Return whether edits of a state fit, and no criterion is worse after them. Raises NoTrialsLeft."""
-        after = self.applied(state, edits)
+        after = self.apply(state, edits)
         return after is not None and not after.lost
 
-    def edited(self, state: State, edits: Edits) -> Submission | None:
+    def edit(self, state: State, edits: Edits) -> Submission | None:
         """Return the submission with edits of a state, not graded; None where they do not fit. Raises NoTrialsLeft."""
         self._charge_reading(state.submission)
         files = edited_files(state.submission, edits)
@@ -178,7 +176,7 @@ def costs_of(results: Results) -> dict[str, Decimal]:
     return {name: points for name, points in lost.items() if results[name].outcome.status == "failed"}
 
 
-def gained(before: Results, after: Results) -> dict[str, Decimal]:
+def gains_of(before: Results, after: Results) -> dict[str, Decimal]:
     """Return the criteria that pass now and did not before, with the points that this gives."""
     return {
         name: result.points - before[name].points
@@ -189,7 +187,7 @@ def gained(before: Results, after: Results) -> dict[str, Decimal]:
     }
 
 
-def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
+def join(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
     """Return the edits of a submission that do what `first` does, and then `second`."""
     renamed = {edit.renamed: edit.path for edit in first if edit.renamed}
     second = [edit._replace(path=renamed.get(edit.path, edit.path)) for edit in second]

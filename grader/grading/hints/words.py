@@ -31,13 +31,13 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, entry: C
     elif level == "cause":
         text = f"check {_places(own, submission)}: {found.proposal.cause}"
     else:
-        text = f"check {_marked(own, submission)}"
+        text = f"check {_texts_to_check(own, submission)}"
     return f"After {earlier}, {text}." if names else f"{text[0].upper()}{text[1:]}."
 
 
-def _marked(edits: list[Edit], submission: Submission) -> str:
+def _texts_to_check(edits: list[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
-    texts = [f"{_quoted(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
+    texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
 
 
@@ -85,11 +85,11 @@ def _moves(edits: list[Edit], submission: Submission) -> list[str]:
     if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
-    return [f"move {_quoted(old.old)} ({_where(old, submission)}) to after {_at(new, submission.path)}"]
+    return [f"move {_quote(old.old)} ({_where(old, submission)}) to after {_at(new, submission.path)}"]
 
 
 def _change(edit: Edit, submission: Submission) -> str:
-    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, submission)
+    old, new, where = _quote(edit.old), _quote(edit.new), _where(edit, submission)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
     if creates(submission, edit):
@@ -113,7 +113,7 @@ def _where(edit: Edit, submission: Submission) -> str:
     return f"{_at(edit, submission.path)}{which}"
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     """Return a text of the file between backticks, in one line."""
     line = " ".join(text.split()).replace("> <", "><")
     if not line:

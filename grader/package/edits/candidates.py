@@ -12,12 +12,12 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.package.edits.trees import markup_tree, tree_proposals
-from grader.package.edits.wording import defined, respelt, reworded
+from grader.package.edits.wording import respellings, reword, undefined_names
 from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Edits, Source
 from grader.static_python.parse import SyntaxFault
-from grader.xml.syntax import proposals
+from grader.xml.syntax import syntax_proposals
 
 _BRACKETS = ("()", "[]", "{}")
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
@@ -28,7 +28,7 @@ _MAX_MISTAKES = 3  # in one launch file
 _MAX_FIRST = 2
 
 
-def repaired(file: PythonFile, what: str) -> Iterator[Proposal]:
+def repairs(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits of one token after which Python can read a file, the nearest to the error first."""
     fault = file.parsed
     if not isinstance(fault, SyntaxFault):
@@ -50,7 +50,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     if (plain := file.text.translate(_QUOTES)) != file.text:
         changed = [index for index, char in enumerate(file.text) if char != plain[index]]
         yield source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-    odd = _unpaired([token.text for token in file.tokens if token.kind == "op"])
+    odd = _loose_marks([token.text for token in file.tokens if token.kind == "op"])
     tokens = sorted(file.tokens, key=lambda it: min(abs(it.start - at), abs(it.end - at)))
     near = [token for token in tokens if source.at(token.start).line in (last, last - 1)]
     for token in near:
@@ -64,7 +64,7 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
         yield from (source.edit(token.end, token.end, char) for char in ",:=.([])")
 
 
-def _unpaired(ops: Sequence[str]) -> list[str]:
+def _loose_marks(ops: Sequence[str]) -> list[str]:
     """Return the quotes that are tokens of their own, and the brackets that are not all paired."""
     unpaired = [pair for pair in _BRACKETS if ops.count(pair[0]) != ops.count(pair[1])]
     return [char for char in "'\"" if char in ops] + list("".join(unpaired))
@@ -133,11 +133,11 @@ def _further(
 ) -> Iterator[Proposal]:
     """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
     reference = task.reference.launch(like) if task.reference is not None and like is not None else None
-    wanted = _started(reference) if reference is not None else set()
+    wanted = _node_names(reference) if reference is not None else set()
 
     def left(text: Source) -> tuple[bool, int]:
         launch = task.launch(path, text)
-        return launch.syntax is not None, len(launch.faults) + len(wanted - _started(launch))
+        return launch.syntax is not None, len(launch.faults) + len(wanted - _node_names(launch))
 
     found = [it for it in islice(_of_text(task, kind, source, path, like), _MAX_MADE) if it.edits]
     yield from found
@@ -151,7 +151,7 @@ def _further(
             yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
 
 
-def _started(launch: Launch) -> set[tuple[str, str]]:
+def _node_names(launch: Launch) -> set[tuple[str, str]]:
     return {(it.package, it.executable) for it in launch.nodes}
 
 
@@ -162,21 +162,21 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
     is_python = ending in (".py", "")
     if wanted and (ending == other or is_python):
-        yield from reworded(source, wanted, what)
+        yield from reword(source, wanted, what)
     if is_python:
         trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
         yield from tree_proposals(source, trees, what, own.needs)
-        yield from repaired(own, what)
-        yield from defined(own, what)
+        yield from repairs(own, what)
+        yield from undefined_names(own, what)
     else:
         text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
         trees = markup_tree(source), markup_tree(Source(source.path, text))
         yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
     if ending == ".xml":
-        for it in proposals(source, is_urdf=False, is_strict=True):
+        for it in syntax_proposals(source, is_urdf=False, is_strict=True):
             yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
         yield from setup_paths(task)
-    yield from respelt(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)
+    yield from respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

@@ -56,7 +56,7 @@ def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[
     installed = task.package.installed
     named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
     wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
-    ways = [way for way in (_found_at(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
+    ways = [way for way in (_edits_of_path(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
     if len(ways) > 1:
         yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
     for way in ways:
@@ -86,7 +86,7 @@ def _targets(task: PackageTask, purpose: str) -> list[str]:
     return [it for it in own if it.lower().endswith(_ENDINGS[purpose])]
 
 
-def _found_at(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
+def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
     """Return the edits with which a path becomes the one that the file is installed at."""
     actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
     for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
@@ -114,7 +114,7 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
                 yield [*imports, file.replaced(literal, new), *others]
 
 
-def pieces(source: Source) -> Iterator[tuple[int, int]]:
+def path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     """Yield the offsets of the texts in a file that a path may be put together from."""
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
@@ -125,7 +125,7 @@ def pieces(source: Source) -> Iterator[tuple[int, int]]:
 def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
     """Return the edits of one text each with which a path becomes the wanted one; those nearest to a line first."""
     found: dict[Edit, int] = {}
-    for start, end in islice(pieces(source), _MAX_PIECES):
+    for start, end in islice(path_offsets(source), _MAX_PIECES):
         piece = source.text[start:end]
         if piece.strip("./") and piece in actual:
             is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None

@@ -2,11 +2,11 @@
 
 import ast
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Container, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
-from grader.source import Edit, Source
+from grader.source import Edit, Edits, Source
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.parse import Code, SyntaxFault, parse
 
@@ -27,6 +27,7 @@ _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
 _MAX_DEPTH = 4  # of names that are replaced by their values
 _MAX_CODE = 2000  # characters
 _USE = re.compile(r"\bglob\.glob\b")
+_CAT = re.compile(r"\bcat(?=\s)")
 
 
 class Token(NamedTuple):
@@ -189,3 +190,18 @@ def called(call: ast.Call) -> str:
 def keyword(call: ast.Call, name: str) -> ast.keyword | None:
     """Return a keyword argument of a call."""
     return next((keyword for keyword in call.keywords if keyword.arg == name), None)
+
+
+def with_xacro(source: Source) -> Iterator[Edits]:
+    """Yield the edits of a launch file that read the robot with xacro instead of open or cat."""
+    for found in _CAT.finditer(source.text):
+        yield (source.edit(found.start(), found.end(), "xacro"),)
+    file = PythonFile(source)
+    for call in [*file.calls("read"), *file.calls("read_text")] if source.path.endswith(".py") else ():
+        owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
+        owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
+        is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
+        if is_open or called(call) == "read_text":
+            path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner
+            new = f"xacro.process_file({file.segment(path)}).toxml()"
+            yield (*file.with_imports(["xacro"]), file.replaced(call, new))

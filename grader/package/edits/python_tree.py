@@ -61,15 +61,15 @@ def _expression(
     def with_value(name: str, new: str) -> Edit | None:
         if not isinstance(code, ast.Call) or not name.isidentifier():
             return None
-        return _added(file, [*code.args, *code.keywords], code, f"{name}={new}")
+        return _add(file, [*code.args, *code.keywords], code, f"{name}={new}")
 
     def with_child(new: str) -> Edit | None:
         own, actions = code, file.calls("add_action")
         if isinstance(own, ast.Call) and called(own) == _ROOTS[1]:
             if not own.args and actions:
-                return _added(file, actions[-1:], own, f"{file.segment(actions[-1].func)}({new})", "")
+                return _add(file, actions[-1:], own, f"{file.segment(actions[-1].func)}({new})", "")
             own = file.meant(own.args[0]) if own.args else own
-        return _added(file, own.elts, own, new) if isinstance(own, ast.List) else None
+        return _add(file, own.elts, own, new) if isinstance(own, ast.List) else None
 
     def of() -> TreePlace:
         whole = {**parts, **({"": code} if "" in values else {})}
@@ -126,9 +126,7 @@ def _tag(node: ast.AST) -> str:
     return called(node) if isinstance(node, ast.Call) else ""
 
 
-def _added(
-    file: PythonFile, nodes: Sequence[ast.expr | ast.keyword], own: ast.expr, code: str, comma: str = ","
-) -> Edit:
+def _add(file: PythonFile, nodes: Sequence[ast.expr | ast.keyword], own: ast.expr, code: str, comma: str = ",") -> Edit:
     """Return the edit that adds code after the last of some nodes, in lines of their own if that has one."""
     start, end = file.span(nodes[-1] if nodes else own)
     if not nodes:

@@ -123,13 +123,13 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
         if any(_is_named(it, name, kind) for it in task.files):
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
-        yield from _renamed(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
+        yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
         if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
             what = WHAT.get(kind, kind if path == kind else "a file of the resource index")
-            yield change(_created(task, path, wanted), "create", what)
+            yield change(_create(task, path, wanted), "create", what)
 
 
-def _created(task: PackageTask, path: str, wanted: Mapping[str, str]) -> list[Edit]:
+def _create(task: PackageTask, path: str, wanted: Mapping[str, str]) -> list[Edit]:
     """Return the edits that create a file of the reference; with setup.py the other files that it needs."""
     needed = [path, *(other for other in wanted if path == SETUP != other)]
     return [edit for new in needed for edit in task.created(new, wanted[new])]
@@ -139,7 +139,7 @@ def _is_named(path: str, name: str, kind: str) -> bool:
     return posixpath.basename(path) == name or (kind == "launch" and is_launch_named(path, name))
 
 
-def _renamed(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
+def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits that give one of these files a name: the one with the most similar name first."""
     spare = {posixpath.basename(it): it for it in files}
     for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):

@@ -6,7 +6,7 @@ from functools import partial
 from typing import NamedTuple
 
 from grader.difference import Node, Step, steps
-from grader.edits import Proposal, text_of, with_attribute, with_child
+from grader.edits import Proposal, element_text, with_attribute, with_child
 from grader.markup import attributes, head_end
 from grader.package.edits.task import Verb, change
 from grader.package.edits.wording import slip
@@ -134,7 +134,7 @@ def _element(source: Source, file: XmlFile, element: Element, depth: int) -> Nod
 
     def of() -> TreePlace:
         end, _ = head_end(source.text, start)
-        whole, at = text_of(source, start), source.text.find(text, end)
+        whole, at = element_text(source, start), source.text.find(text, end)
         names = {it.name: (it.start, it.start + len(it.name)) for it in attributes(source.text, start)}
 
         def with_tag(new: str) -> Edit:
@@ -158,7 +158,7 @@ def _yaml(source: Source, tag: str, node: YamlNode, seen: list[YamlNode], depth:
     inner = [(name, it) for name, it in items if it.text is None and depth and it not in seen][:_MAX_CHILDREN]
     seen += [item for _, item in inner]
 
-    def added(code: str) -> Edit:
+    def add(code: str) -> Edit:
         """Return the edit that adds lines at the start."""
         at, dash = node.location, "- " * isinstance(node.value, list)
         start, indent = source.offset(at.line, at.column), " " * (at.column - 1)
@@ -171,7 +171,7 @@ def _yaml(source: Source, tag: str, node: YamlNode, seen: list[YamlNode], depth:
         lines = source.text[slice(*line_span(source, node))].split("\n")  # the first one without its indentation
         block = "\n  ".join(line[node.location.column - 1 :].rstrip() for line in lines).rstrip()
         code = f"{tag}:\n  {block}".removeprefix("-:\n  ")
-        return TreePlace(kind, code, codes, spans, {}, lambda name, code: added(f"{name}: {code}"), added)
+        return TreePlace(kind, code, codes, spans, {}, lambda name, code: add(f"{name}: {code}"), add)
 
     children = [_yaml(source, name, item, seen, depth - 1) for name, item in inner]
     return Node(kind, (tag, values.get("Name", "")), values, children, of)

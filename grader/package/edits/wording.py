@@ -27,7 +27,7 @@ _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
 
 
-def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
@@ -40,11 +40,11 @@ def respelt(source: Source, known: Iterable[str], what: str) -> Iterator[Proposa
     guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
-    yield from _replaced(source, _PROGRAM, [" "], what)
-    yield from () if source.path.endswith(".py") else _replaced(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+    yield from _replace_words(source, _PROGRAM, [" "], what)
+    yield from () if source.path.endswith(".py") else _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
 
 
-def _replaced(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
+def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
     """Yield edits that write another word everywhere for what a pattern finds."""
     places = [*pattern.finditer(source.text)]
     for old, word in product(dict.fromkeys(it[0] for it in places), words):
@@ -58,7 +58,7 @@ def slip(word: str, known: Iterable[str]) -> str | None:
     return guess if same >= _LIKENESS else None
 
 
-def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
     start_of_text = int(source.text.startswith("\ufeff"))
     own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
@@ -70,7 +70,7 @@ def reworded(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
 
 
-def defined(file: PythonFile, what: str) -> Iterator[Proposal]:
+def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     used = {node.id for node in names if isinstance(node.ctx, ast.Load)}

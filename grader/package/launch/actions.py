@@ -83,7 +83,7 @@ class ActionVisitor:
     def _timer(self, call: Call, context: Context, when: bool | None) -> None:
         self._inner(call, call.argument(1, "actions"), context, when)
 
-    def _registered(self, call: Call, context: Context, when: bool | None) -> None:
+    def _register(self, call: Call, context: Context, when: bool | None) -> None:
         self.visit(call.argument(0, "event_handler"), context, when)
 
     def _argument(self, call: Call, context: Context, when: bool | None) -> None:
@@ -93,14 +93,14 @@ class ActionVisitor:
         actions, *others = [call.argument(0, "initial_entities"), *call.args[1:]]
         if isinstance(actions, Call) or others:
             context.add_error("LaunchDescription takes one list: put [ ] around the actions", call.at)
-        self._listed(others, call, context, when)
-        self._listed(actions, call, context, when)
+        self._visit_list(others, call, context, when)
+        self._visit_list(actions, call, context, when)
         for method in call.method_calls:
             if method.name.endswith((".add_action", ".add_entity")):
                 is_called = None if method.uncertainty is not None else True
-                self._listed(method.args, method, context, _both(when, is_called))
+                self._visit_list(method.args, method, context, _both(when, is_called))
 
-    def _listed(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
+    def _visit_list(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
             context.add_error("expected an action, found a list of actions: write * before it", call.at)
@@ -172,7 +172,7 @@ class ActionVisitor:
         "GroupAction": _group,
         "TimerAction": _timer,
         "RosTimer": _timer,
-        "RegisterEventHandler": _registered,
+        "RegisterEventHandler": _register,
         "OpaqueFunction": _opaque_function,
     }
 

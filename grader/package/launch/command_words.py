@@ -11,13 +11,13 @@ from grader.static_python.values import Call, Value
 def command_words(value: Value, context: Context) -> list[str]:
     """Return the words of a command: each item of a list is one word, a line of XML or YAML is split."""
     words: list[str] = []
-    for piece in pieces(value):
+    for piece in items_in(value):
         is_line = isinstance(piece, Call) and piece.name == COMMAND_LINE
         words += _line_words(piece, context) if is_line else [_word(piece, context)]
     return words
 
 
-def pieces(value: Value) -> list[Value] | tuple[Value, ...]:
+def items_in(value: Value) -> list[Value] | tuple[Value, ...]:
     """Return the items of a value that may be a list."""
     return value if isinstance(value, list | tuple) else [value] if value is not None else []
 

@@ -27,10 +27,10 @@ def command_output(texts: Sequence[Resolved], context: Context, at: Position) ->
         context.add_error(message, at)
         return Unknown(message, at)
     unknown.append(Unknown("the output of this command is known only at run time", at))
-    return _printed(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words) or unknown[0]
+    return _file_of(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words) or unknown[0]
 
 
-def _printed(words: list[str]) -> Contents | None:
+def _file_of(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
     files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]

@@ -95,7 +95,7 @@ class _YamlReader:
         if not isinstance(node.value, dict):
             entity.children += self.entries(node, depth)
             return entity
-        for key, value in merged(node).items():
+        for key, value in merge_keys(node).items():
             if value.text is not None:
                 entity.attributes[key] = value.text
                 self.check_string(kind, key, value)
@@ -117,7 +117,7 @@ class _YamlReader:
             self.findings.add_fault(message, _position(value))
 
 
-def merged(node: YamlNode) -> dict[str, YamlNode]:
+def merge_keys(node: YamlNode) -> dict[str, YamlNode]:
     """Return a mapping with what `<<` merges into it."""
     table = node.value if isinstance(node.value, dict) else {}
     given = table.get("<<")

@@ -53,6 +53,11 @@ class StartedNode:
     location: Location
     frame_prefix: str | None = ""
 
+    @property
+    def name(self) -> str:
+        """The package and the program, once where they are called the same."""
+        return self.executable if self.package == self.executable else f"{self.package}/{self.executable}"
+
 
 @dataclass(frozen=True, slots=True)
 class NamedFile:

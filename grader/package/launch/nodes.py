@@ -3,7 +3,7 @@
 import re
 
 from grader.names import did_you_mean
-from grader.package.launch.command_words import command_words, pieces
+from grader.package.launch.command_words import command_words, items_in
 from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, StartedNode
 from grader.package.launch.places import SHARE
@@ -85,7 +85,7 @@ def _as_node(call: Call, words: list[str]) -> Call:
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
     """Return the parameter frame_prefix of a node."""
-    tables = [table for table in pieces(call.kwargs.get("parameters")) if isinstance(table, dict)]
+    tables = [table for table in items_in(call.kwargs.get("parameters")) if isinstance(table, dict)]
     given: list[Value] = [table["frame_prefix"] for table in tables if "frame_prefix" in table]
     for name in ("arguments", "ros_arguments"):
         words = command_words(call.kwargs.get(name), context)
@@ -96,7 +96,7 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
-    parameters = pieces(call.kwargs.get("parameters"))
+    parameters = items_in(call.kwargs.get("parameters"))
     tables = [table for table in parameters if isinstance(table, dict)]
     descriptions = [table["robot_description"] for table in tables if "robot_description" in table]
     if descriptions:
@@ -148,7 +148,7 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         )
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
-        resolved = (resolve(piece, context) for piece in pieces(arguments))
+        resolved = (resolve(piece, context) for piece in items_in(arguments))
         unknown = (piece for piece in resolved if isinstance(piece, Unknown))
         unnamed = Unknown("the file that it opens is known only at run time", call.at)
         findings.refer("rviz", next(unknown, unnamed), call)

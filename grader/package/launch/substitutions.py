@@ -11,7 +11,7 @@ from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, text_of
+from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, str_of
 from grader.static_python.parse import START
 from grader.static_python.values import MAX_TEXT, Call, Unknown, Value, as_text
 
@@ -183,7 +183,7 @@ class _Substitution:
             return text if isinstance(text, Unknown) else unknown
         budget = Budget(_WORK)
         try:
-            return text_of(evaluate(text, _builtin, budget))
+            return str_of(evaluate(text, _builtin, budget))
         except (ExpressionFails, Undetermined, OutOfBudget):
             return unknown
         finally:

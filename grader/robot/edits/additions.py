@@ -42,7 +42,7 @@ class Additions:
             yield from (self._maker.of_sets([Set(own, "", "rgba", its.get("rgba") or "")]) for own, its in colours)
             return
         if tag in ("joint", "link"):
-            yield self._added_link(like, [it.of for it in added if it.tag == "joint"])
+            yield self._add_link(like, [it.of for it in added if it.tag == "joint"])
             return
         spare = (it.of for it in removed if any(is_alike(it, inner) for inner in like.walk()))  # what the new one has
         away = tuple(edit for it in spare for edit in self._maker.draft.remove(it))
@@ -50,7 +50,7 @@ class Additions:
         there = self._maker.draft.insert(parent, text) if tag == "material" else self._maker.draft.append(text)
         yield self._maker.piece(parent, f"<{tag}> is missing", f"add <{tag}>", (*away, *there))
 
-    def _added_link(self, like: Node, added: Sequence[Element]) -> Piece:
+    def _add_link(self, like: Node, added: Sequence[Element]) -> Piece:
         """Add a joint, or a link with the joint and the materials that it needs."""
         element, tag = like.of, like.tag
         name = end_of(element, "child") if tag == "joint" else element.get("name") or ""

@@ -10,7 +10,7 @@ from typing import Any
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import empty_element
 from grader.robot.edits.elements import Set, child_of
-from grader.robot.edits.numbers import number
+from grader.robot.edits.numbers import format_number
 from grader.robot.edits.pieces import KNOWN, Piece
 from grader.robot.frames import placed_by
 from grader.robot.inertia import MassProperties, turned, uniform_solid, with_volume
@@ -40,9 +40,9 @@ def _inertial(difference: RobotDifference, own: Element, link: Link, mass: float
     solid = _solid(link, weighs) if weighs is not None and weighs > 0.0 else None
     if solid is None:
         return
-    centre = " ".join(map(number, solid.centre))
+    centre = " ".join(map(format_number, solid.centre))
     if element is None or inertial is None:  # ROS 2 drops what a link shows with an <inertial> that it cannot read
-        values = empty_element("inertia", dict(zip(_INERTIA, map(number, solid.inertia), strict=True)))
+        values = empty_element("inertia", dict(zip(_INERTIA, map(format_number, solid.inertia), strict=True)))
         text = f'<inertial>\n  <origin xyz="{centre}"/>\n  <mass value="{solid.mass:.6g}"/>\n  {values}\n</inertial>'
         edits = difference.draft.insert(own, text)
         yield difference.piece(own, "the <inertial> of {} is missing", "add the <inertial> of {}", edits)
@@ -50,7 +50,9 @@ def _inertial(difference: RobotDifference, own: Element, link: Link, mass: float
         T_link_inertial = placed_by(IDENTITY, inertial.origin)
         moments = turned(solid.inertia, T_link_inertial.inverse().rotation)
         known = zip(_INERTIA, moments, inertial.inertia, strict=True)
-        of_inertia = tuple(Set(element, "inertia", name, number(value)) for name, value, old in known if value != old)
+        of_inertia = tuple(
+            Set(element, "inertia", name, format_number(value)) for name, value, old in known if value != old
+        )
         of_centre = (Set(element, "origin", "xyz", centre),)
         of_mass = (Set(element, "mass", "value", f"{mass:.6g}"),) if mass not in (None, inertial.mass) else ()
         for sets, what in (

@@ -6,7 +6,7 @@ from math import pi
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.numbers import Values, rounded, values_of, written
+from grader.robot.edits.numbers import Values, format_numbers, round_numbers, values_of
 from grader.robot.edits.pieces import CONVENTION, Piece
 from grader.robot.model import Box
 from grader.robot.transforms import IDENTITY, Transform, rotation_from_rpy
@@ -33,9 +33,9 @@ def conventions(difference: RobotDifference) -> Iterator[Piece]:
 def _whole(draft: Draft, link: str, what: str, T_new_old: Transform) -> Piece:
     """Return the piece that moves a link's frame, but nothing that is seen; a rotated frame turns the robot with it."""
     own = draft.joint_of(link) if T_new_old.rotation == IDENTITY.rotation else None
-    before = _placed(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
+    before = _place(own, IDENTITY, T_new_old.inverse()) if own is not None else ()
     cause = f"{what} of the frame {link!r}"
-    return Piece(cause, f"correct {cause}", "", (*before, *_moved(draft, link, T_new_old)), (), CONVENTION)
+    return Piece(cause, f"correct {cause}", "", (*before, *_move(draft, link, T_new_old)), (), CONVENTION)
 
 
 def other_frames(difference: RobotDifference) -> Iterator[Piece]:
@@ -53,8 +53,8 @@ def other_frames(difference: RobotDifference) -> Iterator[Piece]:
             direction = _values(axis, "xyz") if axis is not None else (1.0, 0.0, 0.0)
             turned = T_new_old.rotate(direction)
             if joint.get("type") != "fixed" and _differ(turned, direction):
-                sets.append(Set(joint, "axis", "xyz", written(rounded(turned, 4))))
-            moved = [*_moved(draft, link.name, T_new_old)]
+                sets.append(Set(joint, "axis", "xyz", format_numbers(round_numbers(turned, 4))))
+            moved = [*_move(draft, link.name, T_new_old)]
             if sets and moved:
                 cause, action = "the frame {!r}", "correct the frame {!r}; what it shows stays where it is"
                 texts = cause.format(link.name), action.format(link.name)
@@ -65,15 +65,15 @@ def _differ(one: Values, other: Values) -> bool:
     return any(abs(a - b) > 1e-3 for a, b in zip(one, other, strict=True))
 
 
-def _moved(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
+def _move(draft: Draft, link: str, T_new_old: Transform) -> Iterator[Set]:
     """Yield the values with which the frame of a link is moved, and all that is in it stays together."""
     own = draft.link(link)
     parts = own.iterchildren("visual", "collision", "inertial") if own is not None else ()
     for part in (*parts, *(joint for joint in draft.joints() if end_of(joint, "parent") == link)):
-        yield from _placed(part, T_new_old)
+        yield from _place(part, T_new_old)
 
 
-def _placed(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
+def _place(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTITY) -> Iterator[Set]:
     old = _pose(owner)
     return _set(owner, old, T_new_old @ old @ T_old_new)
 
@@ -81,7 +81,7 @@ def _placed(owner: Element, T_new_old: Transform, T_old_new: Transform = IDENTIT
 def _set(owner: Element, old: Transform, new: Transform) -> Iterator[Set]:
     for name, before, after in (("xyz", old.translation, new.translation), ("rpy", old.rpy, new.rpy)):
         if _differ(before, after):
-            yield Set(owner, "origin", name, written(rounded(after, 4)))
+            yield Set(owner, "origin", name, format_numbers(round_numbers(after, 4)))
 
 
 def _pose(owner: Element) -> Transform:
@@ -106,7 +106,8 @@ def _other_units(difference: RobotDifference) -> Iterator[Piece]:
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         metres = [
-            (element, name, written(tuple(value / factor for value in values))) for element, name, values in found
+            (element, name, format_numbers(tuple(value / factor for value in values)))
+            for element, name, values in found
         ]
         sets = tuple(Set(element, "", name, value) for element, name, value in metres)
         cause = f"the unit of all lengths: {unit}, not metres"

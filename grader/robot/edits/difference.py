@@ -8,13 +8,55 @@ from grader.difference import Node, Step, paired, steps
 from grader.robot.edits.additions import Additions
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.nodes import node_of, wanted_value
-from grader.robot.edits.numbers import number, values_of
-from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, unique
+from grader.robot.edits.numbers import format_number, values_of
+from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import PARTS
+from grader.xml.urdf_format import PARTS, TAGS
 
+_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
+
+
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 _MAX_LINKS = 400  # of a robot: more are not compared
+
+
+def wanted_value(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = normal(tag, str(name), str(value))
+        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
+            continue
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
 
 
 class RobotDifference(PieceMaker):
@@ -39,7 +81,7 @@ class RobotDifference(PieceMaker):
             for name, text in element.attrib.items()
             if PARTS.get(str(name))
         )
-        return list(dict.fromkeys(number(abs(value)) for found in values for value in found if value))
+        return list(dict.fromkeys(format_number(abs(value)) for found in values for value in found if value))
 
     @cached_property
     def pieces(self) -> list[Piece]:
@@ -52,12 +94,11 @@ class RobotDifference(PieceMaker):
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
-            joint = next((it for it in self.draft.joints() if it.get("name") == old), None) if old != new else None
-            if joint is not None:
-                mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
-                sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
-                every += sets
-                yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
+            joint = next(it for it in self.draft.joints() if it.get("name") == old)
+            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
+            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            every += sets
+            yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
             yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
 
@@ -102,7 +143,7 @@ class RobotDifference(PieceMaker):
                 case "add" if step.like is not None:
                     yield from self.additions.pieces(step, added, removed)
                 case "remove":
-                    yield from self._removed(step.own)
+                    yield from self._remove(step.own)
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
@@ -110,23 +151,23 @@ class RobotDifference(PieceMaker):
         wanted = {step.name: wanted_value(step) for step in found}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
-            yield from self._renamed(element, values.pop("name"))
+            yield from self._rename(element, values.pop("name"))
         if "" in values:
             text = values.pop("")
             edits = self.draft.write_text(element, text)
             yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
         yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
-    def _renamed(self, element: Element, name: str) -> Iterator[Piece]:
+    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
         own = (Set(element, "", "name", name),)
-        everywhere = renamed(self.draft, old, name) if tag == "link" else own
+        everywhere = rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
             cause, link = f"the name of a {tag}", name if tag == "link" else ""
             yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
 
-    def _removed(self, node: Node) -> Iterator[Piece]:
+    def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):
@@ -138,7 +179,7 @@ class RobotDifference(PieceMaker):
             yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
 
 
-def renamed(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
     own = [link for link in draft.links() if link.get("name") == old]
     ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
@@ -157,7 +198,6 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
             names["joint"][joint.get("name") or ""] = own.get("name") or ""
     mine = [node_of(found) for found in draft.root.iterchildren("material")]
     pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
-    for own_node, like in pairs.both:
-        if own_node.values.get("name"):
-            names["material"][like.values.get("name", "")] = own_node.values["name"]
+    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
+    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
     return names

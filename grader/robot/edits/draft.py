@@ -35,7 +35,7 @@ class Draft(RobotElements):
         """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
         return self._expanded.corrections(names, numbers) if self._expanded is not None else []
 
-    def _adapted(self, element: Element, xml: str) -> str:
+    def _adapt(self, element: Element, xml: str) -> str:
         return self._expanded.adapted(self._tags[element], xml) if self._expanded is not None else xml
 
     def siblings(self, element: Element) -> list[Element]:
@@ -65,7 +65,7 @@ class Draft(RobotElements):
                 done |= {(it, one.attribute) for it in others}
                 is_numeric = bool(PARTS.get(one.attribute))
                 value = merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
-                ways = self._written(element, one.attribute, value, others)
+                ways = self._ways_of(element, one.attribute, value, others)
                 found = [(*before, *more) for before in found for more in ways]
             else:
                 attributes.setdefault(element, {})[one.attribute] = one.value
@@ -74,7 +74,7 @@ class Draft(RobotElements):
         rest = tuple(edit for edits in added for edit in edits)
         return [tuple(dict.fromkeys((*edits, *rest))) for edits in found[:_MAX_WAYS]]
 
-    def _written(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
+    def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
@@ -128,11 +128,11 @@ class Draft(RobotElements):
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        return (source.edit(start, end, f"{source.text[start:end]}{self._adapted(element, added)}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{self._adapt(element, added)}"),)
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
-        return (with_child(*self.source.element(self._tags[parent]), self._adapted(parent, xml)),)
+        return (with_child(*self.source.element(self._tags[parent]), self._adapt(parent, xml)),)
 
     def append(self, xml: str) -> Edits:
         """Return the edit that inserts an element after the last one of the robot."""

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple, Self
 
-from grader.edits import text_of
+from grader.edits import element_text
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
@@ -85,7 +85,7 @@ class RobotElements:
             end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
         )
 
-    def described(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
+    def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
         """Return what an element, or its child with a tag, is called: the visual origin of 'lidar', if `known`."""
         owner, path = self.owner(element), [tag] if tag else []
         inner = element
@@ -108,7 +108,7 @@ class RobotElements:
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
         source, start = self.source.element(self._tags[element])
-        return _COMMENT.sub("", text_of(source, start))
+        return _COMMENT.sub("", element_text(source, start))
 
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""

@@ -46,10 +46,10 @@ class Named(NamedTuple):
     is_mistake: bool = False
 
 
-def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
+def words_of_change(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
     """Return the mistake in numbers, and what to do; `what` has {} where the names of the wrong parts go."""
     if len(old) != len(new):
-        return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {written(new)}")
+        return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {format_numbers(new)}")
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
     wrong = (
         what.format(enumerated([_with_article(parts[index]) for index in off]))
@@ -62,7 +62,7 @@ def named(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) 
             return Named(mistake.cause.format(wrong), mistake.action.format(wrong), is_mistake=True)
     if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
         return Named(f"{wrong} are swapped", f"swap {wrong}", is_mistake=True)
-    return Named(wrong, f"set {wrong} to {enumerated(list(dict.fromkeys(number(new[index]) for index in off)))}")
+    return Named(wrong, f"set {wrong} to {enumerated(list(dict.fromkeys(format_number(new[index]) for index in off)))}")
 
 
 def _with_article(part: str) -> str:
@@ -103,12 +103,12 @@ def values_of(text: str | None) -> Values:
         return ()
 
 
-def written(values: Values) -> str:
+def format_numbers(values: Values) -> str:
     """Return numbers as a URDF contains them."""
-    return " ".join(map(number, values))
+    return " ".join(map(format_number, values))
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number in as few characters as a robot that a person writes needs."""
     if not isfinite(value):
         return repr(value)
@@ -118,6 +118,6 @@ def number(value: float) -> str:
     return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")
 
 
-def rounded(values: Values, digits: int) -> Values:
+def round_numbers(values: Values, digits: int) -> Values:
     """Return numbers with so many decimals."""
     return tuple(round(value, digits) + 0.0 for value in values)

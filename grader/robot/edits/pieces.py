@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of
-from grader.robot.edits.numbers import Values, named, values_of
+from grader.robot.edits.numbers import Values, values_of, words_of_change
 from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
@@ -64,7 +64,7 @@ def _words_of_numbers(changes: Sequence[Numbers], unit: str) -> _Words:
     parts = [part for change in changes for part in change[0]]
     old = tuple(value for change in changes for value in change[1])
     new = tuple(value for change in changes for value in change[2])
-    cause, action, is_mistake = named("{} of [place]", parts, unit, old, new)
+    cause, action, is_mistake = words_of_change("{} of [place]", parts, unit, old, new)
     is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
     cause, action = (text.replace("[place]", "{}") for text in (cause, action))
     return _Words(cause, action, is_mistake, is_turned and not is_mistake)
@@ -91,7 +91,7 @@ class PieceMaker:
         tag: str = "",
     ) -> Piece:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
-        place = self.draft.described(element, tag, self.known)
+        place = self.draft.describe(element, tag, self.known)
         cause, action = (text.replace("{}", place) for text in (cause, action))
         return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
 

@@ -6,11 +6,11 @@ from itertools import islice
 from grader.names import closest
 from grader.problems import Problem
 from grader.robot import catalogue
-from grader.robot.edits.difference import RobotDifference, renamed
+from grader.robot.edits.difference import RobotDifference, rename_link
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.pieces import ENDS, Piece, unique
-from grader.robot.edits.readable import is_readable, readable
+from grader.robot.edits.readable import is_readable, readable_values
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, JOINT_TYPES, REQUIRED, TAGS, missing_element
 
@@ -71,7 +71,7 @@ def _of_value(difference: RobotDifference, element: Element, attribute: str) -> 
     """Write numbers as ROS 2 reads them, here and wherever the mistake is the same; a type as it is called."""
     text = element.get(attribute) or ""
     if not is_readable(attribute, text):
-        for new, cause, action in readable(attribute, text):
+        for new, cause, action in readable_values(attribute, text):
             own = Set(element, "", attribute, new)
             everywhere = tuple(_same_mistake(difference.draft, cause))
             for sets in (everywhere, (own,)) if own in everywhere else ((own,),):
@@ -86,7 +86,7 @@ def _same_mistake(draft: Draft, cause: str) -> Iterator[Set]:
     for element in draft.root.iter():
         for attribute in ATTRIBUTES.get(str(element.tag), ()):
             text = element.get(attribute)
-            found = next(readable(attribute, text), None) if text and not is_readable(attribute, text) else None
+            found = next(readable_values(attribute, text), None) if text and not is_readable(attribute, text) else None
             if found is not None and found[1] == cause:
                 yield Set(element, "", attribute, found[0])
 
@@ -213,7 +213,7 @@ def _missing_link(
     free = (name for name in loose if name in unknown)
     for name in dict.fromkeys(filter(None, (closest(given, unknown), *free))):
         cause, action = "the name of a link", "correct the name of the link"
-        yield difference.piece(joint, cause, action, sets=renamed(draft, name, given), link=given)
+        yield difference.piece(joint, cause, action, sets=rename_link(draft, name, given), link=given)
     like = difference.reference.link(given)
     text = difference.additions.text(like) if like is not None else f'<link name="{given}"/>'
     cause, action = "the link of a joint is missing", "add the link that the joint names"

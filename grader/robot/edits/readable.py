@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from math import isfinite, pi
 
-from grader.robot.edits.numbers import number, values_of
+from grader.robot.edits.numbers import format_number, values_of
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xml.urdf_format import PARTS
@@ -23,7 +23,7 @@ def is_readable(attribute: str, text: str) -> bool:
     return len(values) == len(parts) and is_in_range and (len(parts) > 1 or text == text.rstrip())
 
 
-def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
+def readable_values(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
     """Yield what a text may stand for, each with what was wrong, and what to do."""
     found: dict[str, tuple[str, str]] = {}
     for separator in _SEPARATORS if len(text) <= _MAX_LENGTH else ():
@@ -35,12 +35,12 @@ def readable(attribute: str, text: str) -> Iterator[tuple[str, str, str]]:
             current = after
         if causes and is_readable(attribute, current):
             found.setdefault(current, causes[0])
-    for current in _counted(attribute, text):
+    for current in _with_count(attribute, text):
         found.setdefault(current, (f"the count of numbers in {attribute}", f"write {len(PARTS[attribute])} numbers"))
     yield from ((current, *causes) for current, causes in found.items())
 
 
-def _counted(attribute: str, text: str) -> Iterator[str]:
+def _with_count(attribute: str, text: str) -> Iterator[str]:
     """Yield as many numbers as an attribute needs: with zeros for those that are missing, or without the last ones."""
     pieces, count = text.replace(",", " ").split(), len(PARTS.get(attribute, ()))
     is_other = len(pieces) > count or (attribute in ("xyz", "rpy") and len(pieces) < count)
@@ -49,7 +49,7 @@ def _counted(attribute: str, text: str) -> Iterator[str]:
         yield " ".join(["0", "0", "0", *pieces][-count:])
 
 
-def _evaluated(found: re.Match[str]) -> str:
+def _evaluate(found: re.Match[str]) -> str:
     """Return a number for an expression: ${0.6/4}, pi/2."""
 
     def find(name: str) -> Value:
@@ -62,7 +62,7 @@ def _evaluated(found: re.Match[str]) -> str:
     except (ExpressionFails, Undetermined, OutOfBudget):
         return found[0]
     is_number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    return number(float(value)) if is_number and not values_of(found[0]) else found[0]
+    return format_number(float(value)) if is_number and not values_of(found[0]) else found[0]
 
 
 def _in_range(found: re.Match[str]) -> str:
@@ -70,8 +70,8 @@ def _in_range(found: re.Match[str]) -> str:
     values = values_of(found[0])
     if max(values, default=0.0) <= 1.0:
         return found[0]
-    channels = (number(round(value / 255.0, 3)) for value in values[:3])
-    return " ".join([*channels, *(number(min(value, 1.0)) for value in values[3:])])
+    channels = (format_number(round(value / 255.0, 3)) for value in values[:3])
+    return " ".join([*channels, *(format_number(min(value, 1.0)) for value in values[3:])])
 
 
 _SPACES = "separate the numbers by spaces"
@@ -91,17 +91,14 @@ _STEPS: tuple[_Step, ...] = (
     *((rf"(?i)(?<=[0-9.]) ?(?:{unit})(?!\w)", factor, *_UNIT) for unit, factor in _UNITS.items()),
     (
         r"\$\{([^{}]*)\}|\S+",
-        _evaluated,
+        _evaluate,
         "an expression, which ROS 2 does not evaluate",
         "write the value of the expression",
     ),
     (r"([+-]) (?=[0-9.])", r"\1", "a space after a sign", "remove the space"),
     (r" ?(?:[,|] |; ?)", " ", *_COMMAS),
 )
-_SEPARATORS: tuple[_Step, ...] = (
-    (",", ".", "a decimal comma", "write a decimal point"),
-    (",", " ", *_COMMAS),
-)
+_SEPARATORS: tuple[_Step, ...] = ((",", ".", "a decimal comma", "write a decimal point"), (",", " ", *_COMMAS))
 _COLOUR: tuple[_Step, ...] = (
     (r".+", _in_range, "the range of the colour: 0..255, not 0..1", "write the colour in 0..1"),
     (r"\A\S+ \S+ \S+\Z", r"\g<0> 1", "the opacity is missing", "add the opacity"),

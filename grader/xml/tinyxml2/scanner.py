@@ -92,16 +92,16 @@ class Scanner:
         """Read a comment, a CDATA section or a DOCTYPE."""
         text = self._text
         if text.startswith("<!--", position):
-            end = self._delimited(position, "<!--", "-->", "comment")
+            end = self._skip_to(position, "<!--", "-->", "comment")
             if end is not None and "--" in text[position + 4 : end - 2]:
                 self._differ("comment", "-- inside a comment", position)
         elif text.startswith("<![CDATA[", position):
             if not self._open_tags:
                 self._differ("cdata", "a CDATA section outside the robot", position)
-            end = self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
+            end = self._skip_to(position, "<![CDATA[", "]]>", "CDATA section")
             self._write(text[position + 9 : end - 3] if end is not None else "")
         else:
-            end = self._delimited(position, "<!", ">", "<!")
+            end = self._skip_to(position, "<!", ">", "<!")
             if end is not None and "doctype" not in self._noted:
                 self._noted.add("doctype")
                 message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
@@ -138,7 +138,7 @@ class Scanner:
             self._xml.append(escape(text).replace(">", "&gt;"))
 
     def _declaration(self, position: int) -> int | None:
-        end = self._delimited(position, "<?", "?>", "<?")
+        end = self._skip_to(position, "<?", "?>", "<?")
         if end is None:
             return None
         if self._open_tags or not self._only_declarations:
@@ -150,7 +150,7 @@ class Scanner:
             self._differ("declaration", "an XML declaration without a known version or encoding", position)
         return end
 
-    def _delimited(self, position: int, opening: str, closing: str, what: str) -> int | None:
+    def _skip_to(self, position: int, opening: str, closing: str, what: str) -> int | None:
         end = self._text.find(closing, position + len(opening))
         if end < 0:
             message = f"this {what} is not closed with {closing}; ROS 2 rejects the file"

@@ -80,7 +80,7 @@ class _References:
             self._decimal = self._decimal or self._number(_DECIMAL, 10)
             first, code = self._decimal
             complete = first > offset + 1 and source[first - 1 : first] == b"#"
-        return (_encoded(code), self._semicolon + 1 - offset) if complete else (b"&", 1)
+        return (_encode(code), self._semicolon + 1 - offset) if complete else (b"&", 1)
 
     def _number(self, digits: bytes, radix: int) -> tuple[int, int]:
         # TinyXML2 10 multiplies in 32 bits and adds in 64, so very long numbers overflow.
@@ -92,7 +92,7 @@ class _References:
         return first, code
 
 
-def _encoded(code: int) -> bytes:
+def _encode(code: int) -> bytes:
     """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last; nothing over four bytes."""
     if code <= _LAST_CODE_POINT:
         return chr(code).encode("utf-8", "surrogatepass")
