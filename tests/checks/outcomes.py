@@ -41,16 +41,18 @@ def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
     try:
         outcome = check(*subjects, **arguments)
     except (MissingElement, NotDecided) as error:
-        found = row(check.__name__, {"message": str(error), **vars(error)})
-        FOUND.setdefault(wording(found), found)
+        _record(row(check.__name__, {"message": str(error), **vars(error)}))
         raise
     return _recorded(check, outcome)
 
 
 def _recorded(check: AnyCheck, outcome: Outcome) -> Outcome:
-    found = row(check.__name__, outcome._asdict())
-    FOUND.setdefault(wording(found), found)
+    _record(row(check.__name__, outcome._asdict()))
     return outcome
+
+
+def _record(found: str) -> None:
+    FOUND.setdefault(wording(found), found)
 
 
 def wording(found: str) -> str:
