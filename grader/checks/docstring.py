@@ -31,7 +31,7 @@ def documentation(function: Callable[..., Any]) -> Documentation:
 
 def _arguments(section: str) -> dict[str, str]:
     """Return the entries of an `Args:` section by name; an entry continues on lines that are indented further."""
-    entries = (_ARGUMENT.split(entry, maxsplit=1) for entry in re.split(r"\n(?=\S)", section))
+    entries = (_ARGUMENT.split(entry) for entry in re.split(r"\n(?=\S)", section))
     return {found[1]: _one_line(found[2]) for found in entries if len(found) == 3}
 
 
