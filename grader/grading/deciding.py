@@ -34,13 +34,11 @@ def _graded_manually(rubric: Rubric, submission: Submission) -> Mapping[str, str
 
     Without a URDF, `without_urdf` decides for the package as well.
     """
-    keys = {"URDF": rubric.without_urdf, "package": rubric.without_package}
-    if "manual" not in keys.values():
-        return {}
-    lacking = missing_work(rubric, submission)
-    if "URDF" in lacking and rubric.without_urdf == "manual":
+    is_wanted = "manual" in (rubric.without_urdf, rubric.without_package)
+    lacking = missing_work(rubric, submission) if is_wanted else {}
+    if rubric.without_urdf == "manual" and "URDF" in lacking:
         return lacking
-    return {kind: reason for kind, reason in lacking.items() if keys[kind] == "manual"}
+    return {"package": lacking["package"]} if rubric.without_package == "manual" and "package" in lacking else {}
 
 
 class _Grading:
@@ -59,7 +57,7 @@ class _Grading:
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
-        cause = self._cause(criterion) if criterion.requires or self._subjects.robot is None else None
+        cause = self._cause(criterion)
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
         self.results[criterion.id] = (
             self._carried(result, criterion.carried) if criterion.carried and result.is_lost else result
