@@ -156,9 +156,9 @@ def test_of_several_cylinders_the_nearest_counts() -> None:
 
 def test_of_several_spheres_the_nearest_counts() -> None:
     """If a link shows several spheres, one correct sphere is enough; otherwise the nearest one is reported."""
-    other = visual(sphere(1.0))
-    passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
-    fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
+    for other in (visual(sphere(1.0)), visual(sphere(0.001))):
+        passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
+        fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
 
 
 SHAPES = {"box": box(0.6, 0.4, 0.2), "cylinder": cylinder(), "sphere": sphere(0.05), "mesh": mesh()}

@@ -61,6 +61,9 @@ def test_grams_are_recognised() -> None:
     """A mass that is a thousand times too large looks like grams."""
     message = fails(mass_is, arm((1.0,) * 6, mass=500.0), at='value="500.0"', **MASS)
     assert message == "the mass of 'arm' is 500 kg; it should be 0.5 kg (500 kg too large): is it in grams?"
+    for mass, is_in_grams in ((496.0, True), (504.0, True), (494.0, False), (506.0, False)):
+        message = fails(mass_is, arm((1.0,) * 6, mass=mass), **MASS)
+        assert message.endswith("grams?") == is_in_grams
 
 
 def test_a_missing_inertial() -> None:
