@@ -149,7 +149,7 @@ def test_a_message_about_a_cylinder_has_both_lengths() -> None:
 
 def test_of_several_cylinders_the_nearest_counts() -> None:
     """If a link shows several cylinders, one correct cylinder is enough; otherwise the nearest one is reported."""
-    others = (visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
+    others = (visual(cylinder(0.01, 0.01)), visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
     passes(shows_cylinder, scene(link("lidar", *others, visual(cylinder()))), **CYLINDER)
     fails(shows_cylinder, scene(link("lidar", *others, visual(cylinder(0.1, 0.06)))), at='length="0.06"', **CYLINDER)
 

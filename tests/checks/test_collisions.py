@@ -271,3 +271,25 @@ def test_exactly_one_shape_is_given(shapes: Arguments) -> None:
     """Otherwise the rubric is refused."""
     with pytest.raises(RubricError, match="exactly one of box, cylinder and sphere"):
         ask(collides_as, arm(collision(BALL)), **CLOSE, **shapes)
+
+
+def test_the_nearest_of_several_collision_shapes_is_named() -> None:
+    """It is the one that is least off in place, size and orientation together; any is nearer than a mesh."""
+    near = collision(cylinder(0.1, 0.52), xyz="0 0 0.01", rpy=turned(roll=1))
+    others = [
+        collision(mesh()), collision(cylinder(0.1, 0.2), xyz="0 0 0.01"), collision(ROD, xyz="0 0 0.4"),
+        collision(ROD, rpy=turned(roll=90)),
+    ]  # fmt: skip
+    for other in others:
+        for shapes in ((other, near), (near, other)):
+            body = arm(*shapes)
+            message = fails(
+                collides_as,
+                body,
+                link="arm",
+                tolerance=0.001,
+                cylinder=(0.1, 0.5),
+                xyz=(0.0, 0.0, 0.0),
+                rpy=(0.0, 0.0, 0.0),
+            )
+            assert "; the nearest is a cylinder of radius 0.1 m and length 0.52 m" in message
