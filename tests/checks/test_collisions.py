@@ -269,8 +269,9 @@ def test_the_place_can_be_given_in_another_frame() -> None:
 @pytest.mark.parametrize("shapes", [{}, {"sphere": 0.1, "box": (1.0, 1.0, 1.0)}])
 def test_exactly_one_shape_is_given(shapes: Arguments) -> None:
     """Otherwise the rubric is refused."""
-    with pytest.raises(RubricError, match="exactly one of box, cylinder and sphere"):
-        ask(collides_as, arm(collision(BALL)), **CLOSE, **shapes)
+    complaint = "^the criterion only: collides_as takes exactly one of box, cylinder and sphere$"
+    with pytest.raises(RubricError, match=complaint):
+        graded(collides_as, arm(collision(BALL)), **CLOSE, **shapes)
 
 
 def test_the_nearest_of_several_collision_shapes_is_named() -> None:
