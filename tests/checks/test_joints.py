@@ -18,7 +18,7 @@ from grader.source import LazyLocation
 from grader.submission.opening import read_submission
 from grader.submission.urdf import Read
 from tests.checks.cases import CASE, gripping, swinging
-from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, joint, link, numbers, scene
 from tests.command_line import run
 from tests.examples import examples
@@ -448,26 +448,6 @@ def expanded(written: str, by: str, robot: Scene | None = None) -> Configuration
     return Configuration(urdf.reading.robot)
 
 
-@pytest.mark.parametrize(
-    ("check", "arguments", "written", "by"),
-    [
-        (joint_limits, LIMITS, 'upper="0.7854"', 'upper="$(env UPPER)"'),
-        (joint_axis, AXIS, 'axis xyz="0 1 0"', 'axis xyz="$(env AXIS)"'),
-        (joint_dynamics, {"link": "tip", "damping": 0.0}, 'friction="0.5"', 'friction="$(env F)"'),
-        (mimics, {"link": "tip", "leader": "tip"}, "<dynamics ", '<mimic joint="$(env LEADER)"/><dynamics '),
-    ],
-)
-def test_what_xacro_leaves_open_needs_manual_grading(
-    check: AnyCheck, arguments: Arguments, written: str, by: str
-) -> None:
-    """A part that only a run tells is no failure; the other parts of the joint are decided."""
-    robot = expanded(written, by)
-    with pytest.raises(NotDecided, match="is known only at run time"):
-        check(robot, **arguments)
-    other, more = (joint_dynamics, {"link": "tip"}) if check is joint_limits else (joint_limits, LIMITS)
-    assert other(robot, **more).status == "passed"
-
-
 @every_check
 @pytest.mark.parametrize(
     ("written", "by"), [('type="revolute"', 'type="$(env X)"'), ('child link="arm"', 'child link="$(env X)"')]
@@ -477,21 +457,6 @@ def test_a_joint_that_xacro_leaves_open(name: str, written: str, by: str) -> Non
     arguments = {**CASE[name].arguments, "link": "tip"} | ({"leader": "tip"} if name == "mimics" else {})
     with pytest.raises(NotDecided, match="is known only at run time"):
         CASE[name].check(expanded(written, by), **arguments)
-
-
-@pytest.mark.parametrize("tag", ["limit", "mimic", "dynamics"])
-def test_an_element_that_may_be_there(tag: str) -> None:
-    """What xacro adds under a condition that only a run tells may be there: its absence is no failure."""
-    perhaps = f'<xacro:if value="$(env X)"><{tag} joint="a" effort="1" velocity="1" damping="1"/></xacro:if>'
-    robot = expanded("<dynamics/>", perhaps, swinging(limit="", more="<dynamics/>"))
-    checks: dict[str, tuple[AnyCheck, Arguments]] = {
-        "limit": (joint_limits, LIMITS),
-        "mimic": (mimics, {"link": "tip", "leader": "tip"}),
-        "dynamics": (joint_dynamics, {"link": "tip", "damping": 0.0}),
-    }
-    check, arguments = checks[tag]
-    with pytest.raises(NotDecided, match="is known only at run time"):
-        check(robot, **arguments)
 
 
 @pytest.mark.parametrize("mimic", ["left_joint", "right_joint2"])
