@@ -152,17 +152,6 @@ def test_another_shape_is_named(required: str, shown: str) -> None:
     )
 
 
-def test_a_link_without_a_visual_shows_no_shape() -> None:
-    """A link without visuals misses a visual, with the same message for every check, so that later criteria are skipped."""
-    checks: list[tuple[AnyCheck, Arguments]] = [
-        (shows_box, BOX), (shows_cylinder, CYLINDER), (shows_sphere, SPHERE), (shows_colour, GREEN), (shows_grey, WHITE)
-    ]  # fmt: skip
-    for check, arguments in checks:
-        error = missing(check, scene(link("empty")), **{**arguments, "link": "empty"})
-        assert (error.kind, error.name) == ("visual", "empty")
-        fails(check, scene(link("empty")), at="<link", **{**arguments, "link": "empty"})
-
-
 def test_what_has_no_size_does_not_count() -> None:
     """Visuals without a size are ignored, whatever their place; plates, discs and negative sizes are visible."""
     nothing = visual(box(0.0, 0.0, 0.0), material=paint("1 0 0 1", "red"))

@@ -275,12 +275,6 @@ def test_the_centre_of_the_largest_visual_counts() -> None:
         passes(centre_at, found, **CENTRE)
 
 
-def test_the_centre_of_a_mesh_is_unknown() -> None:
-    """A mesh may lie anywhere about its origin, so its centre needs manual grading."""
-    for xyz in ((-0.15, 0.225, 0.0), (-0.15, 0.2, 0.0)):
-        assert graded(centre_at, rolling(xyz=xyz).with_shape(mesh()), **CENTRE).status == "pending"
-
-
 # --- bottom_at_height, bottoms_at_height ------------------------------------------------------------------------------
 
 

@@ -217,16 +217,6 @@ def test_evidence_is_shown_with_its_criterion() -> None:
     assert [file.path for file in report.others] == ["holiday.png"]
 
 
-def test_a_single_urdf_is_graded_on_its_own_part() -> None:
-    """A single URDF is graded on the parts that need nothing else; the report names the other parts."""
-    single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
-    report = grade(LAB, single)
-    assert report.parts == ("task1",)
-    assert (report.score, report.max_score, report.pending) == (Decimal(70), Decimal(70), Decimal(0))
-    assert report.notes == ("only task1 is graded: task2, task3 and questions need the whole folder",)
-    assert grade(LAB, single, ["task1"]).notes == ()
-
-
 @pytest.mark.parametrize("part", ["task2", "task3", "questions"])
 def test_a_single_urdf_has_no_package(part: str) -> None:
     """Selecting a part that needs more than a URDF is wrong usage."""
