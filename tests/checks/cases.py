@@ -5,8 +5,6 @@ from dataclasses import dataclass, field
 from math import radians
 from typing import Any
 
-import pytest
-
 from grader.checks import (
     appearance,
     collisions,
@@ -77,11 +75,6 @@ class Case:
     def name(self) -> str:
         """Return the name of the check."""
         return self.check.__name__
-
-    @property
-    def family(self) -> str:
-        """Return the module of the check."""
-        return self.check.__module__.rpartition(".")[2]
 
 
 def painted(name: str, rgba: str) -> Scene:
@@ -495,9 +488,3 @@ CASES = (
 )
 
 CASE = {case.name: case for case in CASES}
-
-
-def cases_of(family: str) -> pytest.MarkDecorator:
-    """Parametrise a test over the checks of a family."""
-    chosen = [case for case in CASES if case.family == family]
-    return pytest.mark.parametrize("case", chosen, ids=[case.name for case in chosen])

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
@@ -41,16 +42,18 @@ def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
     try:
         outcome = check(*subjects, **arguments)
     except (MissingElement, NotDecided) as error:
-        found = row(check.__name__, {"message": str(error), **vars(error)})
-        FOUND.setdefault(wording(found), found)
+        _record(row(check.__name__, {"message": str(error), **vars(error)}))
         raise
     return _recorded(check, outcome)
 
 
 def _recorded(check: AnyCheck, outcome: Outcome) -> Outcome:
-    found = row(check.__name__, outcome._asdict())
-    FOUND.setdefault(wording(found), found)
+    _record(row(check.__name__, outcome._asdict()))
     return outcome
+
+
+def _record(found: str) -> None:
+    FOUND.setdefault(wording(found), found)
 
 
 def wording(found: str) -> str:
@@ -102,7 +105,9 @@ def lacks(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Lack:
 
 
 def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
-    """Return the outcome of a rubric's only criterion, which uses this check."""
+    """Return the outcome of a rubric's only criterion, which uses this check; what the check raises is approved, too."""
+    with suppress(Exception):
+        ask(check, of, **arguments)
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
     submission = _subject("submission", of)

@@ -36,7 +36,7 @@ class Submitted:
     @cached_property
     def submission(self) -> Submission:
         """Return the submission that the grader reads from the files."""
-        files = [_file(path, self.data(path)) for path in self.files]
+        files = [_file(path, self.data(path)) for path in self.files if not path.startswith("install/")]
         tree = make_tree(
             "submission",
             files,
@@ -44,6 +44,7 @@ class Submitted:
             ignored=[
                 IgnoredFile(path, "is a rar archive", is_archive=True) for path in self.files if path.endswith(".rar")
             ],
+            generated=[path for path in self.files if path.startswith("install/")],
         )
         return submission_of(tree, "submission", Lab("urdf/my_robot.urdf", FOLDER))
 

@@ -13,7 +13,7 @@ from grader.errors import NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.transforms import Vector
 from grader.submission.opening import read_submission
-from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
+from tests.checks.cases import BASE, CASE, LIDAR
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
 from tests.examples import examples
@@ -39,28 +39,7 @@ def painted(rgba: str, name: str = "base") -> Scene:
     return scene(link(name, visual(box(1.0, 1.0, 1.0), material=paint(rgba))))
 
 
-@cases_of("appearance")
-def test_a_passing_outcome_carries_its_measurement(case: Case) -> None:
-    """The outcome holds the measured and expected values, the tolerance and the unit."""
-    outcome = ask(case.check, case.passing, **case.arguments)
-    assert outcome.tolerance == case.arguments.get("tolerance")
-    assert outcome.unit == (None if case.name in ("shows_colour", "shows_grey", "shows_nothing") else "m")
-    assert (outcome.measured is None) == (case.name == "shows_nothing")
-
-
 # --- Boxes ------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("axis", "sign"), list(product(range(3), (-1, 1))))
-def test_a_box_edge_has_a_tolerance(axis: int, sign: int) -> None:
-    """Each edge may be off by the tolerance, inclusive, and by no more."""
-    for off, fine in ((0.0019, True), (0.002, True), (0.0021, False)):
-        edges = list(SIZE)
-        edges[axis] += sign * off
-        outcome = ask(shows_box, boxed(edges[0], edges[1], edges[2]), **BOX)
-        assert (outcome.status == "passed") == fine
-        assert outcome.measured == pytest.approx(tuple(edges))
-        assert (outcome.expected, outcome.tolerance, outcome.unit) == (SIZE, 0.002, "m")
 
 
 @pytest.mark.parametrize(
@@ -141,47 +120,18 @@ def test_a_cylinder_has_a_tolerance_in_both_lengths(sign: int) -> None:
     fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + off, 0.05 + off)))), at="radius=", **CYLINDER)
 
 
-def test_a_message_about_a_cylinder_has_both_lengths() -> None:
-    """The message gives measured and expected values, so that a diameter used as a radius is recognised."""
-    message = fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.2, 0.05)))), **CYLINDER)
-    assert message == (
-        "'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m"
-    )
-    outcome = ask(shows_cylinder, scene(link("lidar", visual(cylinder(0.2, 0.05)))), **CYLINDER)
-    assert (outcome.measured, outcome.expected, outcome.tolerance, outcome.unit) == (
-        (0.2, 0.05),
-        (0.1, 0.05),
-        0.002,
-        "m",
-    )
-
-
 def test_of_several_cylinders_the_nearest_counts() -> None:
     """If a link shows several cylinders, one correct cylinder is enough; otherwise the nearest one is reported."""
-    others = (visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
+    others = (visual(cylinder(0.01, 0.01)), visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
     passes(shows_cylinder, scene(link("lidar", *others, visual(cylinder()))), **CYLINDER)
     fails(shows_cylinder, scene(link("lidar", *others, visual(cylinder(0.1, 0.06)))), at='length="0.06"', **CYLINDER)
 
 
-@pytest.mark.parametrize(
-    ("radius", "side"),
-    [(0.0519, ""), (0.052, ""), (0.0481, ""), (0.048, ""), (0.0521, "2.1 mm too large"), (0.0479, "2.1 mm too small")],
-)
-def test_a_sphere_has_a_tolerance(radius: float, side: str) -> None:
-    """A radius may be off by the tolerance, inclusive; beyond it the message says by how much and in which direction."""
-    found = scene(link("caster", visual(sphere(radius))))
-    if side:
-        message = fails(shows_sphere, found, at="radius=", **SPHERE)
-        assert message == f"the radius of the sphere that 'caster' shows is {radius:g} m; it should be 0.05 m ({side})"
-    else:
-        passes(shows_sphere, found, **SPHERE)
-
-
 def test_of_several_spheres_the_nearest_counts() -> None:
     """If a link shows several spheres, one correct sphere is enough; otherwise the nearest one is reported."""
-    other = visual(sphere(1.0))
-    passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
-    fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
+    for other in (visual(sphere(1.0)), visual(sphere(0.001))):
+        passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
+        fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
 
 
 SHAPES = {"box": box(0.6, 0.4, 0.2), "cylinder": cylinder(), "sphere": sphere(0.05), "mesh": mesh()}
@@ -200,17 +150,6 @@ def test_another_shape_is_named(required: str, shown: str) -> None:
         fails(case.check, found, at=f"<{shown}", **case.arguments)
         == f"{name!r} shows a {shown}; it should show a {required}"
     )
-
-
-def test_a_link_without_a_visual_shows_no_shape() -> None:
-    """A link without visuals misses a visual, with the same message for every check, so that later criteria are skipped."""
-    checks: list[tuple[AnyCheck, Arguments]] = [
-        (shows_box, BOX), (shows_cylinder, CYLINDER), (shows_sphere, SPHERE), (shows_colour, GREEN), (shows_grey, WHITE)
-    ]  # fmt: skip
-    for check, arguments in checks:
-        error = missing(check, scene(link("empty")), **{**arguments, "link": "empty"})
-        assert (error.kind, error.name) == ("visual", "empty")
-        fails(check, scene(link("empty")), at="<link", **{**arguments, "link": "empty"})
 
 
 def test_what_has_no_size_does_not_count() -> None:

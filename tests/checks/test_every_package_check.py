@@ -7,8 +7,9 @@ import pytest
 from grader.checks.check import About, describe
 from grader.checks.outcome import Outcome, passed
 from grader.package.package import Package
+from grader.text import was_not_committed
 from tests.checks.outcomes import ask, graded, missing
-from tests.checks.package_cases import PACKAGE_CASES, PackageCase
+from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PackageCase
 from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
 
 every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
@@ -106,3 +107,69 @@ def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatc
     assert describe(has_driver).about == About()
     monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": About(("launch",))}, raising=False)
     assert describe(has_driver).about.looks_at == ("launch",)
+
+
+_LAUNCHED = "(os.path.join('share', package_name, 'launch'), glob(os.path.join('launch', '*launch.[pxy][yma]*'))),"
+_TWICE = _LAUNCHED.replace(", 'launch'), glob(", "), glob(")
+_URDF_AT = "os.path.join(share, 'my_robot.urdf')"
+_TOPIC = """Description Topic:
+        Depth: 5
+        Durability Policy: Volatile
+        History Policy: Keep Last
+        Reliability Policy: Reliable
+        Value: /robot_description
+"""
+_DESCRIPTION = "'robot_description': robot_description"
+_PREFIX = f"{_DESCRIPTION}, 'frame_prefix': LaunchConfiguration('prefix')"
+_TOO_LARGE = "#" * 600_000
+MISTAKES = [  # a check, a text of a file and what is there instead, or the whole file, and what the check says
+    ("package_found", SETUP, "['resource/' + package_name]", "['package.xml']",
+     "package.xml names the package 'my_robot', but setup.py registers it as 'package.xml'"),
+    ("build_installs", SETUP, _LAUNCHED, _LAUNCHED + _TWICE,
+     "share/my_robot/launch/my_robot_rviz.launch.py and as share/my_robot/my_robot_rviz.launch.py; ros2 launch needs exactly one"),
+    ("launch_starts", LAUNCH, "", _TOO_LARGE, "my_robot_rviz.launch.py is larger than 131072 bytes; needs manual grading"),
+    ("launch_finds_files", LAUNCH, "", _TOO_LARGE, "my_robot_rviz.launch.py is larger than 131072 bytes; needs manual grading"),
+    ("rviz_fixed_frame", RVIZ, "", _TOO_LARGE, "my_robot.rviz is larger than 524288 bytes; needs manual grading"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "share + 'my_robot.urdf'",
+     "the launch file looks for the URDF at share/my_robotmy_robot.urdf: a slash is missing after 'my_robot'"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "share + 'urdf/my_robot.urdf'",
+     "the launch file looks for the URDF at share/my_roboturdf/my_robot.urdf: a slash is missing after 'my_robot'"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "share + '/../my_robot2/my_robot.urdf'",
+     "the launch file looks in a package 'my_robot2', but the graded package is named 'my_robot'"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "'/my_robot.urdf'",
+     "the URDF at /my_robot.urdf: joining a path that begins with / drops the folders before it"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "'/opt/parts.urdf'", "the URDF /opt/parts.urdf is not part of the package; needs manual grading"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "'~/my_robot.urdf'", "~/my_robot.urdf, but nothing replaces ~ by the home folder"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "os.path.join(share, 'robot.urdf')",
+     "share/my_robot/robot.urdf, but the package has no file 'robot.urdf'; there is 'my_robot.urdf'"),
+    ("launch_finds_files", LAUNCH, _URDF_AT, "os.path.join(share, 'urdf', 'my_robot.urdf')",
+     "the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"),
+    ("rviz_shows_robot", RVIZ, _TOPIC, "Description Topic: robot_description/\n", "the display 'RobotModel' shows the robot"),
+    ("rviz_shows_robot", RVIZ, "Name: RobotModel\n", "Name: ''\n", "the display 'RobotModel' shows the robot"),
+    ("rviz_shows_robot", RVIZ, "Name: RobotModel\n", "Name: Base\n", "the display 'Base' shows the robot"),
+    ("rviz_shows_robot", RVIZ, _TOPIC, "Alpha: 1\n",
+     "the RobotModel display has no Description Topic; it should be '/robot_description'"),
+    ("rviz_shows_robot", LAUNCH, _DESCRIPTION, _PREFIX,
+     "the frame_prefix of robot_state_publisher is known only at run time; needs manual grading"),
+    ("rviz_fixed_frame", LAUNCH, _DESCRIPTION, _PREFIX,
+     "the frame_prefix of robot_state_publisher is known only at run time; needs manual grading"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "path", "old", "new", "message"), MISTAKES, ids=[row[4] for row in MISTAKES])
+def test_other_mistakes(name: str, path: str, old: str, new: str, message: str) -> None:
+    """The message says what is wrong in which file."""
+    submitted = REFERENCE.replacing(path, old, new) if old else REFERENCE.with_files({path: new})
+    case = PACKAGE_CASE[name]
+    arguments = case.arguments if name != "build_installs" else {"kind": "launch", "name": "*.launch.py"}
+    assert graded(case.check, submitted, **arguments).message.endswith(message)
+
+
+@pytest.mark.parametrize(("name", "path"), [("launch_found", LAUNCH), ("rviz_found", RVIZ)])
+def test_a_file_that_was_built_is_named(name: str, path: str) -> None:
+    """Of a package without the file, and with a build that has it, only the build was submitted."""
+    case, file = PACKAGE_CASE[name], path.rpartition("/")[2]
+    built = f"install/my_robot/share/my_robot/{file}"
+    submitted = REFERENCE.renaming(path, path.replace(file, f"other_{file}")).with_files({built: ""})
+    assert graded(case.check, submitted, **case.arguments).message.endswith(was_not_committed(built))
+    assert "install" not in graded(case.check, submitted.renaming(built, f"{built}.py"), **case.arguments).message

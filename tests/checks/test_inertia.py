@@ -61,6 +61,9 @@ def test_grams_are_recognised() -> None:
     """A mass that is a thousand times too large looks like grams."""
     message = fails(mass_is, arm((1.0,) * 6, mass=500.0), at='value="500.0"', **MASS)
     assert message == "the mass of 'arm' is 500 kg; it should be 0.5 kg (500 kg too large): is it in grams?"
+    for mass, is_in_grams in ((496.0, True), (504.0, True), (494.0, False), (506.0, False)):
+        message = fails(mass_is, arm((1.0,) * 6, mass=mass), **MASS)
+        assert message.endswith("grams?") == is_in_grams
 
 
 def test_a_missing_inertial() -> None:
@@ -184,6 +187,9 @@ ROUND, FLAT, LYING = solid_inertia(ROD, 2.0), solid_inertia(PLATE, 2.0), {"rpy":
 MISTAKES = [
     (ROD, scaled(ROUND, 1.6), {}, "it is 60 % too large, as for a mass of 3.2 kg"),
     (ROD, scaled(ROUND, 0.5), {}, "it is 50 % too small, as for a mass of 1 kg"),
+    (ROD, scaled(ROUND, 2.9), {}, "it is 190 % too large, as for a mass of 5.8 kg"),
+    (ROD, scaled(ROUND, 3.5), {}, "it is 3.5 times too large, as for a mass of 7 kg"),
+    (ROD, scaled(ROUND, 0.3), {}, "it is 3.33 times too small, as for a mass of 0.6 kg"),
     (ROD, scaled(ROUND, 12.0), {}, "it is 12 times too large, as for a mass of 24 kg"),
     (ROD, scaled(ROUND, 1e3), {}, "it is 1,000 times too large, as if it were computed with grams"),
     (ROD, scaled(ROUND, 1e-3), {}, "it is 1,000 times too small, as if the mass were given in grams"),
@@ -198,6 +204,12 @@ MISTAKES = [
     (ROD, shifted(ROUND, 2.0, UP), ON_END,
      "it would fit if it were about the origin of the link, not about the centre of mass"),
     (ROD, shifted(ROUND, 2.0, UP), {}, "it would fit if it were about an end of the cylinder, not about its centre"),
+    (PLATE, shifted(FLAT, 2.0, (0.3, 0.0, 0.0)), {},
+     "it would fit if it were about an end of the box, not about its centre"),
+    (PLATE, shifted(FLAT, 2.0, (0.0, 0.2, 0.0)), {},
+     "it would fit if it were about an end of the box, not about its centre "),
+    (PLATE, mirrored(turned(FLAT, rotation_from_rpy((0.3, 0.5, 0.7)))), {"rpy": (0.3, 0.5, 0.7)},
+     "it would fit if ixy, ixz and iyz had the opposite sign "),
     (PLATE, mirrored(turned(FLAT, TILTED)), LYING, "it would fit if ixy, ixz and iyz had the opposite sign"),
     (PLATE, FLAT, LYING, "it would fit if the box were not turned"),
     (PLATE, (0.05, 0.0, 0.0, 0.0667, 0.0, 0.09), {}, "ixx is 0.05, not 0.0333, izz is 0.09, not 0.0867"),
@@ -212,7 +224,7 @@ def test_what_a_mistake_is_called(shape: Shape, inertia: Sequence[float], pose: 
         inertia_plausible, arm(inertia, shown, xyz=pose.get("xyz", "")), at="<inertia ", link="arm", tolerance=1.0
     )
     assert " % off that of a uniform solid of its visual: " in message
-    assert message.endswith(f": {cause}")
+    assert message.endswith(f": {cause.strip()}")
 
 
 def test_the_mass_centre_is_told() -> None:

@@ -1,8 +1,6 @@
 """The joint that moves a link: limits, axis, mimic, dynamics; whatever is fixed below it, and however it is written."""
 
-import json
 from math import radians
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,9 +16,8 @@ from grader.source import LazyLocation
 from grader.submission.opening import read_submission
 from grader.submission.urdf import Read
 from tests.checks.cases import CASE, gripping, swinging
-from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, joint, link, numbers, scene
-from tests.command_line import run
 from tests.examples import examples
 
 LIMITS: Arguments = {"link": "tip", "lower": -90.0, "upper": 45.0, "tolerance": 0.5}
@@ -448,26 +445,6 @@ def expanded(written: str, by: str, robot: Scene | None = None) -> Configuration
     return Configuration(urdf.reading.robot)
 
 
-@pytest.mark.parametrize(
-    ("check", "arguments", "written", "by"),
-    [
-        (joint_limits, LIMITS, 'upper="0.7854"', 'upper="$(env UPPER)"'),
-        (joint_axis, AXIS, 'axis xyz="0 1 0"', 'axis xyz="$(env AXIS)"'),
-        (joint_dynamics, {"link": "tip", "damping": 0.0}, 'friction="0.5"', 'friction="$(env F)"'),
-        (mimics, {"link": "tip", "leader": "tip"}, "<dynamics ", '<mimic joint="$(env LEADER)"/><dynamics '),
-    ],
-)
-def test_what_xacro_leaves_open_needs_manual_grading(
-    check: AnyCheck, arguments: Arguments, written: str, by: str
-) -> None:
-    """A part that only a run tells is no failure; the other parts of the joint are decided."""
-    robot = expanded(written, by)
-    with pytest.raises(NotDecided, match="is known only at run time"):
-        check(robot, **arguments)
-    other, more = (joint_dynamics, {"link": "tip"}) if check is joint_limits else (joint_limits, LIMITS)
-    assert other(robot, **more).status == "passed"
-
-
 @every_check
 @pytest.mark.parametrize(
     ("written", "by"), [('type="revolute"', 'type="$(env X)"'), ('child link="arm"', 'child link="$(env X)"')]
@@ -477,21 +454,6 @@ def test_a_joint_that_xacro_leaves_open(name: str, written: str, by: str) -> Non
     arguments = {**CASE[name].arguments, "link": "tip"} | ({"leader": "tip"} if name == "mimics" else {})
     with pytest.raises(NotDecided, match="is known only at run time"):
         CASE[name].check(expanded(written, by), **arguments)
-
-
-@pytest.mark.parametrize("tag", ["limit", "mimic", "dynamics"])
-def test_an_element_that_may_be_there(tag: str) -> None:
-    """What xacro adds under a condition that only a run tells may be there: its absence is no failure."""
-    perhaps = f'<xacro:if value="$(env X)"><{tag} joint="a" effort="1" velocity="1" damping="1"/></xacro:if>'
-    robot = expanded("<dynamics/>", perhaps, swinging(limit="", more="<dynamics/>"))
-    checks: dict[str, tuple[AnyCheck, Arguments]] = {
-        "limit": (joint_limits, LIMITS),
-        "mimic": (mimics, {"link": "tip", "leader": "tip"}),
-        "dynamics": (joint_dynamics, {"link": "tip", "damping": 0.0}),
-    }
-    check, arguments = checks[tag]
-    with pytest.raises(NotDecided, match="is known only at run time"):
-        check(robot, **arguments)
 
 
 @pytest.mark.parametrize("mimic", ["left_joint", "right_joint2"])
@@ -510,38 +472,3 @@ def test_what_xacro_refuses_is_missing() -> None:
         joint_limits(expanded('upper="0.7854"', 'upper="${top}"'), **LIMITS)
     assert isinstance(raised.value.location, LazyLocation)
     assert raised.value.location.resolve().line == 10
-
-
-# --- The command line -------------------------------------------------------------------------------------------------
-
-CRITERION = """
-[[criterion]]
-id = "{0}"
-title = "{0}"
-part = "all"
-points = 2
-check = "{1}"
-with = {{ {2} }}
-"""
-CRITERIA = (
-    ("range", "joint_limits", 'link = "tip", lower = -90, upper = 45, tolerance = 1, effort = 10, velocity = 2.0'),
-    ("axis", "joint_axis",
-     'link = "tip", relative_to = "base", direction = [0, 1, 0], tolerance = 1, either_way = true, through = [0.1, 0, 0.2]'),
-    ("friction", "joint_dynamics", 'link = "tip", friction = 0.5, damping = 0'),
-    ("free", "mimics", 'link = "tip", leader = "arm", multiplier = -1'),
-    ("size", "counts", "links = 3, joints = 2, moving = 1, revolute = 1, fixed = 1"),
-)  # fmt: skip
-
-
-def test_a_rubric_with_these_checks(tmp_path: Path) -> None:
-    """Through the command line: what is right earns its points, what is wrong says where and what was expected."""
-    (tmp_path / "arm.urdf").write_text(swinging(more='<dynamics friction="0.1"/>').text)
-    part = '[[part]]\nid = "all"\ntitle = "All"\nneeds = "urdf"\n'
-    head = 'id = "arm"\ntitle = "Arm"\nreference = "arm.urdf"\nurdf = "arm.urdf"\n'
-    (tmp_path / "arm.toml").write_text(head + part + "".join(CRITERION.format(*row) for row in CRITERIA))
-    done = run(("grade", tmp_path / "arm.urdf", "--rubric", tmp_path / "arm.toml", "--format", "json"))
-    results = json.loads(done.stdout)["results"]
-    assert [result["status"] for result in results] == ["passed", "passed", "failed", "failed", "passed"]
-    friction = results[2]
-    assert friction["message"].endswith("; its friction is 0.1; it should be 0.5 (joint 'shoulder')")
-    assert (friction["measured"], friction["expected"], friction["location"]["line"]) == ([0.1, 0], [0.5, 0], 11)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
+from tests.checks.cases import BASE, FORWARD, WHEEL, rolling
 from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
 from tests.examples import examples
@@ -33,16 +33,6 @@ def with_wheel(*visuals: str, kind: str = "continuous", rpy: str = FORWARD, axis
         link("wheel", *visuals),
         joint("wheel_joint", kind, "base", "wheel", xyz="-0.15 0.225 0", rpy=rpy, axis=axis),
     )
-
-
-@cases_of("motion")
-def test_directions_are_measured_in_degrees(case: Case) -> None:
-    """Every outcome carries the measured and expected values; angles are in degrees."""
-    outcome = ask(case.check, case.failing, **case.arguments)
-    assert outcome.measured is not None
-    assert outcome.expected is not None
-    assert outcome.tolerance == 1.0
-    assert outcome.unit == "deg"
 
 
 # --- rolls_forward ----------------------------------------------------------------------------------------------------
@@ -142,16 +132,6 @@ def test_a_wheel_that_lies_flat_does_not_roll() -> None:
     assert "does not roll" in fails(rolls_forward, with_wheel(BALL, rpy="", axis="0 0 1"), **FORWARDS)
     swapped = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "wheel", "base", rpy=turned(roll=90), axis="0 1 0"))
     assert "backward" in fails(rolls_forward, swapped, **FORWARDS)
-
-
-@pytest.mark.parametrize(
-    ("off", "fine"), [(0.0, True), (0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False)]
-)
-def test_straight_ahead_has_a_tolerance(off: float, fine: bool) -> None:
-    """The wheel may toe in or out by the tolerance, inclusive; beyond it the message says by how much."""
-    outcome = ask(rolls_forward, rolling(rpy=turned(roll=-90, yaw=off)), **FORWARDS)
-    assert (outcome.status == "passed") == fine
-    assert outcome.measured == pytest.approx((cos(radians(off)), sin(radians(off)), 0.0))
 
 
 @pytest.mark.parametrize(
@@ -332,24 +312,6 @@ def test_a_cylinder_may_be_moved_along_its_axis() -> None:
 def test_the_visual_may_be_turned_instead_of_the_frame(axis: str, rpy: str) -> None:
     """Axis and cylinder must agree, wherever the turn is written."""
     passes(turns_about_itself, with_wheel(visual(cylinder(), rpy=rpy), rpy="", axis=axis), **ITSELF)
-
-
-@pytest.mark.parametrize(
-    ("off", "fine"), [(0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False), (90.0, False)]
-)
-def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
-    """The joint's axis may be off the cylinder's by the angle, inclusive; beyond it the wheel wobbles."""
-    found = with_wheel(visual(cylinder(), rpy=turned(pitch=off)))
-    outcome = ask(turns_about_itself, found, **ITSELF)
-    assert (outcome.status == "passed") == fine
-    if not fine:
-        assert outcome.measured == pytest.approx(abs(off))
-        assert outcome.expected == 0.0
-        assert (outcome.tolerance, outcome.unit) == (1.0, "deg")
-        assert outcome.message == (
-            f"'wheel' wobbles: its joint axis is {abs(off):g} degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')"
-        )
-        assert outcome.location == found.location_of('xyz="0 0 1"')
 
 
 @pytest.mark.parametrize(

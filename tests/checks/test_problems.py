@@ -31,6 +31,8 @@ def test_other_problems_do_not_matter() -> None:
     """Only the named codes count; the first problem is named, and how many more there are."""
     twice = Scene(arm(axis="0 2 0").text.replace('xyz="0 0 1"', 'xyz="0 0 2"'))
     assert ask(without_problems, twice, problems=["URDF031"]).status == "passed"
+    several = ask(without_problems, twice, problems=[f"URDF03{number}" for number in range(7)])
+    assert several.message == "the URDF has none of the problems URDF030, URDF031, URDF032, URDF033, URDF034 and 2 more"
     outcome = graded(without_problems, twice, problems=["URDF031", "URDF074"])
     assert (
         outcome.message

@@ -106,6 +106,23 @@ def test_macros_are_called() -> None:
     assert graded(xacro_uses, IN_XACRO, macros=["wheels"]).message.endswith("did you mean 'wheel'?")
 
 
+def test_long_lists_are_cut() -> None:
+    """Of names of properties and files five are shown."""
+    names = [f"n{number}" for number in range(7)]
+    texts = "".join(
+        f'<xacro:property name="{name}" value="1"/><xacro:include filename="{name}.xacro"/>' for name in names
+    )
+    files = {f"{name}.xacro": "" for name in names}
+    unused, missing = found(texts, files, properties=7), found(texts, files, includes=[f"x{name}" for name in names])
+    for outcome, count in ((unused, 1), (missing, 2), (found(texts, files, includes=7), 1)):
+        assert outcome.message.count(" more") == count
+    plain = REFERENCE.with_files({f"my_robot/urdf/{name}": ROBOT.format("") for name in files})
+    assert graded(xacro_uses, plain, includes=1).message.count(" more") == 1
+    both = found(MACRO.format("", "x"), macros=["m"], properties=["a"], includes=["a.xacro"])
+    assert both.message.count("; ") == 3
+    assert found(PROPERTY, includes=["/wheel.xacro/"]).message.endswith("included: none")
+
+
 def test_includes() -> None:
     """Files are named by the ends of their paths, or counted once each; those that are not there do not count."""
     for includes in (1, ["wheel.xacro"], ["urdf/wheel.xacro"], ["my_robot/urdf/wheel.xacro"]):

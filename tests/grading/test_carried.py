@@ -117,10 +117,11 @@ def test_an_undecided_fact_needs_manual_grading() -> None:
 
     def unsure(robot: Configuration) -> Outcome:
         """A check that cannot tell."""
-        return pending("a mesh is not opened; needs manual grading")
+        return pending("a mesh is not opened; needs manual grading", "a mesh")
 
     report = report_on(ask("one", fails_), carried_from("two", ["one"], fails_, unsure))
     assert statuses(report) == ["failed", "pending"]
+    assert report.results[1].outcome.mistake == "a mesh"
     assert report.results[1].outcome.message.endswith(
         "; whether this is due to one alone cannot be decided: a mesh is not opened; needs manual grading"
     )

@@ -217,14 +217,6 @@ def test_the_location_of_a_missing_thing_is_kept() -> None:
 # --- Unreadable files -------------------------------------------------------------------------------------------------
 
 
-def test_of_an_unreadable_file_only_the_file_fails() -> None:
-    """Without a robot, the check of the file fails and all checks of the robot are skipped because of it."""
-    report = run(ask("loads", urdf_loads), ask("one"), ask("two", breaks), ask("three", misses, what="x"), on=NOT_XML)
-    assert statuses(report) == ["failed", "skipped", "skipped", "skipped"]
-    assert causes(report) == [None, "loads", "loads", "loads"]
-    assert sums(report) == [0, 4, 0]
-
-
 def test_a_check_of_the_file_also_runs_on_an_unreadable_one() -> None:
     """Checks of the file do not need a robot."""
     report = run(ask("loads", urdf_loads), ask("file", of_file), ask("robot"), on=NOT_XML)
@@ -240,19 +232,6 @@ def test_without_a_check_of_the_file_the_first_criterion_fails() -> None:
     assert "no robot" in report.results[0].outcome.message
     report = run(ask("loads", urdf_loads), ask("one", part="b"), on=NOT_XML, parts=["b"])
     assert statuses(report) == ["failed"]
-
-
-def test_a_rejected_file_is_graded() -> None:
-    """A robot that does not load still has a box of the correct size: only mistakes lose points."""
-    robot = scene(BASE, LIDAR)
-    assert robot.reading.verdict == "rejected"
-    report = run(
-        ask("loads", urdf_loads),
-        ask("box", shows_box, link="base", size=(0.6, 0.4, 0.2), tolerance=0.002),
-        ask("green", shows_colour, link="base", colour=(0.0, 0.6, 0.0), tolerance=0.01),
-        on=robot,
-    )
-    assert statuses(report) == ["failed", "passed", "passed"]
 
 
 # --- Errors of the grader -----------------------------------------------------------------------------------------------
