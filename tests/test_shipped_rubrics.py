@@ -48,7 +48,7 @@ def test_the_code_knows_no_lab() -> None:
         for text in constants(ast.parse(path.read_text(encoding="utf-8")))
         if text in made_up
     ]
-    assert found == [("grader.usecases", DEFAULT_RUBRIC)]
+    assert found == [("grader.usecases.rubrics", DEFAULT_RUBRIC)]
 
 
 @every_rubric

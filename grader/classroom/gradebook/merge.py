@@ -15,9 +15,8 @@ from grader.errors import InputError
 from grader.text import printable_path
 
 Choice = Literal["first", "second"]
-ConflictId = tuple[
-    str, str, int, int
-]  # key, criterion, and the ids of the newest marks: another mark is another conflict
+# Key, criterion, and the ids of the newest marks: another mark is another conflict.
+ConflictId = tuple[str, str, int, int]
 # What a result refers to: the tables that belong to a rubric, each with its column, and the dictionary.
 _OF_RUBRIC = (("rubric", "sha256"), ("criterion", "rubric"), ("model_answer", "rubric"))
 

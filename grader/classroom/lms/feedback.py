@@ -61,23 +61,28 @@ def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
         out_of = sum((result.criterion.points for result in group), Decimal(0))
         if len(group) == 1:
             (result,) = group
-            message = _capitalise(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
-            message = f"{message}. {result.why_given}" if result.why_given else message
-            message = (
-                result.why_given if result.is_adjusted else message
-            )  # what the check found is not the student's mistake
-            if result.manual_mark is None and (comment := _comment(result)):
-                message = (
-                    f"{message}. {comment}" if result.outcome.status != "passed" or result.is_adjusted else comment
-                )
             title = f"{result.criterion.title} (extra credit)" if result.criterion.bonus else result.criterion.title
-            yield FeedbackItem(title, result.points, out_of, message, result.is_open)
+            yield FeedbackItem(title, result.points, out_of, _message(result), result.is_open)
         elif kind == "skipped":
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
         else:
-            yield FeedbackItem(
-                f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalise(cause), is_open=True
-            )
+            title = f"{len(group)} criteria need manual grading"
+            yield FeedbackItem(title, Decimal(0), out_of, _capitalise(cause), is_open=True)
+
+
+def _message(result: Result) -> str:
+    """Return what is said of one criterion: what the check found or why it does not count, and a person's comment."""
+    comment, why = _comment(result), result.why_given
+    if result.manual_mark is not None:
+        return comment
+    message = _capitalise(result.outcome.message)
+    if result.is_adjusted:  # what the check found is not the student's mistake
+        message = why
+    elif why:
+        message = f"{message}. {why}"
+    elif comment and result.outcome.status == "passed":
+        return comment
+    return f"{message}. {comment}" if comment else message
 
 
 def _comment(result: Result) -> str:
