@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -233,3 +234,21 @@ def test_parts_of_a_submission_may_be_chosen() -> None:
     report = graded(PICTURES, ["task3"])
     assert (report.parts, report.max_score, report.pending) == (("task3",), Decimal(2), Decimal(2))
     assert (report.problems, report.notes) == ((), ())
+
+
+def test_notes_and_problems_of_both_are_listed() -> None:
+    """Those of the URDF come before those of the package; a URDF beside the package and one that costs much are noted."""
+    two = REFERENCE.replacing(URDF, 'xyz="0 0 1"', 'xyz="0 0 2"').replacing(MANIFEST, "Apache-2.0", "TODO")
+    assert [problem.code for problem in graded(two).problems] == ["URDF074", "URDF074", "PKG003"]
+    large = (
+        REFERENCE.data(URDF).decode().replace("0 0.6 0 1", "0 1 0 1").replace("</robot>", " " * 300_000 + "</robot>")
+    )
+    costly = REFERENCE.without(URDF).with_files({"robot.urdf": large})
+    notes = (
+        "the graded URDF is outside the graded package",
+        "no hints were searched, because reading this robot takes too much work",
+    )
+    assert graded(costly).notes == notes
+    assert grade(replace(LAB, hints="none"), costly.submission).notes == notes[:1]
+    top = Submitted({path.removeprefix("my_robot/"): text for path, text in REFERENCE.files.items()})
+    assert graded(top).notes == ()
