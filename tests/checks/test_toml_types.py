@@ -55,7 +55,7 @@ TYPES: dict[Any, tuple[str, Any, list[tuple[Any, Any]], list[Any]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("annotation", "expected"), TYPES.items(), ids=map(str, TYPES))
+@pytest.mark.parametrize(("annotation", "expected"), TYPES.items(), ids=[row[0] for row in TYPES.values()])
 def test_a_type(annotation: Any, expected: tuple[str, Any, list[tuple[Any, Any]], list[Any]]) -> None:
     """A value of the type is converted, any other one is refused with the name of the type."""
     name, schema, values, refused = expected
