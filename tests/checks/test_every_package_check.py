@@ -6,6 +6,7 @@ import pytest
 
 from grader.checks.check import About, describe
 from grader.checks.outcome import Outcome, passed
+from grader.errors import InputError
 from grader.package.package import Package
 from grader.text import was_not_committed
 from tests.checks.outcomes import ask, graded, missing
@@ -107,6 +108,9 @@ def test_a_check_of_another_module_may_declare_it(monkeypatch: pytest.MonkeyPatc
     assert describe(has_driver).about == About()
     monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": About(("launch",))}, raising=False)
     assert describe(has_driver).about.looks_at == ("launch",)
+    monkeypatch.setattr(sys.modules[__name__], "ABOUT", {"has_driver": ("launch",)})
+    with pytest.raises(InputError, match=r"^ABOUT says of has_driver what is no About\(\.\.\.\)$"):
+        describe(has_driver)
 
 
 _LAUNCHED = "(os.path.join('share', package_name, 'launch'), glob(os.path.join('launch', '*launch.[pxy][yma]*'))),"

@@ -406,3 +406,15 @@ def test_the_pictures_of_the_reference_are_found() -> None:
         (WEBCAM, "Task3_Step3.png"),
     ):
         assert pictures(REFERENCE, names)[1] == (path,)
+
+
+def test_what_is_in_doubt_is_a_field() -> None:
+    """A heading with the question alone, a picture with a misspelt name, and what was not found."""
+    empty = answer_in(ALONE.with_files({"a.md": "# Task 1 step 15\n\nWhat happens?\n\n# Task 1 step 16\n\nNo.\n"}))
+    assert "only the question is there" in empty.message
+    webcm = ask(evidence_shown, ALONE.with_files({"webcm.png": png()}), names=["webcam"])
+    many = ask(evidence_shown, ALONE.with_files({f"{name}.png": png() for name in "abcdefghijklm"}), names=["webcam"])
+    found = (empty.problem, webcm.problem, many.problem, answer_in(ALONE).problem)
+    assert found == ("only the question is there", "perhaps", "not found", "not found")
+    assert many.message.endswith(" more; needs manual grading")
+    assert webcm.message.endswith("perhaps: webcm.png (640 x 480 pixels, 118 bytes)")

@@ -1,15 +1,19 @@
-"""One line for each outcome of the cases of the checks, and for each wording of outcomes and notes of the samples."""
+"""One line for each outcome of the cases of checks; for each wording among the samples; and for each fact of references."""
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 
+from grader.checks.measures.fact import Solution
+from grader.checks.registry import declared, own_checks
+from grader.robot.kinematics import Configuration
 from tests.checks.cases import CASES
 from tests.checks.outcomes import ask, row, wording
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES
 from tests.checks.submissions import REFERENCE
-from tests.samples import SAMPLES
+from tests.samples import RUBRICS, SAMPLES
 
-FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "samples")}
+FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "samples", "references")}
 
 
 def outcomes_of_cases() -> Iterator[str]:
@@ -36,4 +40,21 @@ def outcomes_of_samples() -> Iterator[str]:
                 yield found
 
 
-ROWS = {"cases": outcomes_of_cases, "samples": outcomes_of_samples}
+def facts_of_references() -> Iterator[str]:
+    """Yield what a new rubric asks for, of the references and of the robots in the cases, each wording once."""
+    references = [rubric.solution.submission for rubric in RUBRICS.values() if rubric.solution is not None]
+    seen = set()
+    for submission in [*references, *(case.passing.submission for case in CASES)]:
+        reading = submission.needed_urdf()
+        assert reading.robot is not None
+        solution = Solution(submission, reading, Configuration(reading.robot))
+        for check in own_checks():
+            for fact in declared(check.about.measure)(solution) if check.about.measure else ():
+                fields = {key: value for key, value in asdict(fact).items() if key != "title" and value is not False}
+                found = row(check.name, {"message": getattr(fact, "title", ""), **fields})
+                if wording(found) not in seen:
+                    seen.add(wording(found))
+                    yield found
+
+
+ROWS = {"cases": outcomes_of_cases, "samples": outcomes_of_samples, "references": facts_of_references}
