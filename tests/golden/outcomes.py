@@ -16,8 +16,11 @@ from tests.samples import RUBRICS, SAMPLES
 
 FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "samples", "references")}
 
+CMAKE = "my_robot/CMakeLists.txt"
 PACKAGES = (  # references whose package lacks something, or has something unusual
-    REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake").without(SETUP),
+    REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake")
+    .without(SETUP)
+    .with_files({CMAKE: "project(my_robot)\n"}),
     REFERENCE.replacing(MANIFEST, "ament_python", ""),
     REFERENCE.without(MANIFEST),
     REFERENCE.renaming(URDF, "my_robot.urdf"),
