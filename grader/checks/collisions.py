@@ -214,5 +214,6 @@ def _shape_text(geometry: Geometry) -> str:
             return f"a cylinder of radius {point((radius,))} m and length {point((length,))} m"
         case Sphere(radius=radius):
             return f"a sphere of radius {point((radius,))} m"
-        case Mesh(filename=filename, scale=scale):
-            return f"the mesh {file_name(filename)}{'' if scale == Mesh('').scale else f' scaled by {point(scale)}'}"
+        case mesh:
+            scaled = "" if mesh.scale == Mesh("").scale else f" scaled by {point(mesh.scale)}"
+            return f"the mesh {file_name(mesh.filename)}{scaled}"

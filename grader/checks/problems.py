@@ -36,15 +36,15 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: Codes) 
     Args:
         problems: The codes of the problems, such as "URDF051" or "XACRO002".
     """
-    if isinstance(submission.urdf, Read):
-        found = [problem for problem in submission.urdf.problems if problem.code in problems]
-        certain = [problem for problem in found if problem.kind.effect != "undetermined"]
-        if certain:
-            return _problem(certain)
-        open_ones = [it for it in submission.urdf.problems if it.kind.effect == "undetermined" or it.kind is UNLISTED]
-        if open_ones:
-            first = open_ones[0]
-            return pending(f"{first.message}; needs manual grading", first.message, first.location)
+    assert isinstance(submission.urdf, Read)  # else there is none that is needed
+    found = [problem for problem in submission.urdf.problems if problem.code in problems]
+    certain = [problem for problem in found if problem.kind.effect != "undetermined"]
+    if certain:
+        return _problem(certain)
+    open_ones = [it for it in submission.urdf.problems if it.kind.effect == "undetermined" or it.kind is UNLISTED]
+    if open_ones:
+        first = open_ones[0]
+        return pending(f"{first.message}; needs manual grading", first.message, first.location)
     if urdf.robot is None:
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
     return passed(f"the URDF has none of the problems {enumerated(problems, _MAX_NAMED)}")

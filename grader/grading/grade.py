@@ -146,10 +146,9 @@ def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequenc
     after = {result.criterion.id: result for result in decide(rubric, other, {it.criterion.id for it in decided})}
     before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
     gained = [after[name].criterion.points for name in lost if after[name].outcome.status == "passed"]
-    if len(gained) < _MIN_OF_CONVENTION or any(after[name].outcome.status != "passed" for name in before):
-        return ()
+    is_one = len(gained) >= _MIN_OF_CONVENTION and all(after[name].outcome.status == "passed" for name in before)
     points = counted_points(sum(gained, Decimal(0)))
-    return (f"everything is {found.description} relative to the handout: one decision, {points}",)
+    return (f"everything is {found.description} relative to the handout: one decision, {points}",) if is_one else ()
 
 
 def _convention(rubric: Rubric, submission: Submission) -> "Convention | None":

@@ -10,10 +10,30 @@ from grader.robot.kinematics import Configuration
 from tests.checks.cases import CASES
 from tests.checks.outcomes import ask, row, wording
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES
-from tests.checks.submissions import REFERENCE
+from tests.checks.robots import inertial, joint, link, scene
+from tests.checks.submissions import LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF
 from tests.samples import RUBRICS, SAMPLES
 
 FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "samples", "references")}
+
+CMAKE = "my_robot/CMakeLists.txt"
+PACKAGES = (  # references whose package lacks something, or has something unusual
+    REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake")
+    .without(SETUP)
+    .with_files({CMAKE: "project(my_robot)\n"}),
+    REFERENCE.replacing(MANIFEST, "ament_python", ""),
+    REFERENCE.without(MANIFEST),
+    REFERENCE.renaming(URDF, "my_robot.urdf"),
+    REFERENCE.with_files({LAUNCH: "def generate_launch_description():\n    return LaunchDescription([])\n"}),
+    REFERENCE.with_files({RVIZ: "Visualization Manager:\n  Displays: []\n"}),
+    REFERENCE.replacing(RVIZ, "Value: /robot_description", "Value: /other"),
+    REFERENCE.replacing(SETUP, "glob('urdf/*')", "glob('urdf/*.*')").with_files({"my_robot/urdf/part.stl": "solid"}),
+)
+ROBOT = scene(  # links without shapes, and a joint without values
+    link("base", inertial(1.0, (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))),
+    link("flat", inertial(1.0, (0.0, 0.0, 0.0, 1.0, 0.0, 1.0))),
+    joint("turn", "continuous", "base", "flat", more='<limit lower="0"/>'),
+)
 
 
 def outcomes_of_cases() -> Iterator[str]:
@@ -44,6 +64,7 @@ def facts_of_references() -> Iterator[str]:
     """Yield what a new rubric asks for, of the references and of the robots in the cases, each wording once."""
     references = [rubric.solution.submission for rubric in RUBRICS.values() if rubric.solution is not None]
     seen = set()
+    references += [ROBOT.submission, *(package.submission for package in PACKAGES)]
     for submission in [*references, *(case.passing.submission for case in CASES)]:
         reading = submission.needed_urdf()
         assert reading.robot is not None

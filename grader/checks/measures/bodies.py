@@ -108,12 +108,12 @@ def _collision(link: str, collision: Collision, index: int, *, only: bool) -> Fa
             what = f"cylinder of radius {in_title([radius])} m and length {in_title([long])} m"
         case Sphere(radius=radius):
             shape, what = {"sphere": length(radius)}, f"sphere of radius {in_title([radius])} m"
-        case Mesh(filename=file, scale=scale):
-            values = {"geometry/mesh/@filename": readable(file)}
-            values |= {"geometry/mesh/@scale": in_title(scale)} if scale != (1.0, 1.0, 1.0) else {}
+        case mesh:
+            file = readable(mesh.filename)
+            values = {"geometry/mesh/@filename": file}
+            values |= {"geometry/mesh/@scale": in_title(mesh.scale)} if mesh.scale != (1.0, 1.0, 1.0) else {}
             values |= {"origin/@xyz": in_title(xyz)} if any(xyz) else {}
-            at = f" at {in_title(xyz)} m in its frame" if any(xyz) else ""
-            title = f"{link} collides as a mesh {readable(file)}{at}"
+            title = f"{link} collides as a mesh {file}{f' at {in_title(xyz)} m in its frame' if any(xyz) else ''}"
             return _element(link, aspect, title, "collision", values, _CENTRE_TOLERANCE)
     title = f"{link} collides as a {what}{f' at {in_title(xyz)} m in its frame' if any(xyz) else ''}"
     place = {"xyz": xyz, "rpy": [whole_angle(angle) for angle in collision.origin.rpy]}

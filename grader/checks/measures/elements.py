@@ -27,8 +27,7 @@ ElementValues = dict[str, Any]
 def elements(solution: Solution) -> Facts:
     """Yield the values in the elements for simulators and controllers: a fact for each element in one of them."""
     root = solution.reading.root
-    if root is None:
-        return
+    assert root is not None  # ROS 2 loads the solution
     used = foreign_words(root)
     for element in _children(root):
         if name_of(element) in _FOREIGN:

@@ -33,6 +33,7 @@ _EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for 
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
+_MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
 
@@ -93,7 +94,10 @@ class Processes(Executor):
         self._is_shut.set()
         self._pool.stop()  # type: ignore[no-untyped-call]
         if wait:
-            self._pool.join()
+            # Ctrl-C in the middle of a submission can leave a thread of the pool waiting, but its workers end before.
+            ending = threading.Thread(target=self._pool.join, daemon=True)
+            ending.start()
+            ending.join(_MAX_END)
             self._watch.join()
 
     def _new_pool(self) -> ProcessPool:

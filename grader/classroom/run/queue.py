@@ -87,7 +87,8 @@ class Queue(Generic[Task, Result]):
         if self._size or not self._done:
             return self._size or 1
         seconds = (time.perf_counter() - self._began) * self._workers / self._done  # for one task
-        return max(1, min(_MAX_GROUP, int(_GROUP_TIME / seconds)))
+        share = self._done // (self._workers * _AHEAD)  # few tasks wait behind one that hangs in their group
+        return max(1, min(_MAX_GROUP, share, int(_GROUP_TIME / seconds)))
 
     def _submit_ready(self, *, all_in: bool) -> None:
         while len(self._running) < self._workers * _AHEAD:
