@@ -123,16 +123,12 @@ def _best(trials: Trials, state: State, reading: Reading, proposals: Iterable[Pr
     """Return the edit that brings ROS 2 furthest; of several after which it loads the file, the best-scoring one."""
     now = defects(reading)
     better: list[tuple[Defects, int, Proposal]] = []
-    complete: list[str] = []
     for order, proposal in enumerate(proposals):
         edited = trials.edit(state, proposal.edits)
         urdf = edited.urdf if edited is not None else None
         left = defects(urdf.loaded) if isinstance(urdf, Read) else now
         if left < now:
             better.append((left, order, proposal))
-            complete += [proposal.cause] if not any(left[1:]) else []
-        if len(set(complete)) == _MAX_GRADED or len(complete) == _MAX_VALUES:
-            break
     better.sort(key=lambda found: (found[0], found[1]))
     is_read = bool(better) and better[0][0][0] < 0
     causes = list(dict.fromkeys(proposal.cause for _, _, proposal in better))[: _MAX_GRADED if is_read else 1]

@@ -129,11 +129,13 @@ class HintSearch:
         submission = self.trials.start.submission
         all_edits = join(submission, state.edits, proposal.edits) if state.edits else proposal.edits
         alone = tuple(edit for edit in all_edits if edit not in state.edits)
-        if len(alone) + len(state.edits) == len(all_edits):
-            tried = ((join(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found))
-            if self._add(proposal, alone, name) or any(self._add(proposal, edits, name, it) for edits, it in tried):
-                return True
-        return self._add(proposal, all_edits, name, tuple(self.found))
+        is_apart = len(alone) + len(state.edits) == len(all_edits)
+        after_one = ((join(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found) if is_apart)
+        return (
+            (is_apart and self._add(proposal, alone, name))
+            or any(self._add(proposal, edits, name, it) for edits, it in after_one)
+            or self._add(proposal, all_edits, name, tuple(self.found))
+        )
 
     def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:
         """Add edits if they, graded from scratch, gain the points of a criterion; return whether they do."""
