@@ -35,19 +35,23 @@ def find_evidence(
     picture, and documents that were not read or have pictures without headings.
     """
     wanted = [read_label(name) for name in names]
-    exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
+    exact = [it for it in files if _is_named(it.label, wanted)]
     if exact:
         return FoundEvidence(as_evidence(exact))
     others = [labelled for labelled in files if not labelled.label.is_complete]
-    meant = [it for it in others if it.loose.is_complete and any(matches(label, it.loose) for label in wanted)]
-    perhaps = [it for it in others if it not in meant and any(_may_match(label, it) for label in wanted)]
+    meant = [it for it in others if it.loose.is_complete and _is_named(it.loose, wanted)]
     inside = [*_below_headings(documents, wanted)]
     certain = tuple(file for file, is_certain in inside if is_certain)
     if meant or certain:
         return FoundEvidence((*as_evidence(meant), *certain))
+    perhaps = [it for it in others if any(_may_match(label, it) for label in wanted)]
     listed = {labelled.file.path for labelled in perhaps}
     whole = (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in listed)
     return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *whole))
+
+
+def _is_named(label: Label, wanted: Sequence[Label]) -> bool:
+    return any(matches(it, label) for it in wanted)
 
 
 def find_all_evidence(
