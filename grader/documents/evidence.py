@@ -45,9 +45,12 @@ def find_evidence(
     if meant or certain:
         return FoundEvidence((*as_evidence(meant), *certain))
     perhaps = [it for it in others if any(_may_match(label, it) for label in wanted)]
-    listed = {labelled.file.path for labelled in perhaps}
-    whole = (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in listed)
-    return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *whole))
+    return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted(documents, perhaps)))
+
+
+def _unlisted(documents: DocumentCollection | None, listed: Sequence[LabelledFile]) -> Iterator[EvidenceFile]:
+    paths = {labelled.file.path for labelled in listed}
+    return (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths)
 
 
 def _is_named(label: Label, wanted: Sequence[Label]) -> bool:
