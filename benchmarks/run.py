@@ -1,8 +1,8 @@
 """Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test,oracle,bench]'`.
 
-All figures are ratios of alternatives that run in turn; absolute times depend on the machine. What is timed, ours and
-theirs, must end with the expected exit code and print an expected word. `--against FOLDER` also runs each command of
-ours with the checkout in that folder, and prints how much faster this one is.
+All figures are ratios of alternatives that run in turn; absolute times depend on the machine. Every command must end
+with the expected exit code and print an expected word. `--against FOLDER` also runs each command of the grader with the
+checkout in that folder, and prints how much faster this one is.
 """
 
 import argparse
@@ -30,7 +30,6 @@ _READERS = {
     "yourdfpy": "import yourdfpy; print(len(yourdfpy.URDF.load({0!r}, load_meshes=False).link_map))",
     "urdf_parser_py": "from urdf_parser_py.urdf import URDF; print(len(URDF.from_xml_file({0!r}).links))",
 }
-# What some fields of the table mean that a reader cannot guess.
 _LOOP = 'for f in "$1"/*.urdf; do "$0" "$f" >/dev/null || exit 1; done; echo all'
 
 
@@ -64,12 +63,12 @@ class Bench:
         root: Path = ROOT,
         prepare: Callable[[], object] = bool,
     ) -> Command:
-        """Return a command of ours."""
+        """Return a command of the grader."""
         words = (sys.executable, "-P", "-m", "grader", *arguments)
         return Command(words, code, word, {"PYTHONPATH": str(root)}, prepare)
 
     def compare(self, **commands: Command) -> dict[str, list[float]]:
-        """Return the times of commands that run in turn; of ours also those of the other checkout, as `NAME before`."""
+        """Return the times of commands that run in turn; those of the grader also with the other checkout, as `NAME before`."""
         runs = dict(commands)
         if self.before is not None:
             for name, command in commands.items():
