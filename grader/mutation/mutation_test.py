@@ -1,20 +1,19 @@
 """Grade the mutants of a rubric's reference: each must lose points, and each criterion must fail on some mutant."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from random import Random
+from typing import Literal, NamedTuple
 
 from grader.checks.registry import check_names, usable_check
 from grader.grading.criterion import Criterion
-from grader.grading.report import Result
 from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.package_mutants import package_mutants
-from grader.mutation.result import Loss, MutantResults, Survivor, hunk, margin_of
+from grader.mutation.result import Loss, MutantResults, Survivor, hunk
 from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
 from grader.package.package import MANIFEST
-from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 _MESHES = (".stl", ".dae", ".obj")
@@ -59,7 +58,41 @@ def sampled(every: Sequence[Mutant], most: int, random: Random) -> list[Mutant]:
 
 
 _MAX_OTHERS = 500  # mutants that are tried only to find out whether a criterion is idle
+_GROUP = 50  # of these, after which the search may end
 ShowStep = Callable[[], None]  # shows that one more mutant is graded
+
+
+class MutantOutcome(NamedTuple):
+    """What the criteria made of a mutant: those that fail, those that measure another value, and the faulty ones."""
+
+    mutant: Mutant
+    fate: Literal["caught", "same", "survived", "faulty"]
+    failed: tuple[str, ...] = ()
+    tolerated: tuple[str, ...] = ()
+    faults: Mapping[str, str] = {}
+    verdict: str = ""
+
+
+GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
+
+
+def outcome_of(trial: Trial, mutant: Mutant) -> MutantOutcome:
+    """Grade a mutant."""
+    submission = trial.submission(mutant)
+    if submission is None:
+        return MutantOutcome(mutant, "caught")
+    results = list(trial.results(mutant, submission, trial.expected))
+    faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
+    fate: Literal["caught", "same", "survived", "faulty"] = "survived"
+    if faults:
+        fate = "faulty"
+    elif any(map(trial.is_lost, results)):
+        fate = "caught"
+    elif trial.is_same(mutant, submission):
+        fate = "same"
+    failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
+    changed = (found.criterion.id for found in results if trial.is_changed(found))
+    return MutantOutcome(mutant, fate, failed, tuple(changed), faults, submission.verdict or "")
 
 
 class MutationTest:
@@ -73,15 +106,18 @@ class MutationTest:
         self.survivors: list[Survivor] = []
         self.faults: list[Loss] = []
         self.checks = [check for name in check_names() if (check := usable_check(name)) is not None]
-        self.margins = {name: margin for name in trial.tested if (margin := margin_of(trial.expected[name]))}
         self.idle = dict.fromkeys(trial.tested)
 
-    def run(self, step: ShowStep) -> MutantResults:
-        """Grade the mutants and return what became of them."""
-        for mutant in self.chosen:
+    def run(self, step: ShowStep, grade_all: GradeAll | None = None) -> MutantResults:
+        """Grade the mutants and return what became of them; without `grade_all` one after the other."""
+        grade_all = grade_all or self._one_by_one
+        found: dict[Mutant, MutantOutcome] = {}
+        for outcome in grade_all(self.chosen):
             step()
-            self._grade(mutant)
-        self._try_others()
+            found[outcome.mutant] = outcome
+        for mutant in self.chosen:
+            self._add(found[mutant])
+        self._try_others(grade_all)
         return MutantResults(
             len(self.all),
             len(self.chosen),
@@ -91,41 +127,35 @@ class MutationTest:
             tuple(found for found in self.survivors if found.reason),
             self._unused_patterns(),
             tuple(self.idle),
-            tuple(self.margins.values()),
+            tuple(self.trial.margins.values()),
             tuple(self.faults),
         )
 
-    def _grade(self, mutant: Mutant) -> None:
-        """Grade a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty."""
-        submission = self.trial.submission(mutant)
-        results = list(self.trial.results(mutant, submission, self.trial.expected)) if submission is not None else []
-        faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
-        tolerated = self._observe(results)
-        if faults:
-            self.faults.append(Loss(mutant.id, faults, self._diff(mutant)))
-        elif submission is None or any(map(self.trial.is_lost, results)):
-            self.caught += 1
-        elif self.trial.is_same(mutant, submission):
-            self.same += 1
-        else:
-            self.survivors.append(self._survivor(mutant, submission, tolerated))
+    def _one_by_one(self, mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
+        return (outcome_of(self.trial, mutant) for mutant in mutants)
 
-    def _observe(self, results: Iterable[Result]) -> list[str]:
-        """Learn from results which criteria are not idle; return those that measure another value."""
-        tolerated: list[str] = []
-        for result in results:
-            name = result.criterion.id
-            if result.outcome.status == "failed":
-                self.idle.pop(name, None)
-            if name in self.margins and self.margins[name].is_changed(result):
-                tolerated.append(name)
-        return tolerated
+    def _add(self, outcome: MutantOutcome) -> None:
+        """Count a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty."""
+        self._forget_idle(outcome)
+        match outcome.fate:
+            case "faulty":
+                self.faults.append(Loss(outcome.mutant.id, outcome.faults, self._diff(outcome.mutant)))
+            case "caught":
+                self.caught += 1
+            case "same":
+                self.same += 1
+            case "survived":
+                self.survivors.append(self._survivor(outcome))
 
-    def _survivor(self, mutant: Mutant, submission: Submission, tolerated: list[str]) -> Survivor:
-        rubric, urdf = self.trial.rubric, self.trial.reference.urdf
+    def _forget_idle(self, outcome: MutantOutcome) -> None:
+        for name in outcome.failed:
+            self.idle.pop(name, None)
+
+    def _survivor(self, outcome: MutantOutcome) -> Survivor:
+        mutant, rubric, urdf = outcome.mutant, self.trial.rubric, self.trial.reference.urdf
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        verdict = submission.verdict if submission.verdict != self.trial.reference.verdict else None
-        clause = suggestion(mutant, rubric, robot, verdict or "", tolerated, self.checks)
+        verdict = outcome.verdict if outcome.verdict != self.trial.reference.verdict else ""
+        clause = suggestion(mutant, rubric, robot, verdict, outcome.tolerated, self.checks)
         reasons = (row.reason for row in rubric.ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
         return Survivor(mutant, self._diff(mutant), clause, next(reasons, ""))
 
@@ -137,16 +167,15 @@ class MutationTest:
         text = self.trial.text(mutant.path)
         return hunk(mutant.path, text, mutant.applied(text))
 
-    def _try_others(self) -> None:
+    def _try_others(self, grade_all: GradeAll) -> None:
         """Find out whether mutants that were not sampled fail the criteria that no other one fails."""
         chosen = set(self.chosen)
-        others = [mutant for mutant in self.all if mutant not in chosen]
-        for mutant in sampled(others, _MAX_OTHERS, Random(self.seed)):
-            submission = self.trial.submission(mutant) if self.idle else None
-            if submission is not None:
-                for result in self.trial.results(mutant, submission, self.trial.expected):
-                    if result.outcome.status == "failed":
-                        self.idle.pop(result.criterion.id, None)
+        others = sampled([mutant for mutant in self.all if mutant not in chosen], _MAX_OTHERS, Random(self.seed))
+        for start in range(0, len(others), _GROUP):
+            if not self.idle:
+                return
+            for outcome in grade_all(others[start : start + _GROUP]):
+                self._forget_idle(outcome)
 
     def _unused_patterns(self) -> tuple[str, ...]:
         patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]

@@ -1,15 +1,18 @@
 """Test a rubric on its own reference solution, whose equivalents must lose nothing."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
+from functools import lru_cache
 from itertools import count
+from pathlib import Path
 
 from grader.errors import InputError
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Rubric, read_rubric
 from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
-from grader.mutation.mutation_test import MutationTest
+from grader.mutation.mutants import Mutant
+from grader.mutation.mutation_test import GradeAll, MutantOutcome, MutationTest, outcome_of
 from grader.mutation.result import EquivalentResults, Loss, RubricTest, hunk
 from grader.mutation.samples import Sample, tested_samples
 from grader.mutation.trial import Trial
@@ -63,13 +66,20 @@ def _criteria_to_pass(trial: Trial, submission: Submission, equivalent: Equivale
 Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 
-def tested(rubric: Rubric, samples: list[Sample] | None, *, seed: int, most: int, progress: Progress) -> RubricTest:
-    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples."""
-    if rubric.solution is None:
-        raise InputError(f'the rubric {rubric.id} has no reference: add reference = "FOLDER" with a correct solution')
-    reference = rubric.solution.submission
-    report = grade(rubric, reference)
-    trial = Trial(report, reference)
+def run_rubric_test(
+    rubric: Rubric,
+    samples: list[Sample] | None,
+    *,
+    seed: int,
+    most: int,
+    progress: Progress,
+    grade_all: GradeAll,
+) -> RubricTest:
+    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples.
+
+    `grade_all` grades mutants elsewhere, as `mutant_outcomes` does.
+    """
+    trial = _trial_of(rubric)
     mutation = MutationTest(trial, most, seed)
     total = len(mutation.chosen) + len(samples or ())
     counter = count(1)
@@ -78,4 +88,23 @@ def tested(rubric: Rubric, samples: list[Sample] | None, *, seed: int, most: int
         progress(next(counter), total)
 
     of_samples = tested_samples(rubric, samples, step) if samples is not None else None
-    return RubricTest(report, seed, mutation.run(step), tested_equivalents(trial, seed), of_samples)
+    mutants = mutation.run(step, grade_all)
+    return RubricTest(trial.report, seed, mutants, tested_equivalents(trial, seed), of_samples)
+
+
+def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
+    """Grade mutants of the reference of the rubric in a file."""
+    trial = _trial_from(data, path)
+    return [outcome_of(trial, mutant) for mutant in mutants]
+
+
+@lru_cache(maxsize=1)
+def _trial_from(data: bytes, path: str) -> Trial:
+    return _trial_of(read_rubric(data, Path(path)))
+
+
+def _trial_of(rubric: Rubric) -> Trial:
+    if rubric.solution is None:
+        raise InputError(f'the rubric {rubric.id} has no reference: add reference = "FOLDER" with a correct solution')
+    reference = rubric.solution.submission
+    return Trial(grade(rubric, reference), reference)

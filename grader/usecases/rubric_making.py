@@ -3,7 +3,10 @@
 import os
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from decimal import Decimal
+from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,11 +14,16 @@ from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
 from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
+from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.progress import Progress
+from grader.classroom.run.queue import Queue
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
+from grader.grading.rubric import Rubric
+from grader.mutation.mutants import Mutant
+from grader.mutation.mutation_test import GradeAll, MutantOutcome
 from grader.mutation.samples import read_samples
-from grader.mutation.testing import tested
+from grader.mutation.testing import mutant_outcomes, run_rubric_test
 from grader.package.package import MANIFEST
 from grader.report.formats import OutputFormat
 from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
@@ -130,6 +138,7 @@ def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
 
 
 _MAX_PERCENT = 100
+_SECONDS = 60.0  # for some mutants
 
 
 class TestRequest(NamedTuple):
@@ -148,13 +157,14 @@ def test(request: TestRequest, screen: Screen, warn: Warn, show_class: ShowClass
     least = _least(request.fail_under)
     rubric = load(request.rubric, warn, answers=False)
     samples = read_samples(request.folder) if request.folder is not None else None
-    with show_class(f"Testing {rubric.id}") as show:
-        result = tested(
+    with show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
+        result = run_rubric_test(
             rubric,
             samples,
             seed=request.seed,
             most=request.mutants,
             progress=lambda done, total: show(Progress(total, done)),
+            grade_all=grade_all,
         )
     is_passed = result.is_sound and (least is None or result.mutants.score >= least)
     is_json = request.format is OutputFormat.JSON
@@ -162,6 +172,23 @@ def test(request: TestRequest, screen: Screen, warn: Warn, show_class: ShowClass
     if result.is_faulty:
         return text, ExitCode.FAULT
     return text, ExitCode.PASSED if is_passed else ExitCode.FAILED
+
+
+@contextmanager
+def _workers(rubric: Rubric) -> Iterator[GradeAll]:
+    """Yield what grades mutants in processes, one for each processor."""
+    with Processes(processors(), _SECONDS) as executor:
+        work = partial(mutant_outcomes, rubric.data, str(rubric.path))
+
+        def grade_all(mutants: Iterable[Mutant]) -> Iterator[MutantOutcome]:
+            queue = Queue(executor, processors(), work, _refuse_lost)
+            return chain.from_iterable(queue.all(mutants))
+
+        yield grade_all
+
+
+def _refuse_lost(mutant: Mutant, error: Exception) -> None:
+    raise GraderError(f"the mutant {mutant.id} could not be graded: {error}") from error
 
 
 def _least(text: str | None) -> Decimal | None:
