@@ -94,7 +94,7 @@ class Processes(Executor):
         self._is_shut.set()
         self._pool.stop()  # type: ignore[no-untyped-call]
         if wait:
-            # Ctrl-C in the middle of a submission can leave a thread of the pool waiting, but its workers end before.
+            # Ctrl-C while the pool takes a task can leave one of its threads waiting forever; its workers end before.
             ending = threading.Thread(target=self._pool.join, daemon=True)
             ending.start()
             ending.join(_MAX_END)
