@@ -15,7 +15,7 @@ from unittest.mock import patch
 
 from grader.__main__ import main
 from tests.conversion import convert_here
-from tests.parsed_rubrics import read_toml_once, validate_once
+from tests.parsed_rubrics import validated_once
 
 ROOT = Path(__file__).parent.parent
 HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on a busy machine
@@ -121,9 +121,10 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
-        patch.multiple("grader.grading.rubric", read_toml=read_toml_once, Validation=validate_once),
+        patch("grader.grading.rubric._validated", validated_once),
         patch("grader.documents.collection.DocumentCollection._run", convert_here),
-        patch.multiple("grader.classroom.run.pool", ProcessPool=_Pool, _start_server=lambda _: None),
+        patch("grader.classroom.run.pool.ProcessPool", _Pool),
+        patch("grader.classroom.run.forks.start_server", bool),
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),

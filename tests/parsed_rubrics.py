@@ -2,35 +2,19 @@
 
 import sys
 from pathlib import Path
-from typing import Any, NamedTuple
 
-from grader.grading import validation
-from grader.grading.toml_file import read_toml
+from grader.grading import rubric, validation
 
 _LONG = range(5_000, 100_000)  # bytes: what takes long, and is the same in many tests
+_read = vars(rubric)["_validated"].__wrapped__
+_VALIDATED: dict[tuple[object, ...], validation.Validation] = {}
 
 
-class _Parsed(NamedTuple):
-    text: str
-    table: dict[str, Any]
-    validation: validation.Validation
-
-
-_PARSED: dict[tuple[object, ...], _Parsed] = {}  # never emptied, so that a table's identity stays its own
-
-
-def read_toml_once(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the text and the table of a TOML file, as `read_toml` does."""
+def validated_once(data: bytes, path: Path) -> validation.Validation:
+    """Return the valid content of a rubric; raise RubricError."""
     if len(data) not in _LONG:
-        return read_toml(data, path)
+        return _read(data, path)
     key = data, vars(validation)["find_check"], *sys.path  # plug-ins that a test installs, and checks that it replaces
-    if key not in _PARSED:
-        text, table = read_toml(data, path)
-        _PARSED[key] = _Parsed(text, table, validation.Validation(table))
-    return _PARSED[key][:2]
-
-
-def validate_once(table: dict[str, Any]) -> validation.Validation:
-    """Return the validation of a table."""
-    known = (parsed.validation for parsed in _PARSED.values() if parsed.table is table)
-    return next(known, None) or validation.Validation(table)
+    if key not in _VALIDATED:
+        _VALIDATED[key] = _read(data, path)
+    return _VALIDATED[key]

@@ -88,7 +88,11 @@ def batch(
       Troubleshooting: see docs/grade-a-class.md.
     """
     options = locals()  # named like the fields of the request
-    from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
+    from grader.classroom.run import forks
+
+    if cluster is None and not gradebook.exists():  # a class that is graded already may need no workers
+        forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
+    from grader.usecases.grade_class import ClassRequest, grade_class
 
     formats = tuple(report_format or [Format.TERMINAL])
     for kind in formats:

@@ -36,7 +36,7 @@ _OTHER = re.compile(
 
 
 @lru_cache(maxsize=256)
-def _names_like(patterns: Sequence[str]) -> re.Pattern[str]:
+def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
     """Return what matches names in lower case: translated once a rubric, not once a submission."""
     return re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
 
@@ -53,6 +53,7 @@ class DocumentCollection:
         self._seconds = MAX_SECONDS
         self._converted = 0
         self._read_files: dict[str, Document | Unread | None] = {}
+        self._named: dict[tuple[str, ...], tuple[list[Document], list[Unread]]] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
     def headings(self, document: Document, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
@@ -64,9 +65,15 @@ class DocumentCollection:
 
     def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
+        key = tuple(patterns)
+        if key not in self._named:
+            self._named[key] = self._find(key)
+        return self._named[key]
+
+    def _find(self, patterns: tuple[str, ...]) -> tuple[list[Document], list[Unread]]:
         read: list[Document] = []
         unread: list[Unread] = []
-        matching = _names_like(tuple(patterns))
+        matching = _names_like(patterns)
         files = self.tree.files.values()
         chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:

@@ -15,6 +15,8 @@ from grader.source import Location
 from grader.submission.urdf import OtherCandidate
 
 _OF_SUBMISSION = ("id", "path", "sha256", "ignored", "has_urdf", "verdict", "is_single", "unread", "lacks")
+_OF_RESULT = ("because", "traceback", "carried")
+_OF_OUTCOME = Outcome._fields, tuple(map(Outcome._field_defaults.get, Outcome._fields))
 
 
 def to_record(report: Report) -> str:
@@ -29,16 +31,7 @@ def to_record(report: Report) -> str:
         },
         "version": report.version,
         "parts": report.parts,
-        "results": [
-            {
-                "criterion": one.criterion.id,
-                "outcome": one.outcome._asdict(),
-                "because": one.because,
-                "traceback": one.traceback,
-                "carried": one.carried,
-            }
-            for one in report.results
-        ],
+        "results": [_of_result(one) for one in report.results],
         "problems": [
             {"code": one.code, "severity": one.severity, "message": one.message, "location": one.location}
             for one in report.problems
@@ -50,6 +43,13 @@ def to_record(report: Report) -> str:
         "notes": report.notes,
     }
     return _ENCODER.encode(data)
+
+
+def _of_result(result: Result) -> dict[str, Any]:
+    """Return a result by the names of its fields, without those that have their default."""
+    given = {name: value for name, default, value in zip(*_OF_OUTCOME, result.outcome, strict=True) if value != default}
+    data = {"criterion": result.criterion.id, "outcome": given}
+    return data | {name: value for name in _OF_RESULT if (value := getattr(result, name))}
 
 
 def from_record(text: str, rubric: Rubric, originals: Originals | None = None) -> Report:
@@ -84,10 +84,10 @@ def graded_submission_from(text: str) -> GradedSubmission:
 
 def _result(criteria: dict[str, Criterion], stored: dict[str, Any]) -> Result:
     criterion, outcome = criteria[stored.pop("criterion")], stored.pop("outcome")
-    if outcome["location"] is not None:
+    if "location" in outcome:
         outcome["location"] = _location(outcome["location"])
     for name in ("measured", "expected"):
-        if isinstance(outcome[name], list):
+        if isinstance(outcome.get(name), list):
             outcome[name] = tuple(outcome[name])
     return Result(criterion, Outcome(**outcome), **stored)
 

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from decimal import Decimal
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -137,9 +138,7 @@ def load_rubric(name: str) -> Rubric:
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     """Return the rubric in the bytes of a file, with or without the model answers in it; raise RubricError."""
-    text, table = read_toml(data, path)
-    valid = Validation(table)
-    complain_of(valid.complaints, text, path)
+    valid = _validated(data, path)
     rubric = valid.rubric
     found = enumerate(zip(valid.criteria, valid.bound, valid.carried, strict=True))
     criteria = (_criterion(position, *rows, answers=answers) for position, rows in found)
@@ -167,6 +166,15 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     )
 
 
+@lru_cache(maxsize=2)
+def _validated(data: bytes, path: Path) -> Validation:
+    """Return the valid content of a file, which a command may need with and without answers."""
+    text, table = read_toml(data, path)
+    valid = Validation(table)
+    complain_of(valid.complaints, text, path)
+    return valid
+
+
 def _links(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield the names of links in the arguments of checks."""
     for given in arguments:
@@ -184,7 +192,7 @@ def _solution(rubric: TomlRow, path: Path) -> ReferenceSolution | None:
 def _criterion(
     position: int, row: TomlRow, bound: BoundCheck, carried: BoundCarried | None, *, answers: bool
 ) -> Criterion:
-    check, arguments = bound
+    check, arguments = bound[0], dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}

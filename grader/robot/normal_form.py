@@ -1,8 +1,10 @@
 """The normal form of a robot: equal for files that differ only in what a copy can change without changing the robot."""
 
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cache
 from hashlib import sha256
+from operator import attrgetter
 from typing import Any
 
 from grader.robot.model import Collision, Joint, Link, Robot, Visual
@@ -12,8 +14,8 @@ from grader.xml.parsing import Element
 _NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
 
 
-def normal_form(robot: Robot) -> tuple[Any, ...]:
-    """Return the links and joints of a robot as nested tuples, sorted.
+def normal_form(robot: Robot) -> tuple[list[str], list[str]]:
+    """Return the links and joints of a robot as texts, sorted.
 
     Comments, white space, the order of elements and the way in which numbers are written do not count. Neither do names
     that nothing refers to: those of the robot, of materials, of joints that no joint mimics, and of links without a
@@ -23,7 +25,7 @@ def normal_form(robot: Robot) -> tuple[Any, ...]:
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
     links = (_with_name(link, connected) for link in robot.links)
     joints = (_with_name(joint, mimicked) for joint in robot.joints)
-    return tuple(sorted(links, key=repr)), tuple(sorted(joints, key=repr))
+    return sorted(map(repr, links)), sorted(map(repr, joints))
 
 
 def robot_hash(reading: Reading) -> str:
@@ -58,19 +60,22 @@ def _with_name(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
 
 def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     """Return a value of the model as plain tuples; locations do not count, as in comparisons."""
+    kind: Any = type(value)
+    if kind is str or value is None:  # most values
+        return value
     if isinstance(value, float):
         return value + 0.0  # -0.0 is 0.0
     if isinstance(value, tuple):
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
-    kind: Any = type(value)
-    names = _compared(kind, ignored)
-    return (kind.__name__, *(_plain(getattr(value, name)) for name in names)) if names is not None else value
+    fields_of = _compared(kind, ignored)
+    return (kind.__name__, *map(_plain, fields_of(value))) if fields_of is not None else value
 
 
 @cache
-def _compared(kind: Any, ignored: tuple[str, ...]) -> tuple[str, ...] | None:
-    """Return the fields of a dataclass that count; None for another class."""
+def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]] | None:
+    """Return what gets the fields of a dataclass that count; None for another class."""
     if not is_dataclass(kind):
         return None
-    return tuple(field.name for field in fields(kind) if field.compare and field.name not in ignored)
+    first, *others = [field.name for field in fields(kind) if field.compare and field.name not in ignored]
+    return attrgetter(first, *others) if others else lambda value: (getattr(value, first),)

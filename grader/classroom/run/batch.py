@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
-from contextlib import suppress
 from functools import partial
 from itertools import chain
 from typing import NamedTuple
@@ -21,12 +20,10 @@ from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.stored_students import Identities, StoredStudents
-from grader.classroom.run.worker import ClassContext, Task, grade_all, robot_hashes, undecided_result
+from grader.classroom.run.worker import ClassContext, Task, grade_all, reference_record, undecided_result
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.grade import grade
-from grader.grading.record import to_record
 from grader.grading.rubric import Rubric
 
 
@@ -129,7 +126,6 @@ class Batch:
         first = next(tasks, None)
         if first is None:
             return
-        self._executor.submit(bool)  # the workers start while the reference is graded
         context = self._context(writer)  # only if there is something to grade: grading the reference takes a while
 
         def lost(task: Task, error: Exception) -> GradingResult | None:
@@ -158,16 +154,14 @@ class Batch:
 
     def _context(self, writer: RunWriter) -> ClassContext:
         """Return the data of all tasks, and store what the reference solution is for them."""
-        rubric, settings, dictionary = self._rubric, self._settings, b""
-        if rubric.solution is not None and rubric.compares_with_reference:
-            _ = rubric.solution.robot  # raises InputError: without it nothing can be graded
-        with suppress(InputError):  # most records resemble that of the reference solution
-            if rubric.solution is not None:
-                reference = rubric.solution.submission
-                dictionary = to_record(grade(rubric, reference)).encode()
-                writer.add_handed_out(filter(None, robot_hashes(reference)))
-        writer.use_dictionary(dictionary)
-        return ClassContext(settings.root, rubric.data, str(rubric.path), dictionary, settings.max_size, settings.parts)
+        settings, rubric = self._settings, (self._rubric.data, str(self._rubric.path))
+        try:
+            record, hashes = self._executor.submit(reference_record, *rubric).result()
+        except WorkerError:  # the time limit is for submissions
+            record, hashes = reference_record(*rubric)
+        writer.add_handed_out(hashes)
+        writer.use_dictionary(record)
+        return ClassContext(settings.root, *rubric, record, settings.max_size, settings.parts)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
         """Return whether a result may be kept: it is of the same rubric, parts and grader, and not errored."""

@@ -16,16 +16,9 @@ from typing import Any
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
+from grader.classroom.run import forks
 from grader.errors import GraderError
 
-# The modules that a process loads before it forks, late imports included.
-_PRELOAD = (
-    "grader.classroom.run.worker",
-    "grader.robot.edge_overlap",
-    "grader.submission.search",
-    "grader.package.problems",
-    "grader.classroom.run.fork_server",
-)
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
 _POOL_ENDED = "the worker processes ended"
@@ -33,6 +26,7 @@ _EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for 
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
+_POLL_INTERVAL = 0.02  # seconds; a pool ends after one of them
 _MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
@@ -54,7 +48,8 @@ class Processes(Executor):
 
     def __init__(self, workers: int, timeout: float, memory: int = MAX_MEMORY) -> None:
         self._workers, self._timeout, self._memory = workers, timeout, memory
-        self._context = _worker_context()
+        CONSTS.sleep_unit = _POLL_INTERVAL
+        self._context = forks.worker_context()
         self._lock = threading.RLock()
         self._pending: set[Future[Any]] = set()
         self._is_shut = threading.Event()
@@ -75,7 +70,7 @@ class Processes(Executor):
         with self._lock:
             if not self._has_begun:
                 self._has_begun = True
-                _start_server(self._context)
+                forks.start_server()
             for tries_left in reversed(range(_MAX_TRIES)):
                 self._replace_broken_pool()
                 try:
@@ -153,31 +148,6 @@ def processors() -> int:
     """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
-
-
-def _worker_context() -> Any:
-    """Return the multiprocessing context: a fork server with the grader's modules, else spawned processes."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
-    # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
-    os.environ["PYTHONSAFEPATH"] = "1"
-    is_forked = "forkserver" in multiprocessing.get_all_start_methods()
-    context: Any = multiprocessing.get_context("forkserver" if is_forked else "spawn")
-    if is_forked:
-        context.set_forkserver_preload(list(_PRELOAD))
-    return context
-
-
-def _start_server(context: Any) -> None:
-    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback of its own."""
-    if context.get_start_method() == "forkserver":
-        from multiprocessing import forkserver, resource_tracker
-
-        resource_tracker.ensure_running()  # first, because it unblocks signals when it has started
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            forkserver.ensure_running()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _start_worker(memory: int) -> None:

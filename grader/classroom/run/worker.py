@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +18,7 @@ from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.missing_work import is_another_robot, robot_of
+from grader.grading.record import to_record
 from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
 from grader.robot.normal_form import robot_hash
@@ -90,6 +92,22 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
         return graded  # what the course handed out for the lab before is no identical work
     urdf, robot = robot_hashes(submission)
     return graded._replace(urdf=urdf, robot=robot)
+
+
+def reference_record(data: bytes, path: str) -> tuple[bytes, tuple[str, ...]]:
+    """Return the record of a rubric's reference solution, which most records resemble, and the hashes of its robot.
+
+    Both are empty if it cannot be graded. Raises InputError if nothing can be graded without it.
+    """
+    rubric = rubric_from(data, path)
+    if rubric.solution is None:
+        return b"", ()
+    if rubric.compares_with_reference:
+        _ = rubric.solution.robot  # raises InputError
+    with suppress(InputError):
+        reference = rubric.solution.submission
+        return to_record(grade(rubric, reference)).encode(), tuple(filter(None, robot_hashes(reference)))
+    return b"", ()
 
 
 def robot_hashes(submission: Submission) -> tuple[str, str]:
