@@ -1,12 +1,13 @@
 """Parse and validate a rubric of a course once for all commands that the tests run in one process."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from grader.grading import rubric, validation
 
 _LONG = range(5_000, 100_000)  # bytes: what takes long, and is the same in many tests
-_read = vars(rubric)["_validated"].__wrapped__
+_read: Callable[[bytes, Path], validation.Validation] = vars(rubric)["_validated"].__wrapped__
 _VALIDATED: dict[tuple[object, ...], validation.Validation] = {}
 
 

@@ -22,7 +22,6 @@ from grader.classroom.run.queue import Queue
 from grader.classroom.run.stored_students import Identities, StoredStudents
 from grader.classroom.run.worker import ClassContext, Task, grade_all, reference_record, undecided_result
 from grader.classroom.students import ClassSubmission, Student
-from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 
