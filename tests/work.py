@@ -2,7 +2,7 @@
 
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from threading import current_thread, main_thread
 from types import FrameType
@@ -23,16 +23,16 @@ class Work:
 
 
 @contextmanager
-def limited_work(limit: int = sys.maxsize) -> Iterator[Work]:
-    """Fail as soon as a block has made more calls than allowed.
+def limited_work(limit: int = sys.maxsize, of: Collection[str] = ()) -> Iterator[Work]:
+    """Fail as soon as a block has made more calls than allowed, of any functions or of built-in ones with these names.
 
     The limits in the tests are several times what was counted: they separate linear work from quadratic work. A block that catches
     the exception fails at its end.
     """
     work = Work()
 
-    def count(_frame: FrameType, event: str, _argument: Any) -> None:
-        if event in ("call", "c_call"):
+    def count(_frame: FrameType, event: str, function: Any) -> None:
+        if event in ("call", "c_call") and (not of or (event == "c_call" and function.__name__ in of)):
             work.calls += 1
             if work.calls > limit:
                 raise TooMuchWork(f"more than {limit} calls were made")
