@@ -22,9 +22,7 @@ from grader.report.formats import Format, OutputFormat
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
-from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, refuse_report_folder, write_reports
 from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
-from grader.usecases.grade_files import grades_csv
 from grader.usecases.rubrics import files_of
 from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
@@ -114,10 +112,14 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
 def _write_files(request: ClassRequest, book: Gradebook, deadline: datetime | None, terminal: Terminal) -> None:
     """Write the students' reports and the grades."""
     if request.reports is not None:
+        from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, write_reports  # late: few runs write them
+
         run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
         with _processes(request.jobs, REPORT_SECONDS) as executor, terminal.show_class("writing reports") as show:
             write_reports(executor, run, terminal.warn, show)
     if request.csv is not None:
+        from grader.usecases.grade_files import grades_csv
+
         save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
 
 
@@ -179,6 +181,8 @@ def _refuse_targets(request: ClassRequest) -> None:
     for path in filter(None, (request.gradebook, csv)):
         refuse_symlinks(path, (root,))
     if reports is not None:
+        from grader.usecases.class_reports import refuse_report_folder
+
         refuse_report_folder(reports, request.report_format, (root,))
     if csv is not None and not csv.resolve().parent.is_dir():
         raise missing_folder(csv)
