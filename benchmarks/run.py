@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from class_generator import make_class
-from timing import Command, in_turn, ratio
-from warm import PACKAGE, ROOT, URDF
+from timing import PACKAGE, ROOT, URDF, Command, in_turn, ratio
 
 _HERE = Path(__file__).resolve().parent
 _MISTAKES = ROOT / "submissions" / "several-mistakes" / "my_robot.urdf"

@@ -10,6 +10,9 @@ from pathlib import Path
 from resource import RUSAGE_CHILDREN, getrusage
 from typing import NamedTuple
 
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = ROOT / "submissions" / "reference" / "roscourse_sim_ws" / "src" / "my_robot"
+URDF = PACKAGE / "urdf" / "my_robot.urdf"
 _SAMPLED = 0.05  # seconds between two measurements of the memory
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lxml import etree
-from timing import in_turn, repeated
+from timing import PACKAGE, ROOT, URDF, in_turn, repeated
 
 from grader.grading.grade import grade
 from grader.grading.report import Report
@@ -19,9 +19,6 @@ from grader.submission.opening import open_submission, read_submission
 from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
 
-ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = ROOT / "submissions" / "reference" / "roscourse_sim_ws" / "src" / "my_robot"
-URDF = PACKAGE / "urdf" / "my_robot.urdf"
 ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
 XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
 RUBRIC = load_rubric("lab6")
