@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from decimal import Decimal
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -105,7 +105,8 @@ class Rubric:
         raise InputError(f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)")
 
 
-def shipped_rubrics() -> dict[str, Path]:
+@cache
+def shipped_rubrics() -> Mapping[str, Path]:
     """Return the rubrics that come with the grader, by id."""
     package = Path(__file__).resolve().parent.parent
     # In a wheel they are inside the package, in a checkout next to it.
