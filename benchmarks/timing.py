@@ -45,7 +45,7 @@ class Command(NamedTuple):
     def processor_seconds(self) -> float:
         """Run it, and return the processor time of it and of all processes below it."""
         self.prepare()
-        _adopt_orphans()
+        _wait_for_orphans()
         start = getrusage(RUSAGE_CHILDREN)
         self.output()
         _wait_for_orphans()
@@ -80,12 +80,9 @@ class Command(NamedTuple):
         return peak
 
 
-def _adopt_orphans() -> None:
-    """Become the parent of processes that outlive theirs, as worker processes do: their time counts, too."""
-    ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-
-
 def _wait_for_orphans() -> None:
+    """Wait for processes that outlive their parents, as worker processes do, so that their time counts, too."""
+    ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # from now on they are children of this process
     with suppress(ChildProcessError):
         while True:
             os.waitpid(-1, 0)
