@@ -14,6 +14,7 @@ def main() -> None:
         code = _INTERRUPTED
     if code == _INTERRUPTED:
         print("grader: interrupted", file=sys.stderr)
+    gc.freeze()  # else Python searches all objects for garbage before it ends: a fifth of a run
     sys.exit(code)
 
 
