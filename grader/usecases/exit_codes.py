@@ -10,7 +10,7 @@ from grader.errors import GraderError
 if TYPE_CHECKING:
     from grader.grading.report import Report
 
-_THRESHOLD = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?")
+_THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
 _MAX_PERCENT = 100
 
 
@@ -26,7 +26,7 @@ class ExitCode(IntEnum):
 
 def read_threshold(text: str) -> tuple[Decimal, bool]:
     """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
-    if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
+    if not re.fullmatch(_THRESHOLD, text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
         raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
     return Decimal(text.removesuffix("%")), text.endswith("%")
 

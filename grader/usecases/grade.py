@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from grader.report.locations import Base
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
-_SHA256 = re.compile(r"[0-9a-fA-F]{64}")
+_SHA256 = r"[0-9a-fA-F]{64}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +185,7 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
 def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
     expected = request.expected_rubric
-    if expected is not None and not _SHA256.fullmatch(expected):
+    if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )
