@@ -111,6 +111,17 @@ class Source:
         return self, self._tags[tag]
 
 
+class Base(NamedTuple):
+    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
+
+    With `is_outside` it is in no repository.
+    """
+
+    folder: str = ""
+    archive: str = ""
+    is_outside: bool = False
+
+
 class LazyLocation(NamedTuple):
     """The place of an element or of one of its attributes, which is computed on demand: most never are.
 

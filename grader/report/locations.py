@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.source import Edit, Location, Source
+from grader.source import Base, Edit, Location, Source
 from grader.text import first_lines, printable
 
 _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""  # attribute, tag, word
@@ -30,17 +30,6 @@ class Excerpt(NamedTuple):
     text: str
     start: int
     width: int
-
-
-class Base(NamedTuple):
-    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
-
-    With `is_outside` it is in no repository.
-    """
-
-    folder: str = ""
-    archive: str = ""
-    is_outside: bool = False
 
 
 class RepositoryLocation(NamedTuple):

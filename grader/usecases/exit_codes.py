@@ -37,14 +37,12 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
     A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion
     must have passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
     """
-    from grader.report.order import pending_automatic
-
     if report.fault:
         return ExitCode.FAULT
     if threshold is not None:
         least, is_percent = threshold
         is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
     else:
-        short = [result for result in report.results if result.is_lost] + pending_automatic(report)
+        short = [result for result in report.results if result.is_lost] + report.pending_automatic
         is_passed = all(result.criterion.bonus for result in short)
     return ExitCode.PASSED if is_passed else ExitCode.FAILED

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grader.grading.hints.hinting import Fix
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
-    from grader.report.locations import Base
+    from grader.source import Base
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -73,9 +73,7 @@ class GradeRun(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.order import pending_automatic
-
-        names = ", ".join(result.criterion.id for result in pending_automatic(self.report))
+        names = ", ".join(result.criterion.id for result in self.report.pending_automatic)
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
