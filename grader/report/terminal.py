@@ -1,7 +1,6 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends."""
 
 from collections.abc import Sequence
-from io import StringIO
 from itertools import groupby
 
 from rich.console import Console
@@ -27,14 +26,12 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
     Text of the submission is never interpreted as markup or control codes.
     """
     order = in_order(report)
-    pages = [Page(report, console, verbose, set(), room) for room in Room]
-    _show(pages[0] if verbose else next((page for page in pages[:-1] if _fits(page, order)), pages[-1]), order)
-
-
-def _fits(page: Page, order: Order) -> bool:
-    out = StringIO()
-    _show(page._replace(console=Console(file=out, width=page.console.width), printed=set()), order)
-    return out.getvalue().count("\n") <= _ROWS
+    for room in Room:
+        with console.capture() as capture:
+            _show(Page(report, console, verbose, set(), room), order)
+        if verbose or capture.get().count("\n") <= _ROWS:
+            break
+    console.file.write(capture.get())
 
 
 def _show(page: Page, order: Order) -> None:
