@@ -6,6 +6,7 @@ from io import StringIO
 from pathlib import Path
 
 from rich.console import Console
+from rich.text import Text
 
 from grader.checks.registry import own_checks
 from grader.grading.grade import grade
@@ -92,10 +93,10 @@ def terminal(report: Report) -> str:
 
 def picture(report: Report) -> str:
     """Return a report as a drawing of a terminal, in SVG."""
-    console = Console(
-        record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
-    )
-    render_terminal(report, console)
+    output = StringIO()
+    render_terminal(report, Console(width=80, file=output, force_terminal=True, color_system="truecolor"))
+    console = Console(record=True, width=80, file=StringIO())
+    console.print(Text.from_ansi(output.getvalue()), end="")
     drawing = console.export_svg(title="grader grade my_robot", unique_id="grader-report")
     return re.sub(r"\s*@font-face \{.*?\}", "", drawing, flags=re.DOTALL)  # a viewer fetches no fonts
 

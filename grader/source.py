@@ -6,12 +6,11 @@ from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
-from grader import markup
 from grader.values import dataclass
 
 _BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
-_START_TAG = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])", re.DOTALL)
+_START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +58,7 @@ class Source:
 
     @cached_property
     def _tags(self) -> list[int]:
-        tags = _START_TAG.finditer(self.text)
+        tags = re.finditer(_START_TAG, self.text)
         return self._given_tags or [match.start() for match in tags if len(match[0]) == 1]
 
     def at(self, offset: int) -> Location:
@@ -87,6 +86,8 @@ class Source:
         return lines[number - 1].rstrip("\r").removeprefix("\ufeff") if 0 < number <= len(lines) else ""
 
     def _attribute(self, start: int, name: str) -> int:
+        from grader import markup  # late: its patterns are for a fault
+
         found = markup.attribute(self.text, start, name)
         return found.start if found is not None else start
 
@@ -108,6 +109,17 @@ class Source:
     def element(self, tag: int) -> "tuple[Source, int]":
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
+
+
+class Base(NamedTuple):
+    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
+
+    With `is_outside` it is in no repository.
+    """
+
+    folder: str = ""
+    archive: str = ""
+    is_outside: bool = False
 
 
 class LazyLocation(NamedTuple):

@@ -132,6 +132,7 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         open(1, "w", encoding=variables["PYTHONIOENCODING"], closefd=False) as out,
         open(2, "w", encoding=variables["PYTHONIOENCODING"], errors="backslashreplace", closefd=False) as err,
         patch.multiple(sys, stdin=given, stdout=out, stderr=err),
+        patch.object(gc, "freeze"),  # what a command leaves is garbage here
     ):
         try:
             yield

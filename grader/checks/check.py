@@ -28,8 +28,8 @@ EQUIVALENTS = (
     "xacro macro",
 )
 BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
-_SECTION = re.compile(r"^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$", re.MULTILINE)
-_ARGUMENT = re.compile(r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+")
+_SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"
+_ARGUMENT = r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+"
 
 
 def nothing(arguments: Mapping[str, Any]) -> Collection[str]:
@@ -174,7 +174,7 @@ class Documentation(NamedTuple):
 
 def documentation(function: Callable[..., Any]) -> Documentation:
     """Return what the docstring of a function says; a function without one, or without `Args:`, has empty parts."""
-    text, *sections = _SECTION.split(inspect.getdoc(function) or "")
+    text, *sections = re.split(_SECTION, inspect.getdoc(function) or "")
     named = dict(zip(sections[::2], sections[1::2], strict=True))
     paragraphs = tuple(_one_line(paragraph) for paragraph in text.split("\n\n") if paragraph.strip())
     return Documentation(paragraphs, _arguments(inspect.cleandoc(named.get("Args", named.get("Arguments", "")))))
@@ -182,7 +182,7 @@ def documentation(function: Callable[..., Any]) -> Documentation:
 
 def _arguments(section: str) -> dict[str, str]:
     """Return the entries of an `Args:` section by name; an entry continues on lines that are indented further."""
-    entries = (_ARGUMENT.split(entry) for entry in re.split(r"\n(?=\S)", section))
+    entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
     return {found[1]: _one_line(found[2]) for found in entries if len(found) == 3}
 
 

@@ -30,8 +30,8 @@ COMMANDS = {
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
 _COMPLETION = ("--show-completion", "--install-completion")
-_NEGATIVE = re.compile(r"-[.,]?[0-9]")
-_OPTION = re.compile(r"--[^=]+")  # such as --comment, whose value may be -1
+_NEGATIVE = r"-[.,]?[0-9]"
+_OPTION = r"--[^=]+"  # such as --comment, whose value may be -1
 
 
 def _print_version(is_given: bool) -> None:
@@ -188,6 +188,6 @@ def _points_last(arguments: Sequence[str]) -> list[str]:
     typed = list(arguments)
     if typed[:1] == ["mark"] and "--" not in typed:
         for index in reversed(range(1, len(typed))):
-            if _NEGATIVE.match(typed[index]) and not _OPTION.fullmatch(typed[index - 1]):
+            if re.match(_NEGATIVE, typed[index]) and not re.fullmatch(_OPTION, typed[index - 1]):
                 return [*typed[:index], *typed[index + 1 :], "--", typed[index]]
     return typed

@@ -1,7 +1,6 @@
 """The file tree at a path: of a folder, an archive, or of these with the archives in them."""
 
 import os
-import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -131,6 +130,8 @@ def _combine(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[Ig
 
 def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     """Return what is in an archive inside of another one, or of a folder; raises InputError."""
+    from tempfile import TemporaryFile
+
     from grader.files.archive import read_archive
 
     if depth >= limits.MAX_NESTED:
@@ -142,7 +143,7 @@ def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     if kind is None:
         raise FileError(archive.path, NOT_AN_ARCHIVE)
     allowance.spend(archive.path, unpacked=archive.size)
-    stored = tempfile.TemporaryFile()  # noqa: SIM115  its tree closes it
+    stored = TemporaryFile()  # noqa: SIM115  its tree closes it
     stored.write(archive.read(limits.MAX_FILE_SIZE))
     return with_inner(read_archive(stored, kind, archive.path, allowance), allowance=allowance, depth=depth + 1)
 

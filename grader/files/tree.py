@@ -1,12 +1,13 @@
 """The file tree of a submission: a folder or an archive looks the same from here on."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from typing import NamedTuple, Protocol
 
 from grader.errors import FileError
 from grader.files import limits
+from grader.values import dataclass
 
 
 class ContentReader(Protocol):
@@ -48,7 +49,7 @@ class File:
         return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
-@dataclass(frozen=True, slots=True, weakref_slot=True)
+@dataclass(frozen=True)  # without slots, because archives end with it
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 

@@ -9,7 +9,6 @@ from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.tree import urdf_loads
 from grader.errors import MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
-from grader.grading.explanation import explain
 from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
@@ -81,7 +80,12 @@ class _Grading:
             return self._miss(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=explain(result.outcome, self._subjects.problems, self._subjects.source))
+        return result._replace(outcome=self._explain(result.outcome))
+
+    def _explain(self, outcome: Outcome, *thing: str) -> Outcome:
+        from grader.grading.explanation import explain  # late: many submissions lose nothing
+
+        return explain(outcome, self._subjects.problems, self._subjects.source, *thing)
 
     def _carry(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
@@ -149,9 +153,7 @@ class _Grading:
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
-        return Result(
-            criterion, explain(outcome, self._subjects.problems, self._subjects.source, missing.kind, missing.name)
-        )
+        return Result(criterion, self._explain(outcome, missing.kind, missing.name))
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
         """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other."""

@@ -174,6 +174,13 @@ class Report:
         return tuple(result for result in counting if result.outcome.status != "passed")
 
     @property
+    def pending_automatic(self) -> list[Result]:
+        """The automatic criteria that need manual grading here, because their subject could not be read."""
+        return [
+            result for result in self.results if result.is_open and result.criterion.check.function not in MANUAL_CHECKS
+        ]
+
+    @property
     def has_failures(self) -> bool:
         """Return whether a criterion has no points because of a mistake."""
         return any(result.is_lost for result in self.results)

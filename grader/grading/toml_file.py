@@ -14,8 +14,7 @@ TomlPath = tuple[str | int, ...]
 
 _MAX_DEPTH = 20  # keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
 
-_TOKEN = re.compile(
-    r"""
+_TOKEN = r"""(?sx)
       "{3}(?:\\.|[^\\])*?"{3}(?!")      # several lines: of up to five quotes at the end, the last three close it
     | '{3}.*?'{3}(?!')                # the same, without escapes
     | "(?:\\.|[^"\\\n])*"             # "30\" wide"
@@ -24,9 +23,7 @@ _TOKEN = re.compile(
     | [\[\]{}\n=.]
     | [^\s"'\#\[\]{}=.]+              # a bare key, a number, or a boolean: points, 12, true
     | [ \t\r]+
-    """,
-    re.DOTALL | re.VERBOSE,
-)
+    """
 _MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
@@ -148,7 +145,7 @@ def _statements(text: str) -> list[tuple[int, list[str]]]:
     statements: list[tuple[int, list[str]]] = []
     line, depth = 1, 0
     current: list[str] = []
-    for match in _TOKEN.finditer(text):
+    for match in re.finditer(_TOKEN, text):
         token = match[0]
         if token == "\n" and depth == 0:
             current = []

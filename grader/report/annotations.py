@@ -13,8 +13,9 @@ from grader.grading.report import Report
 from grader.report.content import note_lines, provenance, score_text, summary_lines
 from grader.report.findings import Finding, Level, findings
 from grader.report.json_data import to_json_list
-from grader.report.locations import Base, RepositoryLocation
+from grader.report.locations import RepositoryLocation
 from grader.report.order import alike, status_of
+from grader.source import Base
 from grader.text import printable
 
 _MAX_ANNOTATIONS = 10  # of each type

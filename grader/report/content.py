@@ -8,7 +8,7 @@ from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
 from grader.problems import Problem
 from grader.report.locations import location_text
-from grader.report.order import earned_text, failures, pending_automatic, sum_text
+from grader.report.order import earned_text, failures, sum_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
@@ -107,7 +107,7 @@ def summaries(report: Report) -> list[str]:
 
 def pending_line(report: Report) -> str:
     """Return how many points need manual grading, and which automatic criteria are among them; empty if none do."""
-    names = [printable(result.criterion.id) for result in pending_automatic(report)]
+    names = [printable(result.criterion.id) for result in report.pending_automatic]
     rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
     return f"{pending_points(report)}{rest}" if report.open_points else ""
 
@@ -201,7 +201,7 @@ def other_problems_title(report: Report) -> str:
 def next_command(report: Report) -> str:
     """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
     failed = [failure.result for failure in failures(report) if failure.result.manual_mark is None]
-    first = next(iter((*failed, *pending_automatic(report))), None)
+    first = next(iter((*failed, *report.pending_automatic)), None)
     return explain_command(first.criterion.id, report) if first is not None else ""
 
 

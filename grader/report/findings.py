@@ -10,9 +10,9 @@ from typing import Literal, NamedTuple
 from grader.grading.report import Hint, Report, Result
 from grader.report.content import other_problems
 from grader.report.details import remarks_on, result_details, sentence
-from grader.report.locations import Base, RepositoryLocation, SourceOf, archive_around, in_repository, location_text
-from grader.report.order import FailedCriterion, earned_text, failures, is_failure, pending_automatic, points_of
-from grader.source import Location
+from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
+from grader.report.order import FailedCriterion, earned_text, failures, is_failure, points_of
+from grader.source import Base, Location
 from grader.text import counted_points, printable
 
 Level = Literal["error", "warning", "note"]
@@ -82,7 +82,7 @@ def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf,
 
 def _undecided_finding(report: Report, base: Base) -> Iterator[Finding]:
     """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
-    results = pending_automatic(report)
+    results = report.pending_automatic
     if results:
         reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
         names = ", ".join(result.criterion.id for result in results)

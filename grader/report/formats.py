@@ -12,7 +12,7 @@ from grader.text import without_commands
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.report.inspection import Inspection
-    from grader.report.locations import Base
+    from grader.source import Base
 
 Need = Literal["", "console", "base", "identity", "picture"]
 
@@ -126,7 +126,7 @@ def inputs_of(kind: Format, base: "Base | None" = None, picture: str = "") -> tu
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     match kind.needs:
         case "base":
-            from grader.report.locations import Base
+            from grader.source import Base
 
             return (base or Base(),)
         case "identity":

@@ -12,8 +12,9 @@ from lxml import etree
 from grader.grading.report import Report, Result
 from grader.report.content import counting_text, other_problems, problem_line, provenance, score_text, submission_lines
 from grader.report.details import criterion_lines, result_details
-from grader.report.locations import Base, archive_around
+from grader.report.locations import archive_around
 from grader.report.order import earned_text, is_failure, status_of
+from grader.source import Base
 from grader.text import format_points, printable
 
 # The element for each status of a criterion that is not passed.

@@ -6,11 +6,11 @@ from difflib import SequenceMatcher
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.source import Edit, Location, Source
+from grader.source import Base, Edit, Location, Source
 from grader.text import first_lines, printable
 
-_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
-_ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
+_MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""  # attribute, tag, word
+_ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 SourceOf = Callable[[str], Source | None]
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
 SourceLine = tuple[int, str, str | None, str]
@@ -32,17 +32,6 @@ class Excerpt(NamedTuple):
     width: int
 
 
-class Base(NamedTuple):
-    """The location of a submission in a repository: the folder of its paths with a slash, or the archive around them.
-
-    With `is_outside` it is in no repository.
-    """
-
-    folder: str = ""
-    archive: str = ""
-    is_outside: bool = False
-
-
 class RepositoryLocation(NamedTuple):
     """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
 
@@ -60,7 +49,7 @@ class RepositoryLocation(NamedTuple):
 
 def width_of(line: str, column: int) -> int:
     """Return the length of the attribute, tag or word at a column; 1 if there is none."""
-    found = _MEANT.match(line, column - 1)
+    found = re.match(_MEANT, line[column - 1 :])
     return len(found[0].rstrip()) if found else 1
 
 
@@ -122,7 +111,7 @@ def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
 
 def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
-    found = _ARCHIVE.match(path)
+    found = re.match(_ARCHIVE, path)
     return found[1] if found else ""
 
 

@@ -42,11 +42,6 @@ def is_manual(result: Result) -> bool:
     return result.criterion.check.function in MANUAL_CHECKS
 
 
-def pending_automatic(report: Report) -> list[Result]:
-    """Return the automatic criteria that need manual grading here, because their subject could not be read."""
-    return [result for result in report.results if result.is_open and not is_manual(result)]
-
-
 def sum_text(results: tuple[Result, ...]) -> str:
     """Return the points of some criteria together: 58.5, or a dash if all of them need manual grading."""
     is_open = bool(results) and all(result.is_open for result in results)

@@ -12,10 +12,10 @@ from grader.report.content import explain_command, submission_lines
 from grader.report.details import criterion_lines
 from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
-from grader.report.locations import Base, RepositoryLocation, archive_around
+from grader.report.locations import RepositoryLocation, archive_around
 from grader.report.order import alike
 from grader.report.rubrics import kind_of
-from grader.source import Edit
+from grader.source import Base, Edit
 from grader.text import printable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

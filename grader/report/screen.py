@@ -3,7 +3,6 @@
 import io
 import os
 from collections.abc import Callable
-from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.text import without_commands
@@ -36,7 +35,7 @@ def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> s
     from rich.console import Console  # rich is not needed for JSON
 
     screen = screen or Screen(columns())
-    buffer = Rows(screen.encoding)
+    buffer = _Buffer(screen.encoding)
     console = Console(
         file=buffer,
         force_terminal=screen.is_terminal,
@@ -52,28 +51,13 @@ def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> s
     return without_commands(buffer.getvalue())
 
 
-class TooManyRowsError(Exception):
-    """A page has more rows than it may have."""
+class _Buffer(io.StringIO):
+    """A stream that collects output and reports the encoding of its destination."""
 
-
-class Rows(io.StringIO):
-    """A stream that collects output, and reports the encoding of its destination.
-
-    Raises TooManyRowsError as soon as it has more than `most` rows.
-    """
-
-    def __init__(self, encoding: str, most: float = inf) -> None:
+    def __init__(self, encoding: str) -> None:
         super().__init__()
-        self._encoding, self._left = encoding, most
-
-    def write(self, text: str) -> int:
-        """Add text."""
-        self._left -= text.count("\n")
-        if self._left < 0:
-            raise TooManyRowsError
-        return super().write(text)
+        self._encoding = encoding
 
     @property
     def encoding(self) -> str:  # type: ignore[override]  # typeshed has it writable
-        """The encoding of the destination."""
         return self._encoding

@@ -1,7 +1,6 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from itertools import groupby
 
 from rich.console import Console
@@ -15,7 +14,6 @@ from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wr
 from grader.report.details import carried_text, pending_reason, remarks_on, result_details, skipped_text
 from grader.report.entries import INDENT, Page, Room, show_answer, show_criteria, show_failure
 from grader.report.order import Order, alike, earned_text, groups, in_order, is_manual, status_of
-from grader.report.screen import Rows, TooManyRowsError
 from grader.text import counted, enumerated, first_lines, printable
 
 _MAX_NAMES, _MAX_LISTED, _MAX_KINDS = 3, 12, 3
@@ -28,24 +26,12 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
     Text of the submission is never interpreted as markup or control codes.
     """
     order = in_order(report)
-    pages = [Page(report, console, verbose, set(), room) for room in Room]
-    if verbose or not any(_show_if_it_fits(page, order) for page in pages[:-1]):
-        _show(pages[0] if verbose else pages[-1], order)
-
-
-def _show_if_it_fits(page: Page, order: Order) -> bool:
-    """Print a page, and return True, if it has few enough rows."""
-    console, text = page.console, ""
-    file, console.file = console.file, (rows := Rows(console.encoding, _ROWS))
-    with suppress(TooManyRowsError):
-        _show(page, order)
-        text = rows.getvalue()
-    console.file = file
-    if not text:
-        with console.capture():  # it takes the row that could not be written
-            return False
-    file.write(text)
-    return True
+    for room in Room:
+        with console.capture() as capture:
+            _show(Page(report, console, verbose, set(), room), order)
+        if verbose or capture.get().count("\n") <= _ROWS:
+            break
+    console.file.write(capture.get())
 
 
 def _show(page: Page, order: Order) -> None:

@@ -15,8 +15,8 @@ from grader.text import counted, quoted
 
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large
-_COMMA = re.compile(r"[+-]?[0-9]+,[0-9]+")  # 0,15 for 0.15
-_VERSION = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
+_COMMA = r"[+-]?[0-9]+,[0-9]+"  # 0,15 for 0.15
+_VERSION = r"[ \t\n\v\f\r]*([+-]?[0-9]+)"
 _MAX_LONG = 2**63 - 1
 
 Value = TypeVar("Value")
@@ -70,7 +70,7 @@ def rgba(text: str) -> tuple[float, float, float, float] | None:
 
 def is_version_one(text: str) -> bool:
     """Return whether urdfdom's URDFVersion, which uses C's strtol, reads a robot's `version` as 1.0."""
-    parsed = [_VERSION.fullmatch(piece) for piece in text.removesuffix(".").split(".")]
+    parsed = [re.fullmatch(_VERSION, piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]
     return len(values) == len(parsed) and min(values) >= 0 and [value % 2**32 for value in values] == [1, 0]
 
@@ -85,7 +85,7 @@ def _reason(text: str) -> str:
     if not text.strip():
         return "it is empty"
     reasons = {
-        "contains a comma: write a decimal point, or a space between two numbers": _COMMA.fullmatch(text),
+        "contains a comma: write a decimal point, or a space between two numbers": re.fullmatch(_COMMA, text),
         "contains a comma: separate numbers by spaces": "," in text,
         "is xacro, which ROS 2 does not evaluate in a .urdf file": "$" in text,
         "contains a tab or a line break: separate numbers by plain spaces": not set("\t\n\v\f\r").isdisjoint(text),

@@ -1,7 +1,5 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import cached_property
@@ -82,22 +80,22 @@ class Submission:
     budget: Budget = field(default_factory=Budget, repr=False, compare=False)  # of the work to read it
     neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
-    reopen: Callable[[Tree], Submission] | None = field(default=None, repr=False)  # opens other files in the same way
+    reopen: "Callable[[Tree], Submission] | None" = field(default=None, repr=False)  # opens other files in the same way
 
     @cached_property
-    def documents(self) -> DocumentCollection:
+    def documents(self) -> "DocumentCollection":
         """The documents in it, each of which is read once."""
         from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
         return DocumentCollection(self.tree, self.opening.show_file)
 
     @property
-    def readable_documents(self) -> DocumentCollection | None:
+    def readable_documents(self) -> "DocumentCollection | None":
         """The documents in it; None where they must not be read."""
         return None if self.opening.no_documents else self.documents
 
     @cached_property
-    def labelled_files(self) -> tuple[LabelledFile, ...]:
+    def labelled_files(self) -> "tuple[LabelledFile, ...]":
         """The pictures, films and PDF files in it."""
         from grader.documents.evidence_files import read_labelled_files
 

@@ -10,7 +10,7 @@ from grader.errors import GraderError
 if TYPE_CHECKING:
     from grader.grading.report import Report
 
-_THRESHOLD = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?")
+_THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
 _MAX_PERCENT = 100
 
 
@@ -26,7 +26,7 @@ class ExitCode(IntEnum):
 
 def read_threshold(text: str) -> tuple[Decimal, bool]:
     """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
-    if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
+    if not re.fullmatch(_THRESHOLD, text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
         raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
     return Decimal(text.removesuffix("%")), text.endswith("%")
 
@@ -37,14 +37,12 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
     A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion
     must have passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
     """
-    from grader.report.order import pending_automatic
-
     if report.fault:
         return ExitCode.FAULT
     if threshold is not None:
         least, is_percent = threshold
         is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
     else:
-        short = [result for result in report.results if result.is_lost] + pending_automatic(report)
+        short = [result for result in report.results if result.is_lost] + report.pending_automatic
         is_passed = all(result.criterion.bonus for result in short)
     return ExitCode.PASSED if is_passed else ExitCode.FAILED

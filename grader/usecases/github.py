@@ -12,7 +12,7 @@ from grader.usecases.writing import refuse_symlinks
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
-    from grader.report.locations import Base
+    from grader.source import Base
 
 Annotate = Callable[[str], None]  # writes workflow commands
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from grader.grading.hints.hinting import Fix
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
-    from grader.report.locations import Base
+    from grader.source import Base
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
-_SHA256 = re.compile(r"[0-9a-fA-F]{64}")
+_SHA256 = r"[0-9a-fA-F]{64}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +73,7 @@ class GradeRun(NamedTuple):
     @property
     def reason(self) -> str:
         """Why the exit code is 1 although nothing failed; empty otherwise."""
-        from grader.report.order import pending_automatic
-
-        names = ", ".join(result.criterion.id for result in pending_automatic(self.report))
+        names = ", ".join(result.criterion.id for result in self.report.pending_automatic)
         if self.exit_code != ExitCode.FAILED or not names or self.report.has_failures:
             return ""
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
@@ -185,7 +183,7 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
 def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
     expected = request.expected_rubric
-    if expected is not None and not _SHA256.fullmatch(expected):
+    if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )

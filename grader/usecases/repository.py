@@ -4,7 +4,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from grader.report.locations import Base
+from grader.source import Base
 from grader.usecases.writing import CHECKOUTS
 
 

@@ -18,11 +18,12 @@ DEFAULT_RUBRIC = "lab6"  # of the command line
 
 def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
     """Return a rubric with or without its model answers; warn if their file is missing."""
-    from grader.grading.answers import load_with_answers, missing_answers
     from grader.grading.rubric import load_rubric
 
     if not answers:
         return load_rubric(name)
+    from grader.grading.answers import load_with_answers, missing_answers
+
     rubric = load_with_answers(name)
     if missing_answers(rubric):
         warn(missing_answers(rubric))

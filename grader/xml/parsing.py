@@ -27,7 +27,7 @@ _PARSER = etree.XMLParser(
 # bytes: of xyz="0 0<tab>1" it sees ="<tab>".
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
 _BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
-_DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
+_DEFAULT_NAMESPACE = rb"xmlns[ \t\r\n]*="
 # No declaration, and no byte-order mark, which lxml takes for the encoding; or one that says what TinyXML2 assumes.
 _PLAIN_START = re.compile(
     rb"""
@@ -98,7 +98,7 @@ def is_plain(data: bytes) -> bool:
         and data.count(b"<!") == data.count(b"<!--")
         and _PLAIN_START.match(data) is not None
         and _BROKEN_VALUE.search(data.translate(None, _UNIMPORTANT)) is None
-        and (b"xmlns" not in data or _DEFAULT_NAMESPACE.search(data) is None)
+        and (b"xmlns" not in data or re.search(_DEFAULT_NAMESPACE, data) is None)
     )
 
 

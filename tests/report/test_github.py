@@ -11,9 +11,9 @@ from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.annotations import command, render_github
 from grader.report.findings import findings
-from grader.report.locations import Base, RepositoryLocation
+from grader.report.locations import RepositoryLocation
 from grader.robot.catalogue import UNDEFINED_MATERIAL
-from grader.source import Location
+from grader.source import Base, Location
 from grader.text import printable
 from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command

@@ -8,8 +8,8 @@ import pytest
 from grader.grading.report import ManualMark, Result
 from grader.report.findings import findings
 from grader.report.formats import Format, render
-from grader.report.locations import Base, diff_lines
-from grader.source import Edit, Source
+from grader.report.locations import diff_lines
+from grader.source import Base, Edit, Source
 from tests.report.readers import READERS, read_as_github, read_markdown, read_sarif
 from tests.report.reports import AXLE, hinted
 from tests.samples import ROOT

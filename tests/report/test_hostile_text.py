@@ -19,7 +19,7 @@ from grader.cli.app import run
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.report.formats import Format, InspectFormat, render
-from grader.report.locations import Base
+from grader.source import Base
 from grader.submission.opening import read_submission
 from tests.examples import examples, spread
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission

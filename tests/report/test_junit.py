@@ -10,7 +10,7 @@ from junitparser.xunit2 import JUnitXml
 
 from grader.grading.report import Report, Result
 from grader.report.junit import render_junit
-from grader.report.locations import Base
+from grader.source import Base
 from tests.report.readers import read_junit
 from tests.report.reports import half_points, marked
 from tests.samples import REPORTED, SAMPLES

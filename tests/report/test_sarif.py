@@ -13,10 +13,9 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.findings import findings
-from grader.report.locations import Base
 from grader.report.sarif import render_sarif
 from grader.robot.catalogue import UNDEFINED_MATERIAL
-from grader.source import Location
+from grader.source import Base, Location
 from grader.submission.opening import read_submission
 from tests.report.readers import read_sarif
 from tests.report.rewording import recast
