@@ -52,6 +52,7 @@ class DocumentCollection:
         self._show_file = show_file
         self._seconds = MAX_SECONDS
         self._converted = 0
+        self._chosen: dict[tuple[str, ...], list[File]] = {}
         self._read_files: dict[str, Document | Unread | None] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
@@ -66,9 +67,7 @@ class DocumentCollection:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
         unread: list[Unread] = []
-        matching = _names_like(tuple(patterns))
-        files = self.tree.files.values()
-        chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
+        chosen = self._files_like(tuple(patterns))
         for file in chosen[:_MAX_FILES]:
             document = self.document(file)
             if isinstance(document, Unread):
@@ -81,6 +80,13 @@ class DocumentCollection:
             rest = f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit"
             unread.append(Unread("", rest))
         return read, unread
+
+    def _files_like(self, patterns: tuple[str, ...]) -> list[File]:
+        if patterns not in self._chosen:
+            names = ((file, file.name) for file in self.tree.files.values())
+            like = _names_like(patterns)
+            self._chosen[patterns] = [it for it, name in names if name not in _NO_ANSWERS and like.match(name.lower())]
+        return self._chosen[patterns]
 
     def document(self, file: File) -> Document | Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""

@@ -30,6 +30,23 @@ def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
     return Position(node.lineno, node.col_offset + 1)
 
 
+def strings_in(tree: ast.Module) -> dict[str, Position]:
+    """Return the position of each string in a file, the outermost of several equal ones."""
+    found: dict[str, Position] = {}
+    nodes: list[ast.AST] = [tree]
+    for node in nodes:  # in the order of ast.walk, which is several times slower
+        if isinstance(node, ast.Constant):
+            if isinstance(node.value, str):
+                found.setdefault(node.value, position_of(node))
+            continue
+        for part in vars(node).values():
+            if isinstance(part, ast.AST):
+                nodes.append(part)
+            elif isinstance(part, list):
+                nodes += [inner for inner in part if isinstance(inner, ast.AST)]
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """A parsed file with its text."""

@@ -4,6 +4,7 @@ import posixpath
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cache
 from operator import attrgetter
 from pathlib import PurePosixPath
 
@@ -156,6 +157,7 @@ def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ..
     )
 
 
+@cache
 def launch_functions() -> FunctionTable:
     """Return the functions by full name; the folders that they return are stand-ins."""
     return {
