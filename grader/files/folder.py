@@ -28,8 +28,7 @@ def read_folder(folder: Path, top: str = "") -> Tree:
     """
     walk = _Walk(folder, top)
     walk.enter("", linked=False)
-    name = printable_path(folder.resolve().name or "submission")
-    return make_tree(name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
+    return make_tree(walk.name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
 
 
 class _Walk:
@@ -39,6 +38,7 @@ class _Walk:
         self._folder = folder
         self._shown = shown_below(folder, top)
         self._top = os.path.realpath(folder)
+        self.name = printable_path(Path(self._top).name or "submission")
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
             raise FileError(printable_path(folder.name), _IS_SYMLINK)
@@ -114,7 +114,7 @@ class _Walk:
 
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
-            with os.scandir(self._folder / where) as found:
+            with os.scandir(f"{self._folder}/{where}") as found:
                 return sorted(islice(found, limits.MAX_FILES + 1), key=lambda entry: entry.name)
         except OSError as error:
             if not where:

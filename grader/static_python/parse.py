@@ -6,7 +6,7 @@ import tokenize
 import warnings
 from codecs import lookup
 from io import BytesIO
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.source import Location, Source
 from grader.values import dataclass
@@ -33,17 +33,17 @@ def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
 def strings_in(tree: ast.Module) -> dict[str, Position]:
     """Return the position of each string in a file, the outermost of several equal ones."""
     found: dict[str, Position] = {}
-    nodes: list[ast.AST] = [tree]
+    nodes: list[Any] = [tree]
     for node in nodes:  # in the order of ast.walk, which is several times slower
-        if isinstance(node, ast.Constant):
-            if isinstance(node.value, str):
+        if type(node) is ast.Constant:
+            if type(node.value) is str:
                 found.setdefault(node.value, position_of(node))
-            continue
-        for part in vars(node).values():
-            if isinstance(part, ast.AST):
-                nodes.append(part)
-            elif isinstance(part, list):
-                nodes += [inner for inner in part if isinstance(inner, ast.AST)]
+        elif isinstance(node, ast.AST):
+            for part in vars(node).values():
+                if type(part) is list:
+                    nodes += part
+                elif type(part) is not int:
+                    nodes.append(part)
     return found
 
 

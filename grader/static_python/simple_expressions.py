@@ -1,6 +1,7 @@
 """The values of expressions that bind no names: operators, attributes, calls, literals."""
 
 import ast
+from functools import cache
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -26,6 +27,13 @@ from grader.static_python.values import (
 
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
 _RUN_TIME = "its value is known only at run time"
+_SIZED = (str, list, tuple, dict)
+
+
+@cache
+def method_of(kind: str) -> str:
+    """Return the name of the method that evaluates a kind of node."""
+    return f"_{kind.lower()}"
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
@@ -73,13 +81,13 @@ class SimpleEvaluator(Evaluation):
         if isinstance(node, ast.Name):
             return self.find(node, scope)
         value = self.evaluate_kind(node, scope)
-        if isinstance(value, str | list | tuple | dict) and not isinstance(node, ast.Subscript):
+        if isinstance(value, _SIZED) and not isinstance(node, ast.Subscript):
             self.step(len(value) // 64)  # a large value takes time to make
         return value
 
     def evaluate_kind(self, node: ast.expr, scope: Scope) -> Value:
         """Return the value of an expression, without the checks of `evaluate`."""
-        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        kind = getattr(self, method_of(type(node).__name__), None)
         return kind(node, scope) if kind else Unknown("an expression of this kind is not supported", position_of(node))
 
     def _attribute(self, node: ast.Attribute, scope: Scope) -> Value:
