@@ -11,7 +11,7 @@ from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
+from grader.files.tree import Content, File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
@@ -62,7 +62,8 @@ class _Walk:
                 if self._count > limits.MAX_FILES:
                     raise limits.files_limit_error(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
-                if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
+                shown = printable_path(path)
+                if not self._is_ignored(entry, path, shown) and self._add(entry, path, shown, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
         for path in links:
             real = os.path.realpath(self._folder / path)
@@ -71,18 +72,17 @@ class _Walk:
                 self.folders.append(printable_path(path))
                 self.enter(path, linked=True)
 
-    def _is_ignored(self, entry: "os.DirEntry[str]", path: str) -> bool:
-        if entry.name not in IGNORED_FOLDERS and not ignored_part(printable_path(path)):
+    def _is_ignored(self, entry: "os.DirEntry[str]", path: str, shown: str) -> bool:
+        if entry.name not in IGNORED_FOLDERS and not ignored_part(shown):
             return False
         if entry.is_dir(follow_symlinks=False):
-            self.unseen.append(printable_path(path))
+            self.unseen.append(shown)
         if entry.name in BUILD_FOLDERS and not entry.is_symlink():
             self.generated += _generated_files(self._folder, path)
         return True
 
-    def _add(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
+    def _add(self, entry: "os.DirEntry[str]", path: str, shown: str, real_folder: str) -> bool:
         """Add a file, or name an ignored one; return True for a folder to enter."""
-        shown = printable_path(path)
         try:
             real = os.path.realpath(entry.path) if entry.is_symlink() else ""
             is_folder, is_file = entry.is_dir(), entry.is_file()
@@ -102,7 +102,7 @@ class _Walk:
             size = 0
             with suppress(OSError):
                 size = entry.stat().st_size
-            self.files.append(File(shown, size, partial(_read, place, shown, self._trusted)))
+            self.files.append(File(shown, size, Content(partial(_read, place, shown, self._trusted))))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:

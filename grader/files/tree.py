@@ -8,12 +8,32 @@ from typing import NamedTuple, Protocol
 from grader.errors import FileError
 from grader.files import limits
 
+_SMALL = 4096  # bytes
+
 
 class ContentReader(Protocol):
     """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first `limit` of them."""
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
         """Return the bytes."""
+
+
+class Content:
+    """The bytes of a file that `read` gives; those of a small file are kept, as a search looks into it first."""
+
+    __slots__ = ("_kept", "_read")
+
+    def __init__(self, read: ContentReader) -> None:
+        self._read, self._kept = read, b""
+
+    def __call__(self, limit: int, *, first: bool = False) -> bytes:
+        """Return the bytes."""
+        if self._kept and len(self._kept) < limit:
+            return self._kept
+        data = self._read(limit, first=first)
+        if len(data) < min(limit, _SMALL):
+            self._kept = data
+        return data
 
 
 class IgnoredFile(NamedTuple):

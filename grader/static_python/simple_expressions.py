@@ -218,7 +218,7 @@ class SimpleEvaluator(Evaluation):
             else:
                 call.kwargs[UNKNOWN_KEYS] = Unknown("the unpacked arguments are known only at run time", call.at)
         self.step(size([call.args, list(call.kwargs.values())]) // 32)
-        is_unpacked = any(isinstance(argument, ast.Starred) for argument in node.args)
-        if is_unpacked and isinstance(function, Function) and unknown_in(call.args) is not None:
+        is_vague = isinstance(function, Function) and unknown_in(call.args) is not None
+        if is_vague and any(isinstance(argument, ast.Starred) for argument in node.args):
             return Unknown("the unpacked arguments are known only at run time", call.at)
         return call_value(self, function, call)
