@@ -20,6 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
+from grader.values import reused
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
@@ -35,6 +36,18 @@ Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
     """Read a launch file and evaluate it. `installed` is its path below the prefix after a build. Never raises."""
+    return _read_alone(data, path, installed) or _read(data, path, installed, opener)
+
+
+@reused
+def _read_alone(data: bytes, path: str, installed: str) -> Launch | None:
+    """Return a launch file; None for one that includes others."""
+    included: list[str] = []
+    launch = _read(data, path, installed, included.append)
+    return launch if not included else None
+
+
+def _read(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
     context = Context(posixpath.dirname(f"{PREFIX}/{installed}"))
     return _LaunchReader(opener).read(data, path, installed, context)
 
