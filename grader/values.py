@@ -6,11 +6,11 @@ only `__init__` is compiled, the other methods are shared, and mypy alone refuse
 
 import dataclasses
 from collections.abc import Callable, Iterable
-from functools import lru_cache, wraps
+from functools import lru_cache
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
-P = ParamSpec("P")
+Names = TypeVarTuple("Names")
 T = TypeVar("T")
 _SMALL = 16 * 1024  # bytes
 
@@ -35,16 +35,15 @@ else:
         return made
 
 
-def reused(read: Callable[Concatenate[bytes, P], T]) -> Callable[Concatenate[bytes, P], T]:
+def reused(read: Callable[[bytes, *Names], T]) -> Callable[[bytes, *Names], T]:
     """Return a reader that reads equal small files once, as those of a handout are in every submission of a class.
 
     What it returns must not be changed.
     """
     read_once = lru_cache(maxsize=16)(read)
 
-    @wraps(read)
-    def reader(data: bytes, *args: P.args, **kwargs: P.kwargs) -> T:
-        return (read_once if len(data) <= _SMALL else read)(data, *args, **kwargs)
+    def reader(data: bytes, *names: *Names) -> T:
+        return (read_once if len(data) <= _SMALL else read)(data, *names)
 
     return reader
 
