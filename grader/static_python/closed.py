@@ -13,6 +13,7 @@ from functools import lru_cache
 from grader.static_python.closed_functions import call
 from grader.static_python.closed_operators import attribute, compare, operate, subscript
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, call_plain, items_of
+from grader.static_python.parse import method_of
 
 _MAX_LENGTH = 4_000  # characters of an expression
 _MAX_KEPT = 200  # characters of an expression that is kept once it is parsed
@@ -66,7 +67,7 @@ class _Evaluator:
     def value(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
         """Return the value of an expression; `local` has the names that comprehensions bind."""
         self._budget.charge(_OF_NODE)
-        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        kind = getattr(self, method_of(type(node).__name__), None)
         if kind is None:
             raise Undetermined("an expression of this kind is not supported")
         value: Value = kind(node, local)

@@ -1,6 +1,7 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
 import re
+from typing import cast
 
 from grader.problems import Problem
 from grader.source import Source
@@ -62,7 +63,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
-    if any("$" in section for section in _CDATA.findall(text)):
+    if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
     return _nodes(root, Source(path, text), budget)
 
@@ -79,8 +80,9 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
 def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
     nodes: dict[Element, XacroNode] = {}
     for index, element in enumerate(root.iter()):
-        budget.charge(len(element.attrib) ** 2 // _COMPARED)
-        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), _attributes(element))
+        attributes = _attributes(element)
+        budget.charge(len(attributes) ** 2 // _COMPARED)
+        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), attributes)
         _add_text(node.children, element.text)
         parent = element.getparent()
         if parent is not None:
@@ -109,13 +111,15 @@ def _tag(element: Element) -> str:
     tag = str(element.tag)
     if tag.startswith(f"xacro{_STAND_IN}"):
         return tag.replace(_STAND_IN, ":", 1)
+    if tag[0] != "{":
+        return tag
     local = tag.rpartition("}")[2]
     return f"{element.prefix}:{local}" if element.prefix else local
 
 
 def _attributes(element: Element) -> dict[str, str]:
-    attributes = {str(name): str(value) for name, value in element.items()}
-    if not any(name.startswith("{") for name in attributes):
+    attributes = cast("dict[str, str]", dict(element.items()))
+    if "{" not in "".join(attributes):
         return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
     named = (name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes)
