@@ -56,7 +56,7 @@ _kept = lru_cache(1_000)(_parse)
 
 
 # What makes a value that no function has measured yet.
-_MAKES_VALUES = (ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp)
+_MAKES_VALUES = frozenset({ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp})
 
 
 class _Evaluator:
@@ -71,7 +71,7 @@ class _Evaluator:
         if kind is None:
             raise Undetermined("an expression of this kind is not supported")
         value: Value = kind(node, local)
-        return self._budget.checked(value) if isinstance(node, _MAKES_VALUES) else value
+        return self._budget.checked(value) if type(node) in _MAKES_VALUES else value
 
     def _constant(self, node: ast.Constant, local: Mapping[str, Value]) -> Value:
         del local

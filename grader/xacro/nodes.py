@@ -6,6 +6,7 @@ from typing import cast
 from grader.problems import Problem
 from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
+from grader.values import reused
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
@@ -54,7 +55,16 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
     """
-    text = _decode(data, budget)
+    _decode(data, budget)
+    root, parts = _read(data, path, is_repaired)
+    budget.charge(parts)
+    return root
+
+
+@reused
+def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
+    """Return the root of an XML file, and what its attributes are charged."""
+    text = data.decode()
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
         xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
@@ -65,7 +75,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
         raise Undetermined("entities of a DOCTYPE are not supported")
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    return _nodes(root, Source(path, text), budget)
+    return _nodes(root, Source(path, text))
 
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
@@ -74,14 +84,19 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
     assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.differences]
-    return _nodes(parse_xml(recovered.recovered), source, budget) if recovered.recovered else None, assumed
+    if not recovered.recovered:
+        return None, assumed
+    root, parts = _nodes(parse_xml(recovered.recovered), source)
+    budget.charge(parts)
+    return root, assumed
 
 
-def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
+def _nodes(root: Element, source: Source) -> tuple[XacroNode, int]:
     nodes: dict[Element, XacroNode] = {}
+    parts = 0
     for index, element in enumerate(root.iter()):
         attributes = _attributes(element)
-        budget.charge(len(attributes) ** 2 // _COMPARED)
+        parts += len(attributes) ** 2 // _COMPARED
         node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), attributes)
         _add_text(node.children, element.text)
         parent = element.getparent()
@@ -89,7 +104,7 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
             children = nodes[parent].children
             children.append(node)
             _add_text(children, element.tail)
-    return nodes[root]
+    return nodes[root], parts
 
 
 def _decode(data: bytes, budget: Budget) -> str:
