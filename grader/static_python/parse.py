@@ -5,7 +5,6 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
-from functools import cache
 from io import BytesIO
 from typing import Any, NamedTuple
 
@@ -29,12 +28,6 @@ START = Position(1, 1)
 def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
-
-
-@cache
-def method_of(kind: str) -> str:
-    """Return the name of the method that evaluates a kind of node."""
-    return f"_{kind.lower()}"
 
 
 def strings_in(tree: ast.Module) -> dict[str, Position]:

@@ -1,13 +1,14 @@
 """The values of expressions that bind no names: operators, attributes, calls, literals."""
 
 import ast
+from functools import cache
 from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.methods import attribute, call_method
 from grader.static_python.operators import compare, extend, operate, subscript, type_name
-from grader.static_python.parse import Position, method_of, position_of
+from grader.static_python.parse import Position, position_of
 from grader.static_python.values import (
     MAX_TEXT,
     UNKNOWN_KEYS,
@@ -27,6 +28,12 @@ from grader.static_python.values import (
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
 _RUN_TIME = "its value is known only at run time"
 _SIZED = (str, list, tuple, dict)
+
+
+@cache
+def method_of(kind: str) -> str:
+    """Return the name of the method that evaluates a kind of node."""
+    return f"_{kind.lower()}"
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from grader.static_python.evaluation import ExitFlow, LoopFlow, ReturnFlow
 from grader.static_python.imports import import_error, imported_names, is_always_installed
 from grader.static_python.operators import extend, operate, remove, store
-from grader.static_python.parse import Position, method_of, position_of
-from grader.static_python.simple_expressions import SimpleEvaluator
+from grader.static_python.parse import Position, position_of
+from grader.static_python.simple_expressions import SimpleEvaluator, method_of
 from grader.static_python.values import (
     MAX_ITEMS,
     BoundMethod,
