@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from typing import Any, cast
+from typing import Any
 
 from grader.problems import Problem
 from grader.source import Source
@@ -29,6 +29,7 @@ _DECLARATION = re.compile(
 MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
+_UNDECLARED_TAG = f"xacro{_STAND_IN}"
 _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
@@ -126,16 +127,14 @@ def _add_text(children: Children, text: str | None) -> None:
 
 def _tag(element: Element) -> str:
     tag = str(element.tag)
-    if tag.startswith(f"xacro{_STAND_IN}"):
-        return tag.replace(_STAND_IN, ":", 1)
     if tag[0] != "{":
-        return tag
+        return tag.replace(_STAND_IN, ":", 1) if tag.startswith(_UNDECLARED_TAG) else tag
     local = tag.rpartition("}")[2]
     return f"{element.prefix}:{local}" if element.prefix else local
 
 
 def _attributes(element: Element) -> dict[str, str]:
-    attributes = cast("dict[str, str]", dict(element.items()))
+    attributes: dict[str, str] = dict(element.items())  # type: ignore[arg-type]  # lxml gives str here
     if "{" not in "".join(attributes):
         return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
