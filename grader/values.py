@@ -40,7 +40,7 @@ def reused(read: Callable[[bytes, *Names], T]) -> Callable[[bytes, *Names], T]:
 
     What it returns must not be changed.
     """
-    read_once = lru_cache(maxsize=16)(read)
+    read_once = lru_cache(maxsize=4)(read)
 
     def reader(data: bytes, *names: *Names) -> T:
         return (read_once if len(data) <= _SMALL else read)(data, *names)

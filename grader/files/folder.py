@@ -5,6 +5,7 @@ import stat
 from contextlib import suppress
 from functools import partial
 from itertools import islice
+from operator import attrgetter
 from pathlib import Path
 
 from grader.errors import FileError, InputError
@@ -115,7 +116,7 @@ class _Walk:
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
             with os.scandir(f"{self._folder}/{where}") as found:
-                return sorted(islice(found, limits.MAX_FILES + 1), key=lambda entry: entry.name)
+                return sorted(islice(found, limits.MAX_FILES + 1), key=attrgetter("name"))
         except OSError as error:
             if not where:
                 raise InputError(f"cannot read {self._shown}: {error.strerror}") from None
