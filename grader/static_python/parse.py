@@ -9,7 +9,7 @@ from io import BytesIO
 from typing import Any, NamedTuple
 
 from grader.source import Location, Source
-from grader.values import dataclass
+from grader.values import dataclass, reused
 
 _SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
 _JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
@@ -65,6 +65,7 @@ class SyntaxFault:
     sure: bool = True
 
 
+@reused
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
     try:
