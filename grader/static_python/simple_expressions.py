@@ -1,7 +1,6 @@
 """The values of expressions that bind no names: operators, attributes, calls, literals."""
 
 import ast
-from functools import cache
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -28,12 +27,6 @@ from grader.static_python.values import (
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
 _RUN_TIME = "its value is known only at run time"
 _SIZED = (str, list, tuple, dict)
-
-
-@cache
-def method_of(kind: str) -> str:
-    """Return the name of the method that evaluates a kind of node."""
-    return f"_{kind.lower()}"
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
@@ -87,7 +80,7 @@ class SimpleEvaluator(Evaluation):
 
     def evaluate_kind(self, node: ast.expr, scope: Scope) -> Value:
         """Return the value of an expression, without the checks of `evaluate`."""
-        kind = getattr(self, method_of(type(node).__name__), None)
+        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
         return kind(node, scope) if kind else Unknown("an expression of this kind is not supported", position_of(node))
 
     def _attribute(self, node: ast.Attribute, scope: Scope) -> Value:

@@ -8,7 +8,7 @@ from grader.static_python.evaluation import ExitFlow, LoopFlow, ReturnFlow
 from grader.static_python.imports import import_error, imported_names, is_always_installed
 from grader.static_python.operators import extend, operate, remove, store
 from grader.static_python.parse import Position, position_of
-from grader.static_python.simple_expressions import SimpleEvaluator, method_of
+from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import (
     MAX_ITEMS,
     BoundMethod,
@@ -123,7 +123,7 @@ class StatementEvaluator(ExpressionEvaluator):
 
     def statement(self, node: ast.stmt, scope: Scope) -> None:
         """Evaluate a statement, if its kind is supported."""
-        kind = getattr(self, method_of(type(node).__name__), None)
+        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
         if kind is not None:
             kind(node, scope)
 

@@ -97,6 +97,7 @@ class Expander:
         """Expand the children of an element into another. Omit what is refused or cannot be determined."""
         out.open = out.open or source.open
         for child in source.children:
+            place = child.place if isinstance(child, XacroNode) else source.place
             try:
                 if isinstance(child, XacroNode):
                     self._element(child, out, scopes)
@@ -106,10 +107,10 @@ class Expander:
                     out.children.append(text)
             except (OutOfBudget, RecursionError) as error:  # every element around may have more content
                 stop = error if isinstance(error, OutOfBudget) else OutOfBudget(_TOO_DEEP)
-                self._stopped, out.open = self._stopped or _place_of(child, source), out.open or str(stop)
+                self._stopped, out.open = self._stopped or place, out.open or str(stop)
                 raise stop from None
             except (ExpressionFails, Undetermined) as error:
-                reason = self.report(error, _place_of(child, source))
+                reason = self.report(error, place)
                 out.open = out.open or reason
 
     def insert(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -201,7 +202,3 @@ class Expander:
             raise Undetermined("a YAML file is not read again for each edit")
         data = self.files.read(self.files.path(self.texts.written(name)))
         return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)
-
-
-def _place_of(child: XacroNode | str, parent: XacroNode) -> ScopePlace:
-    return child.place if isinstance(child, XacroNode) else parent.place

@@ -4,7 +4,7 @@ xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes 
 the same, so that one defect does not hide another.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from itertools import groupby
 from typing import NamedTuple
@@ -105,23 +105,17 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
         nodes.append(node)
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
-        inside = node.elements
-        children = [make_element(_name(it.tag), _attributes(it.attributes), element) for it in inside]
-        if len(inside) < len(node.children):
-            _add_texts(node, element, children)
-        pending += zip(reversed(inside), reversed(children), strict=True)
+        children: list[tuple[XacroNode, Element]] = []
+        for kind, found in groupby(node.children, type):
+            if kind is XacroNode:
+                inside = [child for child in found if isinstance(child, XacroNode)]
+                children += [(it, make_element(_name(it.tag), _attributes(it.attributes), element)) for it in inside]
+            elif children:
+                children[-1][1].tail = "".join(map(str, found))
+            else:
+                element.text = "".join(map(str, found))
+        pending += reversed(children)
     return made
-
-
-def _add_texts(node: XacroNode, element: Element, children: Sequence[Element]) -> None:
-    count = 0  # of the children before
-    for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
-        if not is_text:
-            count += len(list(found))
-        elif count:
-            children[count - 1].tail = "".join(map(str, found))
-        else:
-            element.text = "".join(map(str, found))
 
 
 def _name(tag: str) -> str:

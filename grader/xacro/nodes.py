@@ -78,7 +78,8 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
         raise Undetermined("entities of a DOCTYPE are not supported")
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    return _nodes(root, Source(path, text))
+    own = Budget()
+    return _nodes(root, Source(path, text), own), own.used
 
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
@@ -87,19 +88,14 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
     assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.differences]
-    if not recovered.recovered:
-        return None, assumed
-    root, parts = _nodes(parse_xml(recovered.recovered), source)
-    budget.charge(parts)
-    return root, assumed
+    return _nodes(parse_xml(recovered.recovered), source, budget) if recovered.recovered else None, assumed
 
 
-def _nodes(root: Element, source: Source) -> tuple[XacroNode, int]:
+def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
     nodes: dict[Element, XacroNode] = {}
-    parts = 0
     for index, element in enumerate(root.iter()):
         attributes = _attributes(element)
-        parts += len(attributes) ** 2 // _COMPARED
+        budget.charge(len(attributes) ** 2 // _COMPARED)
         node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), attributes)
         _add_text(node.children, element.text)
         parent = element.getparent()
@@ -107,7 +103,7 @@ def _nodes(root: Element, source: Source) -> tuple[XacroNode, int]:
             children = nodes[parent].children
             children.append(node)
             _add_text(children, element.tail)
-    return nodes[root], parts
+    return nodes[root]
 
 
 def _decode(data: bytes, budget: Budget) -> str:

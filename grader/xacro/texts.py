@@ -158,10 +158,8 @@ class Texts:
             return self._substitution(self.text(content, scope))
         if kind is None:
             raise ExpressionFails(f"invalid expression: {content[:60]}")
-        if kind == "name":
-            return self.find(content, scope)
         expression = self.text(content, scope).strip()
-        if "$" in content and _is_name(expression):
+        if expression.isidentifier() and not iskeyword(expression) and not expression.startswith("__"):
             return self.find(expression, scope)
         return evaluate(expression, lambda name: self.find(name, scope), self._budget)
 
@@ -208,14 +206,8 @@ def _pieces(text: str) -> Iterator[tuple[str | None, str]]:
         if piece is None:
             yield None, text[position:]
             return
-        kind, content = piece.lastgroup, piece[piece.lastindex or 0]
-        name = content.strip()
-        yield ("name", name) if kind == "expression" and _is_name(name) else (kind, content)
+        yield piece.lastgroup, piece[piece.lastindex or 0]
         position = piece.end()
-
-
-def _is_name(text: str) -> bool:
-    return text.isidentifier() and not iskeyword(text) and not text.startswith("__")
 
 
 @lru_cache(1_000)

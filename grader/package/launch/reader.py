@@ -36,20 +36,15 @@ Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
     """Read a launch file and evaluate it. `installed` is its path below the prefix after a build. Never raises."""
-    return _read_alone(data, path, installed) or _read(data, path, installed, opener)
+    return _read_alone(data, path, installed) or _LaunchReader(opener).read(data, path, installed)
 
 
 @reused
 def _read_alone(data: bytes, path: str, installed: str) -> Launch | None:
     """Return a launch file; None for one that includes others."""
     included: list[str] = []
-    launch = _read(data, path, installed, included.append)
+    launch = _LaunchReader(included.append).read(data, path, installed)
     return launch if not included else None
-
-
-def _read(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
-    context = Context(posixpath.dirname(f"{PREFIX}/{installed}"))
-    return _LaunchReader(opener).read(data, path, installed, context)
 
 
 @dataclass(slots=True)
@@ -60,8 +55,9 @@ class _LaunchReader:
     includes_left: int = _MAX_INCLUDES
     open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
-    def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
+    def read(self, data: bytes, path: str, installed: str, arguments: Context | None = None) -> Launch:
         """Return a launch file together with those that it includes."""
+        context = arguments or Context(posixpath.dirname(f"{PREFIX}/{installed}"))
         included: list[Launch] = []
 
         def include(target: str, arguments: Context) -> str:
