@@ -67,7 +67,11 @@ class DocumentCollection:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
         unread: list[Unread] = []
-        chosen = self._files_like(tuple(patterns))
+        key = tuple(patterns)
+        if key not in self._chosen:
+            files = [file for file in self.tree.files.values() if file.name not in _NO_ANSWERS]
+            self._chosen[key] = [file for file in files if _names_like(key).match(file.name.lower())]
+        chosen = self._chosen[key]
         for file in chosen[:_MAX_FILES]:
             document = self.document(file)
             if isinstance(document, Unread):
@@ -80,13 +84,6 @@ class DocumentCollection:
             rest = f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit"
             unread.append(Unread("", rest))
         return read, unread
-
-    def _files_like(self, patterns: tuple[str, ...]) -> list[File]:
-        if patterns not in self._chosen:
-            names = ((file, file.name) for file in self.tree.files.values())
-            like = _names_like(patterns)
-            self._chosen[patterns] = [it for it, name in names if name not in _NO_ANSWERS and like.match(name.lower())]
-        return self._chosen[patterns]
 
     def document(self, file: File) -> Document | Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""

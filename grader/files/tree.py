@@ -18,22 +18,19 @@ class ContentReader(Protocol):
         """Return the bytes."""
 
 
-class Content:
-    """The bytes of a file that `read` gives; those of a small file are kept, as a search looks into it first."""
+def kept(read: ContentReader) -> ContentReader:
+    """Return a reader that keeps the bytes of a small file: a search looks into it before it is read."""
+    whole = b""
 
-    __slots__ = ("_kept", "_read")
-
-    def __init__(self, read: ContentReader) -> None:
-        self._read, self._kept = read, b""
-
-    def __call__(self, limit: int, *, first: bool = False) -> bytes:
-        """Return the bytes."""
-        if self._kept and len(self._kept) < limit:
-            return self._kept
-        data = self._read(limit, first=first)
-        if len(data) < min(limit, _SMALL):
-            self._kept = data
+    def content(limit: int, *, first: bool = False) -> bytes:
+        nonlocal whole
+        if whole and len(whole) < limit:
+            return whole
+        data = read(limit, first=first)
+        whole = data if len(data) < min(limit, _SMALL) else b""
         return data
+
+    return content
 
 
 class IgnoredFile(NamedTuple):

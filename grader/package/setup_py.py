@@ -1,5 +1,6 @@
 """The files that a build installs by a package's setup.py, which is evaluated, never run."""
 
+import ast
 from dataclasses import replace
 
 from grader.files.tree import Tree
@@ -10,7 +11,7 @@ from grader.source import Location, Source
 from grader.static_python.evaluation import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
-from grader.static_python.parse import START, Code, Position, SyntaxFault, strings_in
+from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
 from grader.static_python.values import PACKAGE_FOLDER, Unknown
 from grader.values import dataclass
 
@@ -63,7 +64,8 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     """
     if isinstance(code, SyntaxFault):
         return Setup(code.source, code)
-    written = strings_in(code.tree)
+    strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
     setup, order_matters = _evaluate(code, tree, ORDERS[0], written)
     others = [_evaluate(code, tree, order, written)[0] for order in ORDERS[1:]] if order_matters else []
     results = {(it.name, frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}

@@ -6,7 +6,7 @@ import tokenize
 import warnings
 from codecs import lookup
 from io import BytesIO
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.source import Location, Source
 from grader.values import dataclass, reused
@@ -28,23 +28,6 @@ START = Position(1, 1)
 def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
     """Return the position of a node."""
     return Position(node.lineno, node.col_offset + 1)
-
-
-def strings_in(tree: ast.Module) -> dict[str, Position]:
-    """Return the position of each string in a file, the outermost of several equal ones."""
-    found: dict[str, Position] = {}
-    nodes: list[Any] = [tree]
-    for node in nodes:  # in the order of ast.walk, which is several times slower
-        if type(node) is ast.Constant:
-            if type(node.value) is str:
-                found.setdefault(node.value, position_of(node))
-        elif isinstance(node, ast.AST):
-            for part in vars(node).values():
-                if type(part) is list:
-                    nodes += part
-                elif type(part) is not int:
-                    nodes.append(part)
-    return found
 
 
 @dataclass(frozen=True, slots=True)
