@@ -125,7 +125,7 @@ class Expander:
     def start(self, source: XacroNode, scopes: Scopes) -> XacroNode:
         """Return an element with its attributes expanded, without its children."""
         out = XacroNode(source.tag, self._place(source.place, scopes.symbols))
-        out.moved, out.unresolved = source.moved, source.unresolved
+        out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
             value = text if is_plain else self._attribute(out, name, text, scopes)
@@ -194,7 +194,7 @@ class Expander:
         try:
             return self.texts.text(text, scopes.symbols)
         except (ExpressionFails, Undetermined) as error:
-            out.unresolved = {**out.unresolved, name: self.report(error, out.place, name)}
+            out.unresolved[name] = self.report(error, out.place, name)
         return text
 
     def _load_yaml(self, name: Value) -> Value:

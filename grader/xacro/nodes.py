@@ -1,8 +1,6 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
 import re
-from collections.abc import Mapping
-from typing import Any
 
 from grader.problems import Problem
 from grader.source import Source
@@ -13,7 +11,6 @@ from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
 
 Children = list["XacroNode | str"]
-_NONE: Mapping[str, Any] = {}
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
 _COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
 
@@ -43,9 +40,9 @@ class XacroNode:
         self.place = place
         self.attributes: dict[str, str] = attributes if attributes is not None else {}
         self.children: Children = []
-        self.unresolved: Mapping[str, str] = _NONE  # attribute -> why it is unknown; empty where xacro refuses it
+        self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
         self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
-        self.moved: Mapping[str, ScopePlace] = _NONE  # the places of attributes that <xacro:attribute> sets
+        self.moved: dict[str, ScopePlace] = {}  # the places of attributes that <xacro:attribute> sets
 
     @property
     def elements(self) -> "list[XacroNode]":

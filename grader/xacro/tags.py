@@ -112,7 +112,7 @@ def _attribute(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scop
         shown = expander.texts.written(value)
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {shown}")
     expander.set(out, name, for_xml(value or ""))
-    out.moved = {**out.moved, name: node.place._replace(scope=scopes.symbols)}
+    out.moved[name] = node.place._replace(scope=scopes.symbols)
 
 
 def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
