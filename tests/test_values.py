@@ -1,13 +1,13 @@
 """Equal small files are read once."""
 
-from grader.values import reused
+from grader.values import reuse
 
 
 def test_equal_small_files_are_read_once() -> None:
     """A reader gets equal bytes under one path once, other bytes, other paths and large files each time."""
     given: list[tuple[bytes, str]] = []
 
-    @reused
+    @reuse
     def read(data: bytes, path: str) -> list[str]:
         given.append((data, path))
         return [path]

@@ -12,7 +12,7 @@ from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, kept, make_tree, parents
+from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree, parents
 from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
@@ -103,7 +103,7 @@ class _Walk:
             size = 0
             with suppress(OSError):
                 size = entry.stat().st_size
-            self.files.append(File(shown, size, kept(partial(_read, place, shown, self._trusted))))
+            self.files.append(File(shown, size, keep_small(partial(_read, place, shown, self._trusted))))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:

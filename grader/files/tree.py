@@ -18,7 +18,7 @@ class ContentReader(Protocol):
         """Return the bytes."""
 
 
-def kept(read: ContentReader) -> ContentReader:
+def keep_small(read: ContentReader) -> ContentReader:
     """Return a reader that keeps the bytes of a small file: a search looks into it before it is read."""
     whole = b""
 

@@ -122,7 +122,7 @@ def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Valu
         if made > MAX_PARTS:
             too_large("value")
         budget.charge(max(made, 0))
-    elif type(op) is ast.Pow and type(left) is type(right) is int and left.bit_length() * right > MAX_BITS:
+    elif isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > MAX_BITS:
         too_large("number")
     return budget.checked(call_plain(operation, left, right))
 

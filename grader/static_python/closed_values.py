@@ -76,7 +76,7 @@ class Budget:
 
     def checked(self, value: Value) -> Value:
         """Return a value that was produced, once it is charged. Raises Undetermined for one that is too large."""
-        if type(value) is not float and type(value) is not bool:
+        if type(value) not in (float, bool):
             self.measure(value)
         return value
 

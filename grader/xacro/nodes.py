@@ -5,7 +5,7 @@ import re
 from grader.problems import Problem
 from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
-from grader.values import reused
+from grader.values import reuse
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
@@ -61,7 +61,7 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
     return root
 
 
-@reused
+@reuse
 def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
     """Return the root of an XML file, and what its attributes are charged."""
     text = data.decode()

@@ -75,7 +75,7 @@ class Texts:
             return text
         self._budget.charge(1, len(text))
         values: list[Value] = []
-        for kind, content in _known_pieces(text) if len(text) <= _MAX_KEPT else _pieces(text):
+        for kind, content in _short_pieces(text) if len(text) <= _MAX_KEPT else _pieces(text):
             self._budget.charge(_OF_PIECE)
             values.append(self._piece(kind, content, scope))
         return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
@@ -211,7 +211,7 @@ def _pieces(text: str) -> Iterator[tuple[str | None, str]]:
 
 
 @lru_cache(1_000)
-def _known_pieces(text: str) -> Sequence[tuple[str | None, str]]:
+def _short_pieces(text: str) -> Sequence[tuple[str | None, str]]:
     return tuple(_pieces(text))
 
 

@@ -20,7 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
-from grader.values import reused
+from grader.values import reuse
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
@@ -39,7 +39,7 @@ def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launc
     return _read_alone(data, path, installed) or _LaunchReader(opener).read(data, path, installed)
 
 
-@reused
+@reuse
 def _read_alone(data: bytes, path: str, installed: str) -> Launch | None:
     """Return a launch file; None for one that includes others."""
     included: list[str] = []
