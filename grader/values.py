@@ -1,4 +1,4 @@
-"""Frozen dataclasses at a third of the price: in import time and in the time to make an instance.
+"""Frozen dataclasses at a third of the price, in import time and to make an instance; readers that reuse results.
 
 The standard `dataclass` compiles six methods for each frozen class, and its instances set each field by a call. Here
 only `__init__` is compiled, the other methods are shared, and mypy alone refuses assignments.
@@ -6,8 +6,13 @@ only `__init__` is compiled, the other methods are shared, and mypy alone refuse
 
 import dataclasses
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
+
+Names = TypeVarTuple("Names")
+T = TypeVar("T")
+_SMALL = 16 * 1024  # bytes
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass  # noqa: PLC0414  modules import it from here
@@ -46,6 +51,19 @@ def _initializer(fields: Sequence[dataclasses.Field[Any]], has_post_init: bool) 
     optional = (field for field in given if field.default is not absent or field.default_factory is not absent)
     names["__init__"].__defaults__ = tuple(field.default for field in optional)
     return names["__init__"]
+
+
+def reuse(read: Callable[[bytes, *Names], T]) -> Callable[[bytes, *Names], T]:
+    """Return a reader that reads equal small files once, as those of a handout are in every submission of a class.
+
+    What it returns must not be changed.
+    """
+    read_once = lru_cache(maxsize=4)(read)  # few: with 16, a class without equal files takes 2 % longer
+
+    def reader(data: bytes, *names: *Names) -> T:
+        return (read_once if len(data) <= _SMALL else read)(data, *names)
+
+    return reader
 
 
 def _getter(names: Iterable[str]) -> Callable[[Any], Any]:

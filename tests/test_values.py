@@ -1,4 +1,4 @@
-"""The dataclasses of grader.values behave as those of the standard library."""
+"""Dataclasses behave as those of the standard library, and equal small files are read once."""
 
 import dataclasses
 from dataclasses import field, replace
@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from grader.values import dataclass
+from grader.values import dataclass, reuse
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,3 +52,18 @@ def test_wrong_arguments_are_refused(arguments: dict[str, Any]) -> None:
     """A missing argument is an error, and so is one that the class does not take."""
     with pytest.raises(TypeError, match="__init__"):
         _Point(**arguments)
+
+
+def test_equal_small_files_are_read_once() -> None:
+    """A reader gets equal bytes under one path once, other bytes, other paths and large files each time."""
+    given: list[tuple[bytes, str]] = []
+
+    @reuse
+    def read(data: bytes, path: str) -> list[str]:
+        given.append((data, path))
+        return [path]
+
+    small, large = b"<package/>", bytes(20_000)
+    assert read(small, "a") is read(small, "a") == ["a"]
+    assert [read(small, "b"), read(b"", "a"), read(large, "a"), read(large, "a")] == [["b"], ["a"], ["a"], ["a"]]
+    assert given == [(small, "a"), (small, "b"), (b"", "a"), (large, "a"), (large, "a")]

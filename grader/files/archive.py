@@ -19,7 +19,7 @@ from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember,
 from grader.files.names import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
 from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
-from grader.files.tree import File, IgnoredFile, Tree, folders_above, make_tree, parents
+from grader.files.tree import File, IgnoredFile, Tree, folders_above, keep_small, make_tree, parents
 from grader.text import printable_path
 
 _IN_MEMORY = 16 * 1024 * 1024  # bytes
@@ -77,7 +77,7 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     ignored += _follow(links, found)
     members_at = {path: found[real] for path, real in links.files.items()}
     members_at |= {path: member for path, member in found.items() if member.kind == "file"}
-    files = [File(path, member.size, partial(_read, member, path)) for path, member in members_at.items()]
+    files = [File(path, member.size, keep_small(partial(_read, member, path))) for path, member in members_at.items()]
     return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
 
 

@@ -5,13 +5,14 @@ import stat
 from contextlib import suppress
 from functools import partial
 from itertools import islice
+from operator import attrgetter
 from pathlib import Path
 
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
+from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree, parents
 from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
@@ -28,8 +29,7 @@ def read_folder(folder: Path, top: str = "") -> Tree:
     """
     walk = _Walk(folder, top)
     walk.enter("", linked=False)
-    name = printable_path(folder.resolve().name or "submission")
-    return make_tree(name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
+    return make_tree(walk.name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
 
 
 class _Walk:
@@ -39,6 +39,7 @@ class _Walk:
         self._folder = folder
         self._shown = shown_below(folder, top)
         self._top = os.path.realpath(folder)
+        self.name = printable_path(Path(self._top).name or "submission")
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
             raise FileError(printable_path(folder.name), _IS_SYMLINK)
@@ -62,7 +63,8 @@ class _Walk:
                 if self._count > limits.MAX_FILES:
                     raise limits.files_limit_error(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
-                if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
+                shown = printable_path(path)
+                if not self._is_ignored(entry, path, shown) and self._add(entry, path, shown, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
         for path in links:
             real = os.path.realpath(self._folder / path)
@@ -71,18 +73,17 @@ class _Walk:
                 self.folders.append(printable_path(path))
                 self.enter(path, linked=True)
 
-    def _is_ignored(self, entry: "os.DirEntry[str]", path: str) -> bool:
-        if entry.name not in IGNORED_FOLDERS and not ignored_part(printable_path(path)):
+    def _is_ignored(self, entry: "os.DirEntry[str]", path: str, shown: str) -> bool:
+        if entry.name not in IGNORED_FOLDERS and not ignored_part(shown):
             return False
         if entry.is_dir(follow_symlinks=False):
-            self.unseen.append(printable_path(path))
+            self.unseen.append(shown)
         if entry.name in BUILD_FOLDERS and not entry.is_symlink():
             self.generated += _generated_files(self._folder, path)
         return True
 
-    def _add(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
+    def _add(self, entry: "os.DirEntry[str]", path: str, shown: str, real_folder: str) -> bool:
         """Add a file, or name an ignored one; return True for a folder to enter."""
-        shown = printable_path(path)
         try:
             real = os.path.realpath(entry.path) if entry.is_symlink() else ""
             is_folder, is_file = entry.is_dir(), entry.is_file()
@@ -102,7 +103,7 @@ class _Walk:
             size = 0
             with suppress(OSError):
                 size = entry.stat().st_size
-            self.files.append(File(shown, size, partial(_read, place, shown, self._trusted)))
+            self.files.append(File(shown, size, keep_small(partial(_read, place, shown, self._trusted))))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:
@@ -114,8 +115,8 @@ class _Walk:
 
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
-            with os.scandir(self._folder / where) as found:
-                return sorted(islice(found, limits.MAX_FILES + 1), key=lambda entry: entry.name)
+            with os.scandir(f"{self._folder}/{where}") as found:
+                return sorted(islice(found, limits.MAX_FILES + 1), key=attrgetter("name"))
         except OSError as error:
             if not where:
                 raise InputError(f"cannot read {self._shown}: {error.strerror}") from None

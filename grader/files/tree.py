@@ -9,12 +9,29 @@ from grader.errors import FileError
 from grader.files import limits
 from grader.values import dataclass
 
+_SMALL = 4096  # bytes
+
 
 class ContentReader(Protocol):
     """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first `limit` of them."""
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
         """Return the bytes."""
+
+
+def keep_small(read: ContentReader) -> ContentReader:
+    """Return a reader that keeps the bytes of a small file: a search looks into it before it is read."""
+    whole = b""
+
+    def content(limit: int, *, first: bool = False) -> bytes:
+        nonlocal whole
+        if whole and len(whole) < limit:
+            return whole
+        data = read(limit, first=first)
+        whole = data if len(data) < min(limit, _SMALL) else b""
+        return data
+
+    return content
 
 
 class IgnoredFile(NamedTuple):
@@ -88,7 +105,8 @@ class Tree:
         def inside(paths: Iterable[str]) -> dict[str, str]:
             return {path.removeprefix(start): path for path in paths if path.startswith(start)}
 
-        files = {inner: replace(self.files[path], path=inner) for inner, path in inside(self.files).items()}
+        own = {inner: self.files[path] for inner, path in inside(self.files).items()}
+        files = {inner: File(inner, file.size, file.read) for inner, file in own.items()}
         folders, unseen = frozenset(inside(self.folders)), frozenset(inside(self.unseen))
         return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from grader.package import catalogue
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.values import dataclass
+from grader.values import dataclass, reuse
 from grader.xml.parsing import XmlFault, XmlFile
 
 
@@ -22,6 +22,7 @@ class Manifest:
     unread: str = ""  # why the file was not read at all: too large, damaged
 
 
+@reuse
 def read_manifest(data: bytes, path: str) -> Manifest:
     """Read a package.xml. Never raises: errors are among the problems."""
     source = Source(path, data.decode("utf-8", "replace"))

@@ -6,7 +6,7 @@ from grader.package import catalogue
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.values import dataclass
+from grader.values import dataclass, reuse
 
 _MAX_DISPLAYS = 500
 
@@ -72,6 +72,7 @@ class RvizFile:
         return tuple(found)
 
 
+@reuse
 def read_rviz(data: bytes, path: str) -> RvizFile:
     """Read an RViz file. Never raises."""
     source = Source(path, data.decode("utf-8", "replace"))

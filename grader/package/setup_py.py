@@ -64,8 +64,10 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     """
     if isinstance(code, SyntaxFault):
         return Setup(code.source, code)
-    setup, order_matters = _evaluate(code, tree, ORDERS[0])
-    others = [_evaluate(code, tree, order)[0] for order in ORDERS[1:]] if order_matters else []
+    strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
+    setup, order_matters = _evaluate(code, tree, ORDERS[0], written)
+    others = [_evaluate(code, tree, order, written)[0] for order in ORDERS[1:]] if order_matters else []
     results = {(it.name, frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
     if len(results) == 1:
         return setup
@@ -73,15 +75,13 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     return replace(setup, name=None, copies=(), stops=(), unknown=(*setup.unknown, doubt))
 
 
-def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
+def _evaluate(code: Code, tree: Tree, order: str, written: dict[str, Position]) -> tuple[Setup, bool]:
     """Evaluate a file with folders listed in some order; return the result and whether it may depend on that order."""
     listing = PackageListing(tree, order)
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT)}
     interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
     interpreter.run(code)
     calls = [call for call in interpreter.calls if call.name in _SETUPS]
-    strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
-    written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
     data_files = DataFiles(tree, listing, _ROOT, written | listing.positions)
     name = calls[0].kwargs.get("name") if calls else None
     try:

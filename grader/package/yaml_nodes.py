@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import yaml
 
@@ -24,9 +25,15 @@ class YamlFault(Exception):
 class YamlNode:
     """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
-    location: Location
+    path: str
+    mark: Any  # PyYAML's
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
+
+    @property
+    def location(self) -> Location:
+        """Where it begins."""
+        return Location(self.path, self.mark.line + 1, self.mark.column + 1)
 
     def get(self, *keys: str) -> "YamlNode | None":
         """Return the node at a path of keys, None where there is none."""
@@ -66,18 +73,18 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
 
 
 def _compose(events: Iterator[yaml.Event], path: str) -> YamlNode:
-    root = YamlNode(Location(path, 1, 1), {})
+    root = YamlNode(path, next(events).start_mark, {})
     open_nodes: list[tuple[YamlNode, list[str]]] = []  # each with the key in it whose value follows
     anchors = _Anchors(path)
     first = True
-    for count, event in enumerate(events):
+    for count, event in enumerate(events, 1):
         if count > _MAX_EVENTS:
             raise YamlFault(f"the file has more than {_MAX_EVENTS} values", root.location)
-        if isinstance(event, yaml.CollectionEndEvent):
-            open_nodes.pop()
-        elif isinstance(event, yaml.DocumentEndEvent):
-            break
         if not isinstance(event, yaml.NodeEvent):
+            if isinstance(event, yaml.CollectionEndEvent):
+                open_nodes.pop()
+            elif isinstance(event, yaml.DocumentEndEvent):
+                break
             continue
         node = anchors.node(event)
         if open_nodes:
@@ -99,25 +106,25 @@ class _Anchors:
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
-        if not isinstance(event, yaml.AliasEvent):
-            node = _node(event, self._path)
-            if event.anchor:
-                self._nodes[event.anchor] = node
-            return node
+        node = YamlNode(self._path, event.start_mark, {})
+        if isinstance(event, yaml.ScalarEvent):
+            node.value, node.quoted = event.value, event.style in ("'", '"')
+        elif isinstance(event, yaml.SequenceStartEvent):
+            node.value = []
+        elif isinstance(event, yaml.AliasEvent):
+            return self._node_of(event.anchor or "", node.location)
+        if event.anchor:
+            self._nodes[event.anchor] = node
+        return node
+
+    def _node_of(self, anchor: str, location: Location) -> YamlNode:
         self._aliases += 1
-        found = self._nodes.get(event.anchor or "")
+        found = self._nodes.get(anchor)
         if found is None:
-            raise YamlFault(f"there is no anchor for the alias {event.anchor}", _location(event, self._path))
+            raise YamlFault(f"there is no anchor for the alias {anchor}", location)
         if self._aliases > _MAX_ALIASES:
-            raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", _location(event, self._path))
+            raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", location)
         return found
-
-
-def _node(event: yaml.NodeEvent, path: str) -> YamlNode:
-    location = _location(event, path)
-    if isinstance(event, yaml.ScalarEvent):
-        return YamlNode(location, event.value, quoted=event.style in ("'", '"'))
-    return YamlNode(location, {} if isinstance(event, yaml.MappingStartEvent) else [])
 
 
 def _attach(parent: YamlNode, key: list[str], node: YamlNode) -> None:
@@ -127,8 +134,3 @@ def _attach(parent: YamlNode, key: list[str], node: YamlNode) -> None:
         parent.value[key.pop()] = node  # the last key counts, in PyYAML as in RViz
     elif isinstance(parent.value, dict):
         key.append(node.text if node.text is not None else f"\0{len(parent.value)}")
-
-
-def _location(event: yaml.Event, path: str) -> Location:
-    mark = event.start_mark
-    return Location(path, mark.line + 1, mark.column + 1) if mark is not None else Location(path, 1, 1)

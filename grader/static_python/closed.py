@@ -9,6 +9,7 @@ import ast
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
+from typing import Any
 
 from grader.static_python.closed_functions import call
 from grader.static_python.closed_operators import attribute, compare, operate, subscript
@@ -55,7 +56,7 @@ _kept = lru_cache(1_000)(_parse)
 
 
 # What makes a value that no function has measured yet.
-_MAKES_VALUES = (ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp)
+_MAKES_VALUES = frozenset({ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp})
 
 
 class _Evaluator:
@@ -66,11 +67,11 @@ class _Evaluator:
     def value(self, node: ast.expr, local: Mapping[str, Value]) -> Value:
         """Return the value of an expression; `local` has the names that comprehensions bind."""
         self._budget.charge(_OF_NODE)
-        kind = getattr(self, f"_{type(node).__name__.lower()}", None)
+        kind = _KINDS.get(type(node))
         if kind is None:
             raise Undetermined("an expression of this kind is not supported")
-        value: Value = kind(node, local)
-        return self._budget.checked(value) if isinstance(node, _MAKES_VALUES) else value
+        value: Value = kind(self, node, local)
+        return self._budget.checked(value) if type(node) in _MAKES_VALUES else value
 
     def _constant(self, node: ast.Constant, local: Mapping[str, Value]) -> Value:
         del local
@@ -162,6 +163,13 @@ class _Evaluator:
             inner = {**local, **_bound(loop.target, item)}
             if all(self.value(condition, inner) for condition in loop.ifs):
                 yield from self._rounds(nested, inner, depth + 1)
+
+
+_KINDS: Mapping[type, Callable[[_Evaluator, Any, Mapping[str, Value]], Value]] = {
+    kind: vars(_Evaluator)[name]
+    for kind in vars(ast).values()
+    if isinstance(kind, type) and (name := f"_{kind.__name__.lower()}") in vars(_Evaluator)
+}
 
 
 def _bound(target: ast.expr, value: Value) -> dict[str, Value]:

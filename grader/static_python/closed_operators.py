@@ -106,9 +106,10 @@ _NUMBERS = (float, int)
 def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Value:
     """Return the value of a binary operator."""
     operation = _OPERATORS.get(type(op))
-    if operation is None or not (isinstance(left, PLAIN) and isinstance(right, PLAIN)):
+    are_numbers = type(left) in _NUMBERS and type(right) in _NUMBERS
+    if operation is None or not (are_numbers or (isinstance(left, PLAIN) and isinstance(right, PLAIN))):
         raise Undetermined("this operation is not supported")
-    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+    if not are_numbers:
         size = budget.measure(left) + budget.measure(right)
         made = 0
         match op, left, right:

@@ -12,7 +12,8 @@ MAX_BITS = 4_096  # of an integer
 _MAX_KEY = 2**31  # keys that are larger could all have one hash
 _MAX_MESSAGE = 1_000  # characters
 CHARACTERS, _BITS = 16, 256  # that count as one part
-PLAIN: tuple[Any, ...] = (str, int, float, type(None), range, list, tuple, dict)
+_SCALARS = (str, int, float)
+PLAIN: tuple[Any, ...] = (*_SCALARS, type(None), range, list, tuple, dict)
 
 
 class _ExpressionFailure(Exception):
@@ -57,6 +58,10 @@ class Budget:
 
     def measure(self, value: Value) -> int:
         """Charge a value and return its size: its parts, each as often as it occurs. Raises Undetermined."""
+        if isinstance(value, _SCALARS):
+            size = 1 + _size_alone(value)
+            self.charge(size)
+            return size
         pending, size = [value], 0
         while pending:
             part = pending.pop()
@@ -169,7 +174,7 @@ def checked_key(key: Value) -> Value:
 
 def str_of(value: Value) -> str:
     """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
-    if not isinstance(value, PLAIN) or not _has_text(value):
+    if not isinstance(value, _SCALARS) and not (isinstance(value, PLAIN) and _has_text(value)):
         raise Undetermined("the text of this value differs between runs")
     return str(value)
 

@@ -2,7 +2,7 @@
 
 import posixpath
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -27,6 +27,7 @@ from grader.static_python.values import (
 _MAX_NUMBER = 10**9
 
 
+@cache
 def standard_functions(working_folder: str) -> FunctionTable:
     """Return the functions by full name; `working_folder` is where Python runs, as an absolute path."""
 

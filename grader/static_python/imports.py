@@ -3,6 +3,7 @@
 import ast
 import sys
 from collections.abc import Sequence
+from functools import lru_cache
 from importlib import import_module
 
 from grader.names import closest, did_you_mean
@@ -73,6 +74,7 @@ CONSTANTS = {
 }
 
 
+@lru_cache(maxsize=256)
 def import_error(module: str, name: str) -> str | None:
     """Return what is wrong with `import name` or `from module import name`; None where it works or this is unknown."""
     top = (module or name).split(".")[0]
@@ -99,7 +101,8 @@ def attribute_error(module: str, name: str) -> str | None:
 
 def is_always_installed(module: str) -> bool:
     """Return whether a module can be imported wherever ROS 2 packages are built."""
-    return module.split(".", maxsplit=1)[0] in {*sys.stdlib_module_names, "setuptools", "distutils"}
+    top = module.split(".", maxsplit=1)[0]
+    return top in sys.stdlib_module_names or top in ("setuptools", "distutils")
 
 
 def imported_names(module: str, alias: ast.alias) -> dict[str, QualifiedName]:

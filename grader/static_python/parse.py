@@ -9,7 +9,7 @@ from io import BytesIO
 from typing import NamedTuple
 
 from grader.source import Location, Source
-from grader.values import dataclass
+from grader.values import dataclass, reuse
 
 _SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
 _JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
@@ -48,6 +48,7 @@ class SyntaxFault:
     sure: bool = True
 
 
+@reuse
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
     try:

@@ -26,6 +26,7 @@ from grader.static_python.values import (
 
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
 _RUN_TIME = "its value is known only at run time"
+_SIZED = (str, list, tuple, dict)
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
@@ -73,7 +74,7 @@ class SimpleEvaluator(Evaluation):
         if isinstance(node, ast.Name):
             return self.find(node, scope)
         value = self.evaluate_kind(node, scope)
-        if isinstance(value, str | list | tuple | dict) and not isinstance(node, ast.Subscript):
+        if isinstance(value, _SIZED) and not isinstance(node, ast.Subscript):
             self.step(len(value) // 64)  # a large value takes time to make
         return value
 
@@ -210,7 +211,7 @@ class SimpleEvaluator(Evaluation):
             else:
                 call.kwargs[UNKNOWN_KEYS] = Unknown("the unpacked arguments are known only at run time", call.at)
         self.step(size([call.args, list(call.kwargs.values())]) // 32)
-        is_unpacked = any(isinstance(argument, ast.Starred) for argument in node.args)
-        if is_unpacked and isinstance(function, Function) and unknown_in(call.args) is not None:
+        is_vague = isinstance(function, Function) and unknown_in(call.args) is not None
+        if is_vague and any(isinstance(argument, ast.Starred) for argument in node.args):
             return Unknown("the unpacked arguments are known only at run time", call.at)
         return call_value(self, function, call)

@@ -113,6 +113,9 @@ class Scope:
         return scope
 
 
+_COLLECTION = (list, tuple, dict)  # each use of `list | tuple | dict` would make a union
+
+
 def unknown_in(value: Value) -> Unknown | None:
     """Return the first unknown value in a value, and an unknown value for one that is too large to search."""
     pending, seen, count = [value], set[int](), 0
@@ -120,7 +123,7 @@ def unknown_in(value: Value) -> Unknown | None:
         item = pending.pop()
         if isinstance(item, Unknown):
             return item
-        if isinstance(item, list | tuple | dict) and id(item) not in seen:
+        if isinstance(item, _COLLECTION) and id(item) not in seen:
             seen.add(id(item))
             count += len(item)
             if count > _MAX_SEARCHED:
@@ -140,7 +143,7 @@ def size(value: Value) -> int:
     pending, count = [value], 0
     while pending and count < MAX_ITEMS:
         item = pending.pop()
-        if isinstance(item, list | tuple | dict):
+        if isinstance(item, _COLLECTION):
             count += len(item)
             if len(item) < MAX_ITEMS:
                 pending += item.values() if isinstance(item, dict) else item
@@ -151,7 +154,7 @@ def size(value: Value) -> int:
 
 def items_of(value: Value) -> list[Value] | None:
     """Return what a loop over a value yields; None where this is unknown."""
-    if isinstance(value, list | tuple | dict) or (isinstance(value, str) and len(value) < MAX_ITEMS):
+    if isinstance(value, _COLLECTION) or (isinstance(value, str) and len(value) < MAX_ITEMS):
         return list(value)
     return None
 

@@ -43,7 +43,8 @@ def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_ne
     tree = open_tree(place, partial(_is_lab, lab))
     shown = printable_path(place)
     if tree is not None:
-        return submission_of(tree, tree_name(place), lab, opening, shown=shown)
+        identity = tree.name if place.is_dir() else tree_name(place)
+        return submission_of(tree, identity, lab, opening, shown=shown)
     if place.suffix.lower() in _NO_URDFS:
         from grader.submission.robots import START, is_robot  # late: most URDFs are called .urdf
 

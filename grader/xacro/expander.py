@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.source import Location
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
+from grader.static_python.closed_values import CHARACTERS, Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
@@ -135,13 +135,12 @@ class Expander:
 
     def set(self, out: XacroNode, name: str, value: str) -> None:
         """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all others."""
-        self.budget.charge(len(out.attributes) // _COMPARED, len(name))
-        self._grow(value)
+        self._grow(value, len(out.attributes) // _COMPARED + len(name) // CHARACTERS)
         out.attributes[name] = value
 
-    def _grow(self, text: str) -> None:
-        """Charge a text that the expanded document contains. Raises OutOfBudget."""
-        self.budget.charge(_OF_ATTRIBUTE, len(text))
+    def _grow(self, text: str, parts: int = 0) -> None:
+        """Charge a text that the expanded document contains, and other parts. Raises OutOfBudget."""
+        self.budget.charge(_OF_ATTRIBUTE + parts, len(text))
         self._length += len(text)
         if self._length > _MAX_DOCUMENT:
             raise OutOfBudget("the expanded document is larger than a URDF may be")

@@ -106,9 +106,9 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[XacroNode, Element]] = []
-        for is_text, found in groupby(node.children, key=lambda child: isinstance(child, str)):
-            if not is_text:
-                inside = (child for child in found if isinstance(child, XacroNode))
+        for kind, found in groupby(node.children, type):
+            if kind is XacroNode:
+                inside = [child for child in found if isinstance(child, XacroNode)]
                 children += [(it, make_element(_name(it.tag), _attributes(it.attributes), element)) for it in inside]
             elif children:
                 children[-1][1].tail = "".join(map(str, found))
@@ -120,10 +120,11 @@ def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, 
 
 def _name(tag: str) -> str:
     """Return a name for lxml: a prefix stands for its namespace, because no element with one belongs to a URDF."""
-    prefix, colon, local = tag.partition(":")
-    return f"{{{prefix}}}{local}" if colon else tag
+    if ":" not in tag:
+        return tag
+    prefix, _, local = tag.partition(":")
+    return f"{{{prefix}}}{local}"
 
 
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:
-    is_plain = all(":" not in name for name in attributes)
-    return attributes if is_plain else {_name(name): value for name, value in attributes.items()}
+    return attributes if ":" not in "".join(attributes) else {_name(name): it for name, it in attributes.items()}

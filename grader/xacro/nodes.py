@@ -5,6 +5,7 @@ import re
 from grader.problems import Problem
 from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
+from grader.values import reuse
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery
@@ -25,6 +26,7 @@ _DECLARATION = re.compile(
 MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
+_UNDECLARED_TAG = f"xacro{_STAND_IN}"
 _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
@@ -53,7 +55,16 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
     """
-    text = _decode(data, budget)
+    _decode(data, budget)
+    root, parts = _read(data, path, is_repaired)
+    budget.charge(parts)
+    return root
+
+
+@reuse
+def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
+    """Return the root of an XML file, and what its attributes are charged."""
+    text = data.decode()
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
         xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
@@ -62,9 +73,10 @@ def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = Fa
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
-    if any("$" in section for section in _CDATA.findall(text)):
+    if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    return _nodes(root, Source(path, text), budget)
+    own = Budget()
+    return _nodes(root, Source(path, text), own), own.used
 
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
@@ -79,8 +91,9 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
 def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
     nodes: dict[Element, XacroNode] = {}
     for index, element in enumerate(root.iter()):
-        budget.charge(len(element.attrib) ** 2 // _COMPARED)
-        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), _attributes(element))
+        attributes = _attributes(element)
+        budget.charge(len(attributes) ** 2 // _COMPARED)
+        node = nodes[element] = XacroNode(_tag(element), ScopePlace(source, index), attributes)
         _add_text(node.children, element.text)
         parent = element.getparent()
         if parent is not None:
@@ -107,15 +120,15 @@ def _add_text(children: Children, text: str | None) -> None:
 
 def _tag(element: Element) -> str:
     tag = str(element.tag)
-    if tag.startswith(f"xacro{_STAND_IN}"):
-        return tag.replace(_STAND_IN, ":", 1)
+    if tag[0] != "{":
+        return tag.replace(_STAND_IN, ":", 1) if tag.startswith(_UNDECLARED_TAG) else tag
     local = tag.rpartition("}")[2]
     return f"{element.prefix}:{local}" if element.prefix else local
 
 
 def _attributes(element: Element) -> dict[str, str]:
-    attributes = {str(name): str(value) for name, value in element.items()}
-    if not any(name.startswith("{") for name in attributes):
+    attributes: dict[str, str] = dict(element.items())  # type: ignore[arg-type]  # lxml gives str here
+    if "{" not in "".join(attributes):
         return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
     named = (name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes)

@@ -118,6 +118,19 @@ def test_partial_reads(ending: str) -> None:
         tree.files["a"].read(9)
 
 
+def test_small_files_are_read_once(tmp_path: Path) -> None:
+    """What was read of a small file is there even if the file is gone; a larger one is read each time."""
+    for name, size in (("small", 4_095), ("large", 4_096)):
+        (tmp_path / name).write_bytes(bytes(size))
+    files = read_folder(tmp_path).files
+    assert [len(files[name].read(9_000, first=True)) for name in ("small", "large")] == [4_095, 4_096]
+    for name in files:
+        (tmp_path / name).unlink()
+    assert files["small"].read(9_000) == bytes(4_095)
+    with pytest.raises(InputError, match=r"^cannot read large: No such file or directory$"):
+        files["large"].read(9_000)
+
+
 def test_only_a_urdfs_limit_can_be_raised(tmp_path: Path) -> None:
     """The advice to raise the limit is given only if it helps."""
     (tmp_path / "a.urdf").write_bytes(b"12345")

@@ -589,3 +589,14 @@ def test_random_files(data: bytes, ending: str) -> None:
     """Any bytes are evaluated without an exception."""
     with limited_work(2_000):
         assert is_well_formed(read(data, f"x.launch{ending}"))
+
+
+def test_an_included_file_is_read_again() -> None:
+    """Of two equal launch files, each starts what the file that it includes starts in its own package."""
+    starts = '<launch><node pkg="{0}" exec="{0}"/></launch>'
+    outer = b'<launch><include file="$(dirname)/inner.launch.xml"/></launch>'
+    launches = [
+        read(outer, "outer.launch.xml", {f"{FOLDER}/inner.launch.xml": starts.format(name).encode()})
+        for name in ("rviz2", "xacro", "rviz2")
+    ]
+    assert [[node.name for node in launch.nodes] for launch in launches] == [["rviz2"], ["xacro"], ["rviz2"]]

@@ -4,6 +4,7 @@ import posixpath
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cache
 from operator import attrgetter
 from pathlib import PurePosixPath
 
@@ -19,6 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
+from grader.values import reuse
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
@@ -34,8 +36,15 @@ Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
     """Read a launch file and evaluate it. `installed` is its path below the prefix after a build. Never raises."""
-    context = Context(posixpath.dirname(f"{PREFIX}/{installed}"))
-    return _LaunchReader(opener).read(data, path, installed, context)
+    return _read_alone(data, path, installed) or _LaunchReader(opener).read(data, path, installed)
+
+
+@reuse
+def _read_alone(data: bytes, path: str, installed: str) -> Launch | None:
+    """Return a launch file; None for one that includes others."""
+    included: list[str] = []
+    launch = _LaunchReader(included.append).read(data, path, installed)
+    return launch if not included else None
 
 
 @dataclass(slots=True)
@@ -46,8 +55,9 @@ class _LaunchReader:
     includes_left: int = _MAX_INCLUDES
     open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
-    def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
+    def read(self, data: bytes, path: str, installed: str, arguments: Context | None = None) -> Launch:
         """Return a launch file together with those that it includes."""
+        context = arguments or Context(posixpath.dirname(f"{PREFIX}/{installed}"))
         included: list[Launch] = []
 
         def include(target: str, arguments: Context) -> str:
@@ -156,6 +166,7 @@ def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ..
     )
 
 
+@cache
 def launch_functions() -> FunctionTable:
     """Return the functions by full name; the folders that they return are stand-ins."""
     return {
