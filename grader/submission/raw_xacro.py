@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from grader.edits import Proposal
-from grader.package.edits.python_file import with_xacro
 from grader.source import Edit
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
@@ -16,6 +15,8 @@ def raw_xacro_proposals(submission: Submission) -> Iterator[Proposal]:
     urdf = submission.urdf
     if not isinstance(urdf, Read) or urdf.as_it_stands is None:
         return
+    from grader.package.edits.python_file import with_xacro  # late: most URDFs are no such file
+
     for path in submission.package.launch_files if submission.package is not None else ():
         source = submission.source(submission.package.path(path)) if submission.package is not None else None
         for edits in with_xacro(source) if source is not None else ():
