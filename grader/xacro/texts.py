@@ -1,7 +1,7 @@
 """The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from functools import lru_cache
 from keyword import iskeyword
@@ -75,7 +75,7 @@ class Texts:
             return text
         self._budget.charge(1, len(text))
         values: list[Value] = []
-        for kind, content in _short_pieces(text) if len(text) <= _MAX_KEPT else _pieces(text):
+        for kind, content in _pieces_of_short(text) if len(text) <= _MAX_KEPT else _pieces(text):
             self._budget.charge(_OF_PIECE)
             values.append(self._piece(kind, content, scope))
         return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
@@ -198,21 +198,20 @@ class Texts:
         return value
 
 
-def _pieces(text: str) -> Iterator[tuple[str | None, str]]:
-    """Yield the parts of a text, each with its kind; None for the rest from where it is invalid."""
+def _pieces(text: str) -> list[tuple[str | None, str]]:
+    """Return the parts of a text, each with its kind; None for the rest from where it is invalid."""
+    found: list[tuple[str | None, str]] = []
     position = 0
     while position < len(text):
         piece = PIECE.match(text, position)
         if piece is None:
-            yield None, text[position:]
-            return
-        yield piece.lastgroup, piece[piece.lastindex or 0]
+            return [*found, (None, text[position:])]
+        found.append((piece.lastgroup, piece[piece.lastindex or 0]))
         position = piece.end()
+    return found
 
 
-@lru_cache(1_000)
-def _short_pieces(text: str) -> Sequence[tuple[str | None, str]]:
-    return tuple(_pieces(text))
+_pieces_of_short = lru_cache(1_000)(_pieces)
 
 
 def for_xml(value: str) -> str:
