@@ -7,7 +7,7 @@ from types import ModuleType
 _NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.usecases.exit_codes, which is not imported for --version
 
 # Libraries import these modules of the standard library, and most commands use nothing of them.
-_LATE = ("ipaddress", "linecache", "subprocess", "textwrap", "tokenize")
+_LATE = ("bz2", "ipaddress", "linecache", "lzma", "subprocess", "textwrap", "tokenize")
 
 
 class _LateModule(ModuleType):
