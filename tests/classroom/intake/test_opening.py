@@ -233,7 +233,7 @@ def test_a_symlink_that_replaces_a_file_is_not_followed(
         (tmp_path / name / "urdf/my_robot.urdf").write_bytes(text)
     trees = [outer_tree(tmp_path / "ann", str(tmp_path)), read_folder(tmp_path / "ann")]
     found = [tree.files["urdf/my_robot.urdf"] for tree in trees if tree is not None]
-    assert [file.read(1000) for file in found] == [URDF, URDF]
+    assert [file.size for file in found] == [len(URDF), len(URDF)]
     place = tmp_path / swapped
     place.rename(tmp_path / "away")
     place.symlink_to(tmp_path / swapped.replace("ann", "bob", 1))
