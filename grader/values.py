@@ -42,10 +42,9 @@ def _initializer(fields: Sequence[dataclasses.Field[Any]], has_post_init: bool) 
     names: dict[str, Any] = {f"new_{field.name}": field.default_factory for field in fields} | {"absent": absent}
     given = [field for field in fields if field.init]
     lines = [f"def __init__(self, {', '.join(field.name for field in given)}):"]
-    lines += [f"    self.{field.name} = {field.name}" for field in given if field.default_factory is absent]
-    for field in (field for field in fields if field.default_factory is not absent):
-        condition = f" if {field.name} is absent else {field.name}" if field.init else ""
-        lines.append(f"    self.{field.name} = new_{field.name}(){condition}")
+    lines += [f"    self.{field.name} = {field.name}" for field in given]
+    for name, is_given in ((field.name, field.init) for field in fields if field.default_factory is not absent):
+        lines.append(f"    {f'if {name} is absent: ' * is_given}self.{name} = new_{name}()")
     lines.append("    self.__post_init__()" if has_post_init else "    pass")
     exec("\n".join(lines), names)  # noqa: S102  the text is made of the names of fields
     optional = (field for field in given if field.default is not absent or field.default_factory is not absent)

@@ -88,10 +88,10 @@ def batch(
       Troubleshooting: see docs/grade-a-class.md.
     """
     options = locals()  # named like the fields of the request
-    from grader.classroom.run import forks
-
     if cluster is None and not gradebook.exists():  # a class that is graded already may need no workers
-        forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
+        from grader.classroom.run.forks import start_server
+
+        start_server()  # it loads what grades a submission, while this process loads what the class needs
     from grader.usecases.grade_class import ClassRequest, grade_class
 
     formats = tuple(report_format or [Format.TERMINAL])

@@ -55,8 +55,6 @@ def find_answer(
     later one.
     """
     read, unread = documents.named(files)
-    if not read:
-        return AnswerSearch(None, (), tuple(map(str, unread)))
     search = _AnswerSearch(documents, read, [read_ordinal(place) or read_label(place) for place in places], question)
     found = sorted(filter(None, search.passages()), key=lambda passage: (passage.is_empty, not passage.is_certain))
     return AnswerSearch(

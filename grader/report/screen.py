@@ -10,7 +10,6 @@ from grader.text import without_commands
 if TYPE_CHECKING:
     from rich.console import Console
 
-_HEIGHT = 24  # rows; nothing depends on it, but without it rich asks the terminal for each line
 _MIN_WIDTH, _DEFAULT_WIDTH, _MAX_WIDTH = 40, 80, 500
 
 
@@ -40,7 +39,7 @@ def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> s
         file=buffer,
         force_terminal=screen.is_terminal,
         width=screen.width,
-        height=_HEIGHT,
+        height=24,  # nothing depends on it, but without it rich asks the terminal for each line
         highlight=False,
         markup=False,
         emoji=False,

@@ -115,8 +115,9 @@ def _write_files(request: ClassRequest, book: Gradebook, deadline: datetime | No
         from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, write_reports  # late: few runs write them
 
         run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
-        with _processes(request.jobs, REPORT_SECONDS) as executor, terminal.show_class("writing reports") as show:
-            write_reports(executor, run, terminal.warn, show)
+        workers = Processes(request.jobs or processors(), REPORT_SECONDS)
+        with workers, terminal.show_class("writing reports") as show:
+            write_reports(workers, run, terminal.warn, show)
     if request.csv is not None:
         from grader.usecases.grade_files import grades_csv
 
@@ -138,17 +139,13 @@ def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) ->
 def _executor(request: ClassRequest) -> Iterator[tuple[Executor, int]]:
     """Open what runs the tasks; yield it with the number of tasks at a time."""
     if request.cluster is None:
-        with _processes(request.jobs, request.timeout) as local:
-            yield local, request.jobs or processors()
+        with Processes(workers := request.jobs or processors(), request.timeout) as local:
+            yield local, workers
         return
     from grader.classroom.run.cluster import Cluster
 
     with Cluster(request.cluster, request.timeout, request.root) as remote:
         yield remote, remote.workers
-
-
-def _processes(jobs: int | None, timeout: float) -> Executor:
-    return Processes(jobs or processors(), timeout)
 
 
 def _run(batch: Batch, intake: Intake, warn: Warn) -> Progress:

@@ -1,7 +1,4 @@
-"""How worker processes start: from a fork server that has loaded everything once.
-
-A command that needs workers starts the server first, so that both load their modules at the same time.
-"""
+"""How worker processes start: from a fork server, which loads everything once while the command loads the rest."""
 
 import multiprocessing
 import os

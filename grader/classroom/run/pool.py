@@ -1,7 +1,4 @@
-"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case.
-
-Workers start from a fork server that has loaded everything once, and end with their parent.
-"""
+"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
 
 import gc
 import multiprocessing
@@ -26,7 +23,6 @@ _EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for 
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
-_POLL_INTERVAL = 0.02  # seconds; a pool ends after one of them
 _MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
@@ -48,7 +44,7 @@ class Processes(Executor):
 
     def __init__(self, workers: int, timeout: float, memory: int = MAX_MEMORY) -> None:
         self._workers, self._timeout, self._memory = workers, timeout, memory
-        CONSTS.sleep_unit = _POLL_INTERVAL
+        CONSTS.sleep_unit = 0.02  # seconds; a pool ends after one of them
         self._context = forks.worker_context()
         self._lock = threading.RLock()
         self._pending: set[Future[Any]] = set()
