@@ -121,16 +121,16 @@ def full_units(criterion: Criterion) -> int:
 def _add_outcome(
     student: GradedStudent, criterion: Criterion, outcome: StoredOutcome, marks: Mapping[str, int]
 ) -> None:
-    mark, maximum, position = marks.get(criterion.id), units_of(criterion.maximum), criterion.position
+    mark, position = marks.get(criterion.id), criterion.position
     student.statuses[position], student.earned[position] = outcome.status, outcome.points
     if outcome.status in ("carried", "adjusted"):
         student.earned[position] = full_units(criterion)
     elif outcome.status == "failed" and not criterion.bonus and mark != units_of(criterion.points):
         student.failures.append(Failure.of(outcome))
     elif outcome.status == "ungraded" and _is_automatic(criterion):
-        student.automatic -= maximum
+        student.automatic -= units_of(criterion.maximum)
     elif outcome.status == "pending" and mark is None:
-        student.decided -= maximum
+        student.decided -= (maximum := units_of(criterion.maximum))
         if _is_automatic(criterion):
             student.undecided += maximum
             student.reasons[outcome.cause] += units_of(criterion.points)
