@@ -5,6 +5,7 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
+from grader.classroom.run import forks
 from grader.cli.options import (
     ClassVerboseOption,
     DueOption,
@@ -89,9 +90,7 @@ def batch(
     """
     options = locals()  # named like the fields of the request
     if cluster is None and not gradebook.exists():  # a class that is graded already may need no workers
-        from grader.classroom.run.forks import start_server
-
-        start_server()  # it loads what grades a submission, while this process loads what the class needs
+        forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
     from grader.usecases.grade_class import ClassRequest, grade_class
 
     formats = tuple(report_format or [Format.TERMINAL])

@@ -4,8 +4,9 @@ import json
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from math import acos, degrees, radians
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -33,14 +34,6 @@ class Failure(NamedTuple):
     measured: tuple[float, ...] = ()
     tolerance: float = 0.0
     unit: str = ""
-
-    @classmethod
-    def of(cls, outcome: StoredOutcome) -> "Failure":
-        """Return the failure that an outcome of the gradebook is."""
-        if outcome.measured is None:
-            return cls(outcome.position, outcome.cause)
-        compared = json.loads(outcome.measured)
-        return cls(outcome.position, outcome.cause, tuple(compared["numbers"]), compared["tolerance"], compared["unit"])
 
 
 @dataclass(slots=True)
@@ -87,6 +80,7 @@ def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
     full: list[int | None] = [full_units(row) for row in rubric.criteria]
     automatic = sum(units_of(row.maximum) for row in rubric.criteria if _is_automatic(row))
     bonus = [row.position for row in rubric.criteria if row.bonus and row.points]
+    known: dict[tuple[Any, ...], list[Any]] = {}  # most of 100,000 students have the results of others
     adjusted = [row.position for row in rubric.criteria if row.adjustment is not None]
     for number, key, result, score, out_of, pending, final in list(book.rows(_GRADED, rubric.sha256)):
         statuses = ["passed"] * len(full)
@@ -102,6 +96,9 @@ def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
         student.bonus = sum(student.earned[position] or 0 for position in bonus)
         for position in adjusted:
             student.earned[position] = None
+        student.statuses, student.earned, student.failures = (
+            known.setdefault(tuple(values), values) for values in (student.statuses, student.earned, student.failures)
+        )
         yield student
 
 
@@ -126,7 +123,7 @@ def _add_outcome(
     if outcome.status in ("carried", "adjusted"):
         student.earned[position] = full_units(criterion)
     elif outcome.status == "failed" and not criterion.bonus and mark != units_of(criterion.points):
-        student.failures.append(Failure.of(outcome))
+        student.failures.append(stored_failure(outcome))
     elif outcome.status == "ungraded" and _is_automatic(criterion):
         student.automatic -= units_of(criterion.maximum)
     elif outcome.status == "pending" and mark is None:
@@ -134,6 +131,15 @@ def _add_outcome(
         if _is_automatic(criterion):
             student.undecided += maximum
             student.reasons[outcome.cause] += units_of(criterion.points)
+
+
+@lru_cache(maxsize=4096)  # students make the same mistakes
+def stored_failure(outcome: StoredOutcome) -> Failure:
+    """Return the failure that an outcome of the gradebook is."""
+    if outcome.measured is None:
+        return Failure(outcome.position, outcome.cause)
+    compared = json.loads(outcome.measured)
+    return Failure(outcome.position, outcome.cause, tuple(compared["numbers"]), compared["tolerance"], compared["unit"])
 
 
 def _is_automatic(criterion: Criterion) -> bool:

@@ -49,7 +49,6 @@ class Processes(Executor):
         self._lock = threading.RLock()
         self._pending: set[Future[Any]] = set()
         self._is_shut = threading.Event()
-        self._has_begun = False
         self._pool = self._new_pool()
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
         self._watch.start()
@@ -64,9 +63,7 @@ class Processes(Executor):
         """Run a function in a worker with its own timeout, in seconds."""
         outer: Future[Any] = Future()
         with self._lock:
-            if not self._has_begun:
-                self._has_begun = True
-                forks.start_server()
+            forks.start_server()
             for tries_left in reversed(range(_MAX_TRIES)):
                 self._replace_broken_pool()
                 try:

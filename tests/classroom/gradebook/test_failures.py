@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Measured, Outcome
-from grader.classroom.gradebook.graded_students import Failure, grouped
+from grader.classroom.gradebook.graded_students import Failure, grouped, stored_failure
 from grader.classroom.gradebook.result import GradingResult, StoredOutcome
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Report, Result
@@ -29,7 +29,7 @@ def failure_of(outcome: Outcome) -> Failure:
     report = Report(GradedSubmission("a"), LAB6, ("task1",), (Result(CRITERION, outcome),))
     outcomes = GradingResult("a", "graded", "", "").with_report(report, b"").outcomes
     (found,) = [StoredOutcome(*row) for row in outcomes if row[0] == CRITERION.position]
-    return Failure.of(found)
+    return stored_failure(found)
 
 
 def counts(*failures: Failure) -> list[tuple[str, int]]:

@@ -144,8 +144,7 @@ def test_shutdown_during_work() -> None:
 def test_shutdown_before_any_work() -> None:
     """Without a task no process is started."""
     before = multiprocessing.active_children()
-    with Processes(2, HANG_TIMEOUT) as processes:
-        assert not processes._has_begun
+    with Processes(2, HANG_TIMEOUT):
         assert multiprocessing.active_children() == before
 
 
