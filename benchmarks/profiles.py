@@ -1,7 +1,7 @@
 """Where the time goes: `python benchmarks/profiles.py [--root FOLDER] [CASE...]` prints shares of the processor time.
 
-It looks at the stack each time the process has used the processor for some milliseconds (a grading has a timer of the other kind), and names the innermost part
-of the grader in it, or whose modules are being loaded.
+It looks at the stack at intervals of CPU time, with ITIMER_VIRTUAL because a grading uses another timer, and names the
+innermost part of the grader in it, or whose modules are being loaded.
 """
 
 import argparse

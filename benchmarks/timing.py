@@ -20,7 +20,7 @@ _SAMPLED = 0.05  # seconds between two measurements of the memory
 
 
 class WrongOutputError(Exception):
-    """What is timed did something else than what it is timed for."""
+    """What is timed did not do what it is timed for."""
 
 
 class Command(NamedTuple):

@@ -15,7 +15,7 @@ class _LateModule(ModuleType):
 
     def __getattr__(self, name: str) -> object:
         if sys.modules.get(self.__name__) is self:
-            del sys.modules[self.__name__]
+            sys.modules.pop(self.__name__, None)  # another thread may be faster
         module = __import__(self.__name__)
         vars(self).update(vars(module))
         return getattr(module, name)

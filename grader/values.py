@@ -1,4 +1,4 @@
-"""Frozen dataclasses at a third of the price, in import time and to make an instance; readers that reuse results.
+"""Frozen dataclasses at a third of the cost of importing and of creating an instance; readers that reuse results.
 
 The standard `dataclass` compiles six methods for each frozen class, and its instances set each field by a call. Here
 only `__init__` is compiled, the other methods are shared, and mypy alone refuses assignments.

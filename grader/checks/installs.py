@@ -79,7 +79,7 @@ def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     named = [path for path in paths if posixpath.basename(path) == name]
     if named or kind != "urdf":
         return named or paths
-    from grader.submission.robots import find_robots, parts_of  # late: the lab's URDF has its name
+    from grader.submission.robots import find_robots, parts_of  # late: the URDF usually has the lab's name
 
     parts = parts_of(find_robots(package.tree))
     return [path for path in paths if path not in parts] or paths

@@ -1,5 +1,6 @@
 """grader batch: a class against a rubric, into a gradebook."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal, get_args
 
@@ -89,8 +90,9 @@ def batch(
       Troubleshooting: see docs/grade-a-class.md.
     """
     options = locals()  # named like the fields of the request
-    if cluster is None and not gradebook.exists():  # a class that is graded already may need no workers
-        forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
+    if cluster is None and path.exists() and not gradebook.exists():  # a class that is graded may need no workers
+        with suppress(OSError):  # it is started again when it is needed
+            forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
     from grader.usecases.grade_class import ClassRequest, grade_class
 
     formats = tuple(report_format or [Format.TERMINAL])

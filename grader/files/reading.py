@@ -128,7 +128,7 @@ def sha256_of(data: bytes) -> str:
 
 @cache
 def _sha256() -> Callable[[bytes], Any]:
-    """Return the hash function: of the interpreter, as `random` does, until OpenSSL is loaded, which takes long."""
+    """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded: loading that takes long."""
     small = () if "hashlib" in sys.modules else ("_sha2", "_sha256")  # of Python 3.12, of Python 3.11
     function: Callable[[bytes], Any] = import_module(next(filter(find_spec, small), "hashlib")).sha256
     return function

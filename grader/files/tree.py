@@ -66,7 +66,7 @@ class File:
         return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
-@dataclass(frozen=True)  # without slots, because archives end with it
+@dataclass(frozen=True)  # no slots: finalizers of archives need weak references to it
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 

@@ -84,7 +84,7 @@ def graded_submission_from(text: str) -> GradedSubmission:
 
 def _result(criteria: dict[str, Criterion], stored: dict[str, Any]) -> Result:
     criterion, outcome = criteria[stored.pop("criterion")], stored.pop("outcome")
-    if "location" in outcome:
+    if outcome.get("location") is not None:
         outcome["location"] = _location(outcome["location"])
     for name in ("measured", "expected"):
         if isinstance(outcome.get(name), list):

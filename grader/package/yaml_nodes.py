@@ -26,7 +26,7 @@ class YamlNode:
     """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
     path: str
-    mark: Any  # PyYAML's
+    mark: Any  # PyYAML's; a Location is made only on demand
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
 

@@ -21,14 +21,13 @@ _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 FULL_TURN = 6.2832  # radians
-# What is missing may be what xacro leaves open: any content, or the name of a link or joint in one of these elements.
-_OPEN_NAMES: dict[Kind, tuple[str, ...]] = {
-    catalogue.UNKNOWN_LINK: ("link",),
-    catalogue.TWO_ROOTS: ("link", "parent", "child"),
-    catalogue.NO_ROOT: ("link", "parent", "child"),
-    catalogue.NO_LINKS: (),
-    catalogue.MIMIC_TARGET: ("joint",),
-}
+_OF_MISSING = (
+    catalogue.UNKNOWN_LINK,
+    catalogue.TWO_ROOTS,
+    catalogue.NO_ROOT,
+    catalogue.NO_LINKS,
+    catalogue.MIMIC_TARGET,
+)
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _NOTHING: UnresolvedParts = {}
 
@@ -79,13 +78,9 @@ class Problems:
 
     def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
         """Return whether what xacro left unresolved explains a problem."""
-        of_root, tags = self.unresolved.get(self.root), _OPEN_NAMES.get(kind)
-        if tags is not None and of_root is not None and of_root.content is not None:
+        found, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
+        if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
             return True
-        named = (it for at, it in self.unresolved.items() if tags and at.tag in tags)
-        if any("name" in it.attributes or "link" in it.attributes for it in named):
-            return True
-        found = self.unresolved.get(element)
         return found is not None and (
             attribute in found.attributes if attribute and element.get(attribute) else found.content is not None
         )

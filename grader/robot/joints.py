@@ -168,15 +168,18 @@ def _read_calibration(element: Element, problems: Problems) -> Calibration:
 def check_references(robot: Robot, problems: Problems) -> None:
     """Report links and joints that do not exist, and mimic joints that follow themselves."""
     links = [link.name for link in robot.links]
+    is_link_open, is_joint_open = (
+        any("@name" in it.unresolved for it in every) for every in (robot.links, robot.joints)
+    )
     for joint in robot.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
-            if name and not robot.has_link(name):
+            if name and not robot.has_link(name) and not is_link_open:
                 guess = problems.did_you_mean(name, links)
                 guess = guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
                 message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
                 message += f"; ROS 2 rejects the file{guess}"
                 problems.add(catalogue.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
-        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint):
+        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint) and not is_joint_open:
             guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])
             message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
             problems.add(catalogue.MIMIC_TARGET, message, _child_element(joint, "mimic", problems), "joint")

@@ -69,13 +69,13 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
     fields_of = _compared(kind, ignored)
-    return (kind.__name__, *map(_plain, fields_of(value))) if fields_of is not None else value
+    return tuple(map(_plain, fields_of(value))) if fields_of is not None else value
 
 
 @cache
 def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]] | None:
-    """Return what gets the fields of a dataclass that count; None for another class."""
+    """Return what gets the name of a dataclass and the fields that count; None for another class."""
     if not is_dataclass(kind):
         return None
-    first, *others = [field.name for field in fields(kind) if field.compare and field.name not in ignored]
-    return attrgetter(first, *others) if others else lambda value: (getattr(value, first),)
+    names = (field.name for field in fields(kind) if field.compare and field.name not in ignored)
+    return attrgetter("__class__.__name__", *names)

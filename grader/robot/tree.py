@@ -159,7 +159,9 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     explained = {joint.child for joint in robot.joints if not robot.has_link(joint.parent)}
     unknown = [joint.child for joint in robot.joints if not robot.has_link(joint.child)]
     explained |= {problems.closest(child, links) or "" for child in unknown}
-    if len([name for name in roots if name not in explained]) < 2:
+    explained |= {link.name for link in robot.links if "@name" in link.unresolved}  # any joint may have it as its child
+    is_child_open = any("child" in joint.unresolved for joint in robot.joints)
+    if is_child_open or len([name for name in roots if name not in explained]) < 2:
         return
     sizes = {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= _MAX_ROOTS else {}
     main = max(roots, key=lambda name: sizes.get(name, 0))

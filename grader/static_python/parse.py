@@ -30,6 +30,9 @@ def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
     return Position(node.lineno, node.col_offset + 1)
 
 
+_TOO_DEEP = "too deeply nested for Python to read"
+
+
 @dataclass(frozen=True, slots=True)
 class Code:
     """A parsed file with its text."""
@@ -48,9 +51,16 @@ class SyntaxFault:
     sure: bool = True
 
 
-@reuse
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
+    try:
+        return _parse(data, path)
+    except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
+        return SyntaxFault(Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1))
+
+
+@reuse
+def _parse(data: bytes, path: str) -> Code | SyntaxFault:
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
         if lookup(encoding).name in _SLOW_ENCODINGS:
@@ -79,5 +89,5 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
         newer = sys.version_info < _JAZZY and error.msg.startswith("f-string")
         return SyntaxFault(source, error.msg, location, sure=not newer)
-    except (RecursionError, MemoryError, ValueError, OverflowError):
-        return SyntaxFault(source, "too deeply nested for Python to read", Location(path, 1, 1))
+    except (ValueError, OverflowError):
+        return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable, Iterable, Mapping
 from copy import copy
-from functools import lru_cache
 from keyword import iskeyword
 
 from grader.names import did_you_mean
@@ -37,7 +36,6 @@ _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _OF_PIECE, _OF_NAME = 2, 20  # what a part of a text, and comparing a name with another one, are charged
 _MAX_SHOWN = 60  # characters of a name
-_MAX_KEPT = 200  # characters of a text whose parts are kept
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
 
 
@@ -75,9 +73,14 @@ class Texts:
             return text
         self._budget.charge(1, len(text))
         values: list[Value] = []
-        for kind, content in _pieces_of_short(text) if len(text) <= _MAX_KEPT else _pieces(text):
+        position = 0
+        while position < len(text):
             self._budget.charge(_OF_PIECE)
-            values.append(self._piece(kind, content, scope))
+            piece = PIECE.match(text, position)
+            if piece is None:
+                raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
+            values.append(self._piece(piece, scope))
+            position = piece.end()
         return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
 
     def _charge(self, value: Value) -> Value:
@@ -149,16 +152,14 @@ class Texts:
         target.bind(name, value, definition=Definition(name, text, place, attribute, scope))
         target.properties[name].failure = failure
 
-    def _piece(self, kind: str | None, content: str, scope: XacroScope) -> Value:
-        if kind == "text":
-            return content
-        if kind == "escape":
-            return content[1:]
-        if kind == "substitution":
-            return self._substitution(self.text(content, scope))
-        if kind is None:
-            raise ExpressionFails(f"invalid expression: {content[:60]}")
-        expression = self.text(content, scope).strip()
+    def _piece(self, piece: re.Match[str], scope: XacroScope) -> Value:
+        if piece["text"] is not None:
+            return piece["text"]
+        if piece["escape"] is not None:
+            return piece["escape"][1:]
+        if piece["substitution"] is not None:
+            return self._substitution(self.text(piece["substitution"], scope))
+        expression = self.text(piece["expression"], scope).strip()
         if expression.isidentifier() and not iskeyword(expression) and not expression.startswith("__"):
             return self.find(expression, scope)
         return evaluate(expression, lambda name: self.find(name, scope), self._budget)
@@ -196,22 +197,6 @@ class Texts:
         if value is None:
             raise Undetermined(f"the launch file gives the argument {name} a value that is known only at run time")
         return value
-
-
-def _pieces(text: str) -> list[tuple[str | None, str]]:
-    """Return the parts of a text, each with its kind; None for the rest from where it is invalid."""
-    found: list[tuple[str | None, str]] = []
-    position = 0
-    while position < len(text):
-        piece = PIECE.match(text, position)
-        if piece is None:
-            return [*found, (None, text[position:])]
-        found.append((piece.lastgroup, piece[piece.lastindex or 0]))
-        position = piece.end()
-    return found
-
-
-_pieces_of_short = lru_cache(1_000)(_pieces)
 
 
 def for_xml(value: str) -> str:

@@ -82,7 +82,7 @@ def graded_students(book: Gradebook, rubric: Rubric) -> Iterator[GradedStudent]:
     bonus = [row.position for row in rubric.criteria if row.bonus and row.points]
     known: dict[tuple[Any, ...], list[Any]] = {}  # most of 100,000 students have the results of others
     adjusted = [row.position for row in rubric.criteria if row.adjustment is not None]
-    for number, key, result, score, out_of, pending, final in list(book.rows(_GRADED, rubric.sha256)):
+    for number, key, result, score, out_of, pending, final in book.rows(_GRADED, rubric.sha256):
         statuses = ["passed"] * len(full)
         student = GradedStudent(
             number, key, score, out_of, pending, final, statuses, full[:], decided=out_of, automatic=automatic

@@ -156,7 +156,9 @@ class Batch:
         settings, rubric = self._settings, (self._rubric.data, str(self._rubric.path))
         try:
             record, hashes = self._executor.submit(reference_record, *rubric).result()
-        except WorkerError:  # the time limit is for submissions
+        except WorkerError:  # the limits of time and memory are for submissions
+            record = b""
+        if not record:  # a worker of a cluster may not see the folder of the rubric
             record, hashes = reference_record(*rubric)
         writer.add_handed_out(hashes)
         writer.use_dictionary(record)

@@ -1,4 +1,4 @@
-"""How worker processes start: from a fork server, which loads everything once while the command loads the rest."""
+"""How worker processes start: forked from a server that loads the grader once, beside the command's own imports."""
 
 import multiprocessing
 import os

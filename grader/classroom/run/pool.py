@@ -63,7 +63,7 @@ class Processes(Executor):
         """Run a function in a worker with its own timeout, in seconds."""
         outer: Future[Any] = Future()
         with self._lock:
-            forks.start_server()
+            forks.start_server()  # again if it has ended
             for tries_left in reversed(range(_MAX_TRIES)):
                 self._replace_broken_pool()
                 try:

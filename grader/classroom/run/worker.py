@@ -100,13 +100,12 @@ def reference_record(data: bytes, path: str) -> tuple[bytes, tuple[str, ...]]:
     Both are empty if it cannot be graded. Raises InputError if nothing can be graded without it.
     """
     rubric = rubric_from(data, path)
-    if rubric.solution is None:
-        return b"", ()
-    if rubric.compares_with_reference:
+    if rubric.solution is not None and rubric.compares_with_reference:
         _ = rubric.solution.robot  # raises InputError
     with suppress(InputError):
-        reference = rubric.solution.submission
-        return to_record(grade(rubric, reference)).encode(), tuple(filter(None, robot_hashes(reference)))
+        if rubric.solution is not None:
+            reference = rubric.solution.submission
+            return to_record(grade(rubric, reference)).encode(), tuple(filter(None, robot_hashes(reference)))
     return b"", ()
 
 
