@@ -14,6 +14,7 @@ from grader.xml.urdf_format import JOINT_TYPES
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, mounted
 from tests.checks.outcomes import ANYTHING, Arguments, ask, fails, graded, missing, own_message, passes, says
 from tests.checks.robots import Scene, joint, link, mesh, scene, visual
+from tests.checks.submissions import Submitted
 from tests.command_line import run
 from tests.examples import examples
 
@@ -359,6 +360,22 @@ def test_meshes_and_movable_joints_load() -> None:
     """The content is ignored: missing meshes, wheels without an axis, a lidar in the ground."""
     passes(urdf_loads, mounted((0.0, 0.0, -9.0)).with_shape(mesh("nowhere.stl")))
     passes(urdf_loads, scene(BASE, WHEEL, joint("j", "continuous", "base", "wheel")))
+
+
+@pytest.mark.parametrize(
+    ("added", "status"),
+    [
+        ('<joint name="k" type="fixed"><parent link="base"/><child link="$(env X)"/></joint>', "pending"),
+        ('<joint name="k" type="fixed"><parent link="$(env X)"/><child link="foot"/></joint>', "failed"),
+        ('<link name="$(env X)"/>', "failed"),
+        ('<gazebo><plugin><child link="$(env X)"/></plugin></gazebo>', "failed"),
+    ],
+)
+def test_a_name_that_is_left_open_may_connect_a_link(added: str, status: str) -> None:
+    """A link without a joint is wrong unless a joint whose child is not known may hold it."""
+    links = '<link name="base"/><link name="lone"/>' + '<link name="foot"/>' * ("foot" in added)
+    xacro = f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{links}{added}</robot>'
+    assert graded(urdf_loads, Submitted({"robot.urdf.xacro": xacro})).status == status
 
 
 # --- counts -----------------------------------------------------------------------------------------------------------
