@@ -1,6 +1,7 @@
-"""The submission part of a report: what was graded, and its files as far as they can still be read."""
+"""The submission part of a report: what was graded, its files as far as they can still be read, its class grade."""
 
 from dataclasses import field
+from decimal import Decimal
 from typing import NamedTuple, Protocol
 
 from grader.robot.model import Robot
@@ -82,3 +83,14 @@ class GradedSubmission:
         """
         urdf = self.originals.urdf if self.originals is not None and self.sha256 is not None else None
         return urdf.reading.robot if isinstance(urdf, Read) else None
+
+
+class Grade(NamedTuple):
+    """A student's grade in a class: the points that count, None if excused, and the late penalty in them (0 or less).
+
+    `is_final` says that a final mark replaces the points of the criteria.
+    """
+
+    points: Decimal | None
+    late: Decimal = Decimal(0)
+    is_final: bool = False

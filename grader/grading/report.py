@@ -9,7 +9,7 @@ from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion, Evidence
-from grader.grading.graded_submission import GradedSubmission
+from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Edits, Location
@@ -103,17 +103,6 @@ class Result(NamedTuple):
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
         return self.outcome.status == "pending" and self.manual_mark is None and not self.is_adjusted
-
-
-class Grade(NamedTuple):
-    """A student's grade in a class: the points that count, None if excused, and the late penalty in them (0 or less).
-
-    `is_final` says that a final mark replaces the points of the criteria.
-    """
-
-    points: Decimal | None
-    late: Decimal = _NOTHING
-    is_final: bool = False
 
 
 class EvidenceResult(NamedTuple):

@@ -16,8 +16,8 @@ from grader.classroom.run.pool import WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.errors import InputError, RubricError
-from grader.grading.graded_submission import GradedSubmission
-from grader.grading.report import Grade, Report, Result
+from grader.grading.graded_submission import Grade, GradedSubmission
+from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import counted, enumerated, format_points, printable, printable_path
 from grader.usecases.class_page import write_class_page
