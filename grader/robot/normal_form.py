@@ -1,7 +1,7 @@
 """The normal form of a robot: equal for files that differ only in what a copy can change without changing the robot."""
 
 from collections.abc import Callable
-from dataclasses import fields, is_dataclass
+from dataclasses import fields
 from functools import cache
 from hashlib import sha256
 from operator import attrgetter
@@ -68,14 +68,11 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     if isinstance(value, tuple):
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
-    fields_of = _compared(kind, ignored)
-    return tuple(map(_plain, fields_of(value))) if fields_of is not None else value
+    return tuple(map(_plain, _compared(kind, ignored)(value)))
 
 
 @cache
-def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]] | None:
-    """Return what gets the name of a dataclass and the fields that count; None for another class."""
-    if not is_dataclass(kind):
-        return None
+def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return what gets the name of a dataclass and the fields that count."""
     names = (field.name for field in fields(kind) if field.compare and field.name not in ignored)
     return attrgetter("__class__.__name__", *names)
