@@ -122,16 +122,14 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
 
 def sha256_of(data: bytes) -> str:
     """Return the hash of some bytes, in hexadecimal digits."""
-    digest: str = _sha256()(data).hexdigest()
-    return digest
+    return str(_sha256()(data).hexdigest())
 
 
 @cache
 def _sha256() -> Callable[[bytes], Any]:
     """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded: loading that takes long."""
     small = () if "hashlib" in sys.modules else ("_sha2", "_sha256")  # of Python 3.12, of Python 3.11
-    function: Callable[[bytes], Any] = import_module(next(filter(find_spec, small), "hashlib")).sha256
-    return function
+    return import_module(next(filter(find_spec, small), "hashlib")).sha256  # type: ignore[no-any-return]
 
 
 def not_there(path: Path) -> InputError:
