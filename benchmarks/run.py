@@ -159,8 +159,10 @@ def warm(bench: Bench) -> Iterator[Row]:
     for figure, above, below, goal in (
         ("warm, bytes to report, against lxml's parse", "bytes to report", "lxml", "< 15"),
         ("package, warm, against its URDF", "package", "path to report", "< 4"),
+        ("packages without equal files, warm, against the URDF", "distinct packages", "path to report", ""),
         ("zip, warm, against its URDF", "zip", "path to report", ""),
         ("xacro, warm, against its expanded URDF", "xacro", "expanded", "< 2"),
+        ("xacro without equal files, warm, against the same", "distinct xacro", "expanded", ""),
     ):
         yield Row(figure, ratio(times[above], times[below]), goal)
 

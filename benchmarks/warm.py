@@ -4,9 +4,12 @@ Each result is checked once before the clock starts. `run.py` makes ratios of th
 """
 
 import json
+import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from itertools import cycle
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from lxml import etree
@@ -22,6 +25,15 @@ from grader.xacro.expansion import expand
 ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
 XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
 RUBRIC = load_rubric("lab6")
+TEMPORARY = TemporaryDirectory()
+_COPIES = 8  # more than the grader keeps results of
+_COMMENTS = {
+    ".py": b"# %d\n",
+    ".cfg": b"# %d\n",
+    ".rviz": b"# %d\n",
+    ".xml": b"<!-- %d -->",
+    ".urdf": b"<!-- %d -->",
+}
 
 
 class Case(NamedTuple):
@@ -49,12 +61,35 @@ def expanded(path: Path) -> bytes:
     return etree.tostring(root, pretty_print=True)
 
 
+def distinct_packages() -> Iterator[Callable[[], Report]]:
+    """Yield the gradings of copies of the package, each with comments of its own in its files."""
+    for number in range(_COPIES):
+        copy = Path(TEMPORARY.name, str(number), PACKAGE.name)
+        shutil.copytree(PACKAGE, copy)
+        for file in copy.rglob("*.*"):
+            if file.suffix in _COMMENTS:
+                file.write_bytes(file.read_bytes() + _COMMENTS[file.suffix] % number)
+        yield from_path(copy)
+
+
+def in_rotation(runs: Iterable[Callable[[], Report]]) -> Callable[[], Report]:
+    """Return what grades one after the other."""
+    turn = cycle([*runs])
+    return lambda: next(turn)()  # noqa: PLW0108  another one each time
+
+
 CASES = {
     "bytes to report": Case(from_bytes(URDF.read_bytes(), "my_robot.urdf"), 70, 50),
     "path to report": Case(from_path(URDF), 70, 50),
     "package": Case(from_path(PACKAGE), 90, 10),
     "zip": Case(from_path(ZIPPED), 90, 10),
     "xacro": Case(from_bytes(XACRO.read_bytes(), XACRO.name), 70, 50),
+    "distinct packages": Case(in_rotation(distinct_packages()), 90, 10),
+    "distinct xacro": Case(
+        in_rotation(from_bytes(XACRO.read_bytes() + b"<!-- %d -->" % number, XACRO.name) for number in range(_COPIES)),
+        70,
+        50,
+    ),
     "expanded": Case(from_bytes(expanded(XACRO), "my_robot.urdf"), 70, 50),
 }
 
