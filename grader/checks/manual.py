@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAX_LISTED = 6  # files in one message
+_NOT_FOUND, _ONLY_QUESTION = "not found", "only the question is there"
+NO_ANSWER = (_NOT_FOUND, _ONLY_QUESTION)  # the problems of questions without an answer, if every document was read
 
 
 def answered(
@@ -40,12 +42,13 @@ def answered(
         searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         message = f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
-        return pending(message, problem="not found, but not every document was read" if found.unread else "not found")
+        doubt = ", but not every document was read" if found.unread else ""
+        return pending(message, problem=_NOT_FOUND + doubt)
     how = f" ({passage.how})" if passage.how else ""
     problem = ""
     if passage.is_empty:
-        problem = "only the question is there"
-        message = f"No answer was found {passage.where}: only the question is there{how}; needs manual grading"
+        problem = _ONLY_QUESTION
+        message = f"No answer was found {passage.where}: {problem}{how}; needs manual grading"
     elif passage.is_certain:
         message = f"The answer {passage.where}{how}, needs manual grading"
     else:
@@ -75,7 +78,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     paths = [labelled.file.path for labelled in submission.labelled_files]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
-    return pending(message, problem="not found")
+    return pending(message, problem=_NOT_FOUND)
 
 
 def _pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:

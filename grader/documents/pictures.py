@@ -1,4 +1,4 @@
-"""Pictures that a browser shows safely. Their type is determined from their bytes, never from their names."""
+"""Pictures and PDF files that a browser shows safely. Their type is that of their bytes, never of their names."""
 
 import re
 from typing import NamedTuple
@@ -21,12 +21,13 @@ class ImageType(NamedTuple):
     ending: str
 
 
-_PNG, _JPEG, _GIF, _WEBP, _BMP = (
+_PNG, _JPEG, _GIF, _WEBP, _BMP, PDF = (
     ImageType("PNG", "image/png", "png"),
     ImageType("JPEG", "image/jpeg", "jpg"),
     ImageType("GIF", "image/gif", "gif"),
     ImageType("WebP", "image/webp", "webp"),
     ImageType("BMP", "image/bmp", "bmp"),
+    ImageType("PDF", "application/pdf", "pdf"),
 )
 _SIGNATURES = (
     (re.compile(rb"\x89PNG\r\n\x1a\n"), _PNG),
@@ -34,6 +35,7 @@ _SIGNATURES = (
     (re.compile(rb"GIF8[79]a"), _GIF),
     (re.compile(rb"RIFF.{4}WEBPVP8[ LX]", re.DOTALL), _WEBP),
     (re.compile(rb"BM", re.DOTALL), _BMP),
+    (re.compile(rb"%PDF-"), PDF),
 )
 _NOT_SHOWN = (
     (
@@ -59,24 +61,27 @@ _NOT_SHOWN = (
     ),
     (re.compile(rb"II\*\0|MM\0\*"), "TIFF, which browsers do not show"),
     (re.compile(rb".{4}ftyp|\x1aE\xdf\xa3|RIFF.{4}AVI ", re.DOTALL), "a video"),
-    (re.compile(rb"%PDF-"), "a PDF"),
 )
 _START = 1024  # bytes in which a format that is not shown is recognised
 
 
 class EmbeddedPicture(NamedTuple):
-    """A picture of a submission: where it is, its type, width and height in pixels, and its bytes."""
+    """A picture of a submission: where it is, its type, width and height in pixels, and its bytes.
+
+    A PDF has no size; its `page` is the one to show first.
+    """
 
     where: str
     kind: ImageType
     width: int
     height: int
     data: bytes
+    page: int = 1
 
     @property
     def words(self) -> str:
         """The location and the size in pixels."""
-        return f"{self.where} ({self.width} x {self.height} pixels)"
+        return f"{self.where} ({self.width} x {self.height} pixels)" if self.width else self.where
 
 
 class NotShown(NamedTuple):
@@ -113,9 +118,9 @@ def verified(data: bytes, where: str) -> EmbeddedPicture | NotShown:
     kind = image_type(data)
     if kind is None:
         what = next((words for signature, words in _NOT_SHOWN if signature.match(data[:_START])), "")
-        reason = f"its content is {what}" if what else "it is not a PNG, JPEG, GIF, WebP or BMP picture"
+        reason = f"its content is {what}" if what else "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"
         return NotShown(where, f"{reason}: open it yourself, with care")
-    size = image_size(data)
+    size = image_size(data) if kind is not PDF else (0, 0)
     if size is None:
         return NotShown(where, f"its {kind.name} header is damaged: open it yourself")
     if len(data) > MAX_BYTES:

@@ -45,7 +45,8 @@ class Criterion:
 
     `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints,
     in degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments
-    name links by their place in the tree.
+    name links by their place in the tree. `choices` are usual deductions for manual grading: comments with the points,
+    below 0, that each costs.
     """
 
     id: str
@@ -64,11 +65,16 @@ class Criterion:
     has_selectors: bool = False
     bonus: bool = False
     adjustment: Adjustment | None = None
+    choices: Mapping[str, Decimal] = field(default_factory=dict)
 
     @property
     def maximum(self) -> Decimal:
         """The points that are part of the maximum: none of a bonus."""
         return Decimal(0) if self.bonus else self.points
+
+    def after(self, chosen: Iterable[str]) -> Decimal:
+        """Return the points after usual deductions."""
+        return max(Decimal(0), self.points + sum(self.choices[text] for text in chosen))
 
     @property
     def is_given(self) -> bool:

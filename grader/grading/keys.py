@@ -10,11 +10,16 @@ from grader.grading.levels import HintLevel
 from grader.grading.toml_rows import KeyTable
 
 MAX_POINTS = 1_000_000
+MAX_CHOICES = 9  # one key each
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite()
+
+
+def _is_comment(text: str) -> bool:
+    return text.isprintable() and text != "" and ";" not in text  # which separates comments
 
 
 def _is_list(value: Any, kind: type) -> bool:
@@ -37,11 +42,10 @@ def _table(schema: Mapping[str, Any]) -> TomlType:
 
 _TEXT = toml_type(str)
 _NUMBER = simple_type("a number", {"type": "number"}, _is_number, Decimal)
-_POINTS = constrained(
-    _NUMBER,
-    _range(0, MAX_POINTS),
-    Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
+_FEW_DECIMALS = Constraint(
+    f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1
 )
+_POINTS = constrained(_NUMBER, _range(0, MAX_POINTS), _FEW_DECIMALS)
 _PERCENT, _MINUTES = (constrained(_NUMBER, _range(0, most)) for most in (100, MAX_POINTS))
 _NAMES = simple_type(
     "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
@@ -67,6 +71,24 @@ _FOLDERS = constrained(
     Constraint(
         "a list of names of folders, each with a letter or digit and without a slash",
         lambda names: all("/" not in name and any(map(str.isalnum, name)) for name in names),
+    ),
+)
+_DEDUCTION = constrained(
+    _NUMBER,
+    Constraint("a number below 0", lambda points: -MAX_POINTS <= points < 0, {"exclusiveMaximum": 0}),
+    _FEW_DECIMALS,
+)
+_CHOICES = constrained(
+    simple_type(
+        "a table of numbers below 0, with at most 4 decimals",
+        {"type": "object", "additionalProperties": _DEDUCTION.schema},
+        lambda value: isinstance(value, dict),
+        lambda table: {text.strip(): _DEDUCTION.parse(points) for text, points in table.items()},
+    ),
+    Constraint(
+        f"a table of at most {MAX_CHOICES} comments, in one line each and without a semicolon",
+        lambda table: len(table) <= MAX_CHOICES and all(map(_is_comment, table)),
+        {"maxProperties": MAX_CHOICES},
     ),
 )
 _FALLBACK = toml_type(Literal["failed", "manual"])
@@ -118,6 +140,7 @@ CRITERION = KeyTable(
             _table(CARRIED.schema), "What counts instead if an earlier mistake makes the criterion fail."
         ),
         "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
+        "choices": described(_CHOICES, "Usual deductions for manual grading: a comment, and points below 0."),
         "bonus": described(toml_type(bool), "Extra credit: its points are not part of the maximum; default: false."),
     },
     required=("id", "part", "title", "points", "check"),

@@ -1,8 +1,8 @@
-"""The pictures for manual grading of a criterion: those of its evidence, and those in a written answer."""
+"""The pictures and PDF files for manual grading of a criterion: those of its evidence and of a written answer."""
 
 from collections.abc import Iterable, Iterator
 
-from grader.checks.manual import evidence_shown
+from grader.checks.manual import NO_ANSWER, answered, evidence_shown
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import CONVERTED, Document
 from grader.documents.evidence import headed
@@ -10,27 +10,44 @@ from grader.documents.headings import Heading
 from grader.documents.pictures import EmbeddedPicture, NotShown, read_picture, verified
 from grader.errors import InputError
 from grader.files.tree import File
-from grader.grading.report import Result
+from grader.grading.report import Report, Result
 from grader.submission.submission import Submission
 
+PICTURE = "[picture]"  # in a written answer: there is one
 _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 
 
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
-    """Return the pictures of a criterion that needs manual grading, and the files that are not shown.
+    """Return the pictures and PDF files of a criterion that needs manual grading, and the files that are not shown.
 
     In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a
-    heading all pictures. If no file is named for the evidence, all files of evidence are searched.
+    heading all pictures. If no file is named for the evidence, all files of evidence are searched; if no answer was
+    found, all PDF files.
     """
     paths = _files(result) or tuple(
-        labelled.file.path for labelled in submission.labelled_files if _is_evidence(result)
+        labelled.file.path
+        for labelled in submission.labelled_files
+        if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
     )
     return tuple(_limit(found for path in paths for found in _at(path, result, submission)))
 
 
 def may_have_pictures(result: Result) -> bool:
     """Return whether pictures of the submission may belong to a criterion."""
-    return bool(_files(result)) or _is_evidence(result)
+    without_file = _is_question(result) and result.outcome.location is None
+    return bool(_files(result)) or _is_evidence(result) or without_file
+
+
+def is_empty(result: Result, report: Report) -> bool:
+    """Return whether there is nothing to read for a criterion: no answer, or no file that may be evidence."""
+    if not _is_evidence(result):
+        return _is_question(result) and result.outcome.problem in NO_ANSWER
+    others = (report.other_pictures, *(files for one in report.evidence for files in (one.files, one.possible)))
+    return not any((evidence_files(result), *others))
+
+
+def _is_question(result: Result) -> bool:
+    return result.criterion.check.function is answered
 
 
 def _is_evidence(result: Result) -> bool:
@@ -49,13 +66,14 @@ def evidence_files(result: Result) -> tuple[str, ...]:
 
 
 def _files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files of evidence, or of the document with pictures in an answer."""
+    """Return the paths of the files of evidence, of the PDF of an answer, or of the document with pictures in it."""
     if files := evidence_files(result):
         return files
-    outcome = result.outcome
-    if outcome.location is None or "[picture]" not in str(outcome.measured):
+    place = result.outcome.location
+    if place is None or not _is_question(result):
         return ()
-    return (outcome.location.path,) if outcome.location.path.lower().endswith(CONVERTED) else ()
+    shown = CONVERTED if PICTURE in str(result.outcome.measured) else (".pdf",)
+    return (place.path,) if place.path.lower().endswith(shown) else ()
 
 
 def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedPicture | NotShown]:
@@ -64,10 +82,25 @@ def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedP
         yield NotShown(path, "it is no longer in the submission")
     elif file.suffix not in CONVERTED:
         yield read_picture(file)
+    elif file.suffix == ".pdf":
+        yield from _in_pdf(file, result, submission.readable_documents)
     elif submission.readable_documents is None:
         yield NotShown(path, "documents of this submission are not read: open it yourself")
     else:
         yield from _in_document(file, result, submission.readable_documents)
+
+
+def _in_pdf(file: File, result: Result, documents: DocumentCollection | None) -> Iterator[EmbeddedPicture | NotShown]:
+    """Yield the pictures in a PDF that belong to a criterion, and the PDF, which the browser opens on their page."""
+    document = documents.document(file) if documents is not None else None
+    page = 1
+    if documents is not None and isinstance(document, Document):
+        has_pictures = _is_evidence(result) or PICTURE in str(result.outcome.measured)
+        found = _in_document(file, result, documents) if has_pictures else ()
+        yield from (one for one in found if isinstance(one, EmbeddedPicture))
+        page = document.page(_spans(document, result, documents)[0][0]) or 1
+    shown = read_picture(file)
+    yield shown._replace(page=page) if isinstance(shown, EmbeddedPicture) else shown
 
 
 def _in_document(file: File, result: Result, documents: DocumentCollection) -> Iterator[EmbeddedPicture | NotShown]:

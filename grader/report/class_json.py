@@ -73,6 +73,7 @@ _AGREEMENT = Record(
         "largest": Many(Record({"id": (TEXT, "key"), "criterion": TEXT, **each(POINTS, "first second max_points")})),
     }
 )
+_CHOICE = Record({"criterion": (TEXT, "criterion.id"), "text": TEXT, "points": {"type": "number"}, "students": TOTAL})
 _SECTION = Record(
     {
         "name": TEXT,
@@ -155,6 +156,7 @@ CLASS = Record(
             "summary.identical",
         ),
         "agreement": (_AGREEMENT, "summary.agreement"),
+        "choices": (Many(_CHOICE), "summary.choices"),
         "comparison": _COMPARISON,
         "needs_attention": (TOTAL, "summary.attention.total"),
         "attention": (Many(_ATTENTION), "summary.attention.groups"),

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.attention import Attention
+from grader.classroom.gradebook.choices import ChoiceCount
 from grader.classroom.gradebook.criterion_statistics import CriterionStatistics
 from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
@@ -59,6 +60,7 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
         _print_criteria(statistics.criteria, adjusted_lines(summary.rubric), console)
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
+    _print_choices(summary.choices, console)
     _print_agreement(summary.agreement, console)
     _print_identical(summary.identical, console)
     _print_attention(summary.attention, console, verbose=verbose)
@@ -97,6 +99,15 @@ def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
             head = Text(f"{' ' * _INDENT}{sign} ", style=style)
             wrapped(console, Text(printable(line), style=style), _INDENT + 2, head)
         wrapped(console, Text(gain(fix), style="dim"), _INDENT)
+
+
+def _print_choices(choices: Sequence[ChoiceCount], console: Console) -> None:
+    if any(choice.students for choice in choices):
+        _print_heading("Usual deductions", console)
+    for criterion, text, points, count in choices:
+        if count:
+            words = f"{criterion.id}: {text} ({format_points(points)})"
+            wrapped(console, Text(printable(words)), 8, Text(f"{count:>6}  ", style="bold"))
 
 
 def _print_agreement(agreement: Agreement, console: Console) -> None:

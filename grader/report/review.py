@@ -1,17 +1,19 @@
 """A criterion as `grader review` shows it: the answer, the model answer, where the pictures are."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from rich.console import Console
 from rich.text import Text
 
+from grader.checks.manual import MANUAL_CHECKS, answered
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
+from grader.grading.criterion import Criterion
 from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
 from grader.report.order import status_of
-from grader.text import counted, counted_points, printable
+from grader.text import counted, counted_points, format_points, printable
 
 _INDENT = 2
 _WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
@@ -24,26 +26,26 @@ def render_item(
 
     Text of the submission is never interpreted as markup.
     """
-    criterion, outcome = item.result.criterion, item.result.outcome
+    criterion = item.result.criterion
     console.print()
-    head = f"{position}  {who(item)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
+    head = f"{position}  {who_together(item)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
     wrapped(console, Text(head, style="bold"), 0)
-    wrapped(console, Text(message_text(item)), 0)
+    if item.others:
+        _print_block(together_text(item), ["; ".join(map(who, item.members))], console)
+    if not item.is_empty_group:
+        wrapped(console, Text(message_text(item)), 0)
     if marked := marked_text(item):
         wrapped(console, Text(f"Marked: {marked}", style="bold"), 0)
-    if isinstance(outcome.measured, str):
-        _print_block("Found", outcome.measured, console)
-    if files := files_text(item):
-        _print_block("Look at", "\n".join(files), console)
-    if pictures:
-        _print_block("Pictures", "\n".join(pictures), console)
-    if criterion.answer:
-        _print_block("Model answer", criterion.answer, console)
+    _print_block("Found", answer_lines(item), console)
+    _print_block("Look at", files_text(item), console)
+    _print_block("Pictures", pictures, console)
+    _print_block("Model answer", criterion.answer.splitlines(), console)
     if place := place_text(item):
         wrapped(console, Text(f"in {place}", "dim"), 0)
-    if comments:
-        lines = (f"#{number} {' '.join(comment.split())}" for number, comment in comments.items())
-        _print_block("Earlier comments", "\n".join(lines), console)
+    deductions = (f"d{number} {words}" for number, words in enumerate(choice_words(criterion), 1))
+    _print_block("Usual deductions", deductions, console)
+    lines = (f"#{number} {' '.join(comment.split())}" for number, comment in comments.items())
+    _print_block("Earlier comments", lines, console)
 
 
 def who(item: QueuedResult) -> str:
@@ -54,6 +56,30 @@ def who(item: QueuedResult) -> str:
     return printable(f"{student.name} ({student.key})" if student.name else student.key)
 
 
+def answer_lines(item: QueuedResult) -> list[str]:
+    """Return the lines of a written answer without empty ones at its beginning and end; none of several students."""
+    answer = item.result.outcome.measured
+    return answer.strip("\n").splitlines() if isinstance(answer, str) and not item.is_empty_group else []
+
+
+def who_together(item: QueuedResult) -> str:
+    """Return the student of an item, or the number of its students."""
+    return f"{len(item.members)} students" if item.others else who(item)
+
+
+def together_text(item: QueuedResult) -> str:
+    """Return why one mark serves the students of an item."""
+    if not item.content:
+        return "No answer" if item.result.criterion.check.function is answered else "No evidence"
+    is_team = len({one.grade.files.digest for one in item.members}) == 1
+    return "The same files" if is_team else "The same answer"
+
+
+def choice_words(criterion: Criterion) -> list[str]:
+    """Return the usual deductions of a criterion with what they cost, printable."""
+    return [printable(f"{text} ({format_points(points)})") for text, points in criterion.choices.items()]
+
+
 def message_text(item: QueuedResult) -> str:
     """Return what was found; without the names of files, which students choose, if the student is anonymous."""
     outcome = item.result.outcome
@@ -61,7 +87,9 @@ def message_text(item: QueuedResult) -> str:
         return printable(outcome.message)
     if outcome.status != "pending":
         return f"the check: {outcome.status}"
-    if isinstance(outcome.measured, str):
+    if outcome.problem and item.result.criterion.check.function in MANUAL_CHECKS:
+        found = f"{outcome.problem}, needs manual grading"
+    elif isinstance(outcome.measured, str):
         found = "a written answer, needs manual grading"
     elif files := evidence_files(item.result):
         found = f"{counted(len(files), 'file')}, {'needs' if len(files) == 1 else 'need'} manual grading"
@@ -92,17 +120,26 @@ def files_text(item: QueuedResult) -> list[str]:
 
 
 def place_text(item: QueuedResult) -> str:
-    """Return where the answer is, printable: the file, and the line if editors count lines. Empty if there is none."""
+    """Return where the answer is, printable: the file, and the line if editors count lines; else the submission.
+
+    Empty if the files are named elsewhere, or the student is anonymous.
+    """
     location = item.result.outcome.location
-    if location is None or item.number is not None:
+    if item.number is not None or item.is_empty_group:
         return ""
+    if location is None:
+        submitted = (str(Path(item.grade.files.root, path)) for path in item.grade.files.paths)
+        return "" if evidence_files(item.result) else printable(", ".join(submitted))
     line = "" if location.path.lower().endswith(_WITHOUT_LINES) else f", line {location.line}"
     return printable(f"{_where(item, location.path)}{line}")
 
 
-def _print_block(title: str, text: str, console: Console) -> None:
-    wrapped(console, Text(f"{title}:", style="bold"), 0)
-    for line in filter(str.strip, text.splitlines()):
+def _print_block(title: str, lines: Iterable[str], console: Console) -> None:
+    """Print lines under a title; nothing if there are none."""
+    shown = [*filter(str.strip, lines)]
+    if shown:
+        wrapped(console, Text(f"{title}:", style="bold"), 0)
+    for line in shown:
         wrapped(console, Text(printable(line)), _INDENT)
 
 

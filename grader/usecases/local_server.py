@@ -31,7 +31,7 @@ _HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "X-Frame-Options": "DENY",
 }
-_SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
+SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
 class Request(NamedTuple):
@@ -48,7 +48,7 @@ class Response(NamedTuple):
     media_type: str = TEXT
     status: HTTPStatus = HTTPStatus.OK
     location: str | None = None
-    policy: str = _SANDBOX
+    policy: str = SANDBOX
 
 
 Application = Callable[[Request], Response]

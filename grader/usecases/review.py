@@ -1,5 +1,7 @@
 """Grade what needs manual grading at a terminal, one item at a time."""
 
+import re
+from bisect import bisect
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from functools import partial
@@ -9,7 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.classroom.review import ReviewSession
+from grader.classroom.review.session import ReviewSession
 from grader.classroom.typed_names import read_points
 from grader.errors import InputError
 from grader.report.review import mark_text, render_item
@@ -20,10 +22,12 @@ from grader.usecases.terminal import Terminal
 
 NOTHING = "nothing needs manual grading\n"
 _HELP = (
-    "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, "
-    "q to stop (all marks are kept), ? for this help"
+    "points and a comment (#2 for comment 2; d1 for deduction 1, instead of points), s to skip, b to go back, "
+    "u to undo, /NAME for a student, o for one student after the other, q to stop (all marks are kept), ? for this help"
 )
-_END = "end of the queue: u to undo, b to go back, Enter to end: "
+_AT_END = "u to undo, b to go back, Enter to end"
+_END = f"end of the queue: {_AT_END}: "
+_DEDUCTION = re.compile(r"d([1-9])(?:\s+|$)", re.IGNORECASE)
 _KEEP = "k to keep that mark, r to replace it with yours: "
 
 
@@ -56,7 +60,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
 
 def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
     """Ask what to do at the end of the queue, if a mark can be undone; return whether there is an item again."""
-    while session.item is None and session.can_undo and (line := terminal.ask(_END)) is not None:
+    while session.item is None and session.own.can_undo and (line := terminal.ask(_END)) is not None:
         match line.strip().lower():
             case "" | "q" | "quit":
                 return False
@@ -64,12 +68,15 @@ def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
                 _undo(session, terminal)
             case "b" | "back":
                 session.back()
+            case _:
+                terminal.warn(_AT_END)
     return session.item is not None
 
 
 def _show(session: ReviewSession, pictures: Sequence[str], terminal: Terminal) -> None:
     assert session.item is not None
-    position = f"{session.position + 1} of {len(session.queue)}"
+    listed = session.listed()
+    position = f"{bisect(listed, session.position)} of {len(listed)}"
     used = session.comments()
     comments = {number: text for number, text in session.numbered_comments().items() if text in used}
     page = partial(render_item, session.item, position, pictures, comments)
@@ -85,25 +92,40 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
     """Ask until there is a valid answer, and execute it; return False to stop."""
     assert session.item is not None
     criterion = session.item.result.criterion
-    prompt = f"points, 0 to {format_points(criterion.points)} (? for help): "
+    count = len(session.item.members)
+    all_of = f" for all {count} students" if count > 1 else ""
+    prompt = f"points{all_of}, 0 to {format_points(criterion.points)} (? for help): "
     while (line := terminal.ask(prompt)) is not None:
-        answer, _, comment = line.strip().partition(" ")
-        if answer.lower() in ("q", "quit"):
+        line = line.strip()
+        if line.lower() in ("q", "quit"):
             return False
-        action = _ACTIONS.get(answer.lower())
-        if action is not None:
+        try:
+            if line.startswith("/"):
+                session.find(line[1:].strip())
+                return True
+            action = _ACTIONS.get(line.partition(" ")[0].lower())
+            if action is None:
+                return _mark(session, *_read_mark(line, session), terminal)
             if action(session, terminal):
                 return True
-            continue
-        try:
-            points = read_points(answer, criterion.id, criterion.points)
         except InputError as error:
             terminal.warn(str(error))
-            continue
-        text = _comment(session, comment.strip(), terminal)
-        if text is not None:
-            return _mark(session, points, text, terminal)
     return False
+
+
+def _read_mark(line: str, session: ReviewSession) -> tuple[Decimal, str]:
+    """Return the points and the comment in a line; usual deductions take the place of points. Raises InputError."""
+    criterion = session.current_item().result.criterion
+    chosen, rest = list[str](), line
+    while criterion.choices and (number := _DEDUCTION.match(rest)):
+        if int(number[1]) > len(criterion.choices):
+            raise InputError(f"there is no deduction {number[0].strip()}")
+        chosen.append([*criterion.choices][int(number[1]) - 1])
+        rest = rest[number.end() :]
+    if chosen:
+        return criterion.after(chosen), "; ".join(filter(None, (*chosen, rest)))
+    answer, _, comment = line.partition(" ")
+    return read_points(answer, criterion.id, criterion.points), _comment(session, comment.strip())
 
 
 def _skip(session: ReviewSession, _: Terminal) -> bool:
@@ -118,9 +140,16 @@ def _back(session: ReviewSession, terminal: Terminal) -> bool:
     return False
 
 
+def _split(session: ReviewSession, terminal: Terminal) -> bool:
+    if session.split():
+        return True
+    terminal.warn("this item is of one student")
+    return False
+
+
 def _undo(session: ReviewSession, terminal: Terminal) -> bool:
     """Undo a mark of this review, and print what happened; return whether there was one."""
-    can_undo = session.can_undo
+    can_undo = session.own.can_undo
     try:
         terminal.warn(undo(session))
     except InputError as error:
@@ -135,24 +164,24 @@ def _help(_: ReviewSession, terminal: Terminal) -> bool:
 
 # What an answer does that is not points; each returns whether an item is to be shown.
 _ACTIONS: dict[str, Callable[[ReviewSession, Terminal], bool]] = {
-    "": _skip, "s": _skip, "skip": _skip, "b": _back, "back": _back, "u": _undo, "undo": _undo, "?": _help,
+    "": _skip, "s": _skip, "skip": _skip, "b": _back, "back": _back, "u": _undo, "undo": _undo, "o": _split, "?": _help,
 }  # fmt: skip
 
 
-def _comment(session: ReviewSession, typed: str, terminal: Terminal) -> str | None:
-    """Return the comment: `#2` is an earlier one; None if there is none with this number."""
+def _comment(session: ReviewSession, typed: str) -> str:
+    """Return the comment: `#2` is an earlier one. Raises InputError."""
     number = COMMENT_NUMBER.fullmatch(typed)
     if number is None:
         return typed
     comment = session.numbered_comments().get(int(number[1]))
     if comment is None:
-        terminal.warn(f"there is no comment {number[0]}")
+        raise InputError(f"there is no comment {number[0]}")
     return comment
 
 
 def undo(session: ReviewSession) -> str:
     """Undo a mark of this review; return which mark counts now, or that a newer one stays. Raises InputError."""
-    if not session.can_undo:
+    if not session.own.can_undo:
         raise InputError("nothing to undo: this review has marked nothing")
     try:
         before = session.undo()
@@ -175,7 +204,8 @@ def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Termi
         if not answer:
             return False
         if answer == "k":
-            break
+            session.stay()
+            return True
     session.next()
     return True
 

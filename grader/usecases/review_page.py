@@ -1,6 +1,7 @@
 """Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves."""
 
 import json
+from bisect import bisect
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -13,13 +14,16 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.classroom.review import ReviewSession
+from grader.classroom.review.filter import ITEM_STATES, ReviewFilter
+from grader.classroom.review.session import ReviewSession
 from grader.classroom.typed_names import read_points
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import GraderError, InputError
-from grader.report.pages.review import Place, end_page, error_page, item_page, stamp_of
+from grader.report.pages.review import Place, end_page, error_page, has_report, item_page, stamp_of
+from grader.report.pages.student import render_html
 from grader.report.review import mark_text
-from grader.usecases.local_server import LocalServer, Request, Response
+from grader.usecases.class_reports import report_of
+from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
 from grader.usecases.review import NOTHING, review_summary, undo
 from grader.usecases.review_pictures import item_pictures
 from grader.usecases.terminal import Terminal
@@ -28,14 +32,23 @@ Album = tuple[EmbeddedPicture | NotShown, ...]
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
+_REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
+_PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
+# What the page sends besides `do`, with the type of each value.
+_ACTIONS: Mapping[str, Mapping[str, type]] = {
+    "mark": {"points": str, "comment": str, "shown": int, "item": str},
+    "filter": {"criterion": str, "section": str, "state": str},
+    "find": {"student": str},
+    **{name: {} for name in ("next", "back", "undo", "keep", "split")},
+}
 _HTML, _JSON = "text/html; charset=utf-8", "application/json"
 
 
 class ReviewPage:
     """The application of the server: shows items of a session by number, and executes actions from the page."""
 
-    def __init__(self, session: ReviewSession, gradebook: str, reader: ThreadPoolExecutor) -> None:
-        self.session, self._gradebook, self._reader = session, gradebook, reader
+    def __init__(self, session: ReviewSession, book: Gradebook, reader: ThreadPoolExecutor) -> None:
+        self.session, self._book, self._reader = session, book, reader
         self._albums: OrderedDict[int, Future[Album]] = OrderedDict()  # by the position of the item
         self._notice = ""
 
@@ -63,27 +76,59 @@ class ReviewPage:
             case ("",):
                 return Response(b"", status=HTTPStatus.FOUND, location=self._address())
             case ("end",):
-                return _html(end_page(self.session.marked, self.session.left, self._gradebook, self._pop_notice()))
+                session = self.session
+                page = end_page(session.marked, session.left, self._place(), self._book.shown, self._pop_notice())
+                return _html(page)
             case (number,) if (position := self._position(number)) is not None:
                 self.session.go(position)
                 return self._item()
             case (number, "picture", which) if (position := self._position(number)) is not None:
                 self.session.go(position)
                 return self._picture(which)
+            case (number, "report") if (position := self._position(number)) is not None:
+                self.session.go(position)
+                return self._report()
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
     def _item(self) -> Response:
         session, item = self.session, self.session.current_item()
-        place = Place(session.position + 1, len(session.queue), session.is_own, session.can_undo)
         pictures = self._album(session.position, item).result()
-        return _html(item_page(item, place, pictures, session.comments(), self._pop_notice()))
+        return _html(item_page(item, self._place(), pictures, session.comments(), self._pop_notice()))
+
+    def _place(self) -> Place:
+        session, listed = self.session, self.session.listed()
+        criteria = {item.criterion for item in session.queue}
+        values = (
+            ("", *(row.id for row in session.criteria if row.id in criteria)),
+            ("", *session.sections),
+            tuple(ITEM_STATES),
+        )
+        words = ({"": "all questions"}, {"": "all sections"}, {name: words for name, (words, _) in ITEM_STATES.items()})
+        filters = [
+            (name, label, [(value, named.get(value, value), value == chosen) for value in some])
+            for name, label, chosen, some, named in zip(
+                ReviewFilter._fields, ("Question", "Section", "Items"), session.filter, values, words, strict=True
+            )
+            if len(some) > 2  # else there is nothing to choose
+        ]
+        students = [(one.key, one.name) for one in session.students]
+        number = bisect(listed, session.position)
+        return Place(number, len(listed), self._address(), session.is_own, session.own.can_undo, filters, students)
+
+    def _report(self) -> Response:
+        """Return the student's page, without model answers."""
+        item = self.session.current_item()
+        if not has_report(item):
+            return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
+        page = render_html(report_of(Grades(self._book), item.grade))
+        return Response(page.encode("utf-8", "backslashreplace"), _HTML, policy=_REPORT_POLICY)
 
     def _picture(self, which: str) -> Response:
         pictures = self._album(self.session.position, self.session.current_item()).result()
         found = dict(enumerate(pictures, 1)).get(int(which) if _is_number(which) else 0)
         if not isinstance(found, EmbeddedPicture):
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
-        return Response(found.data, found.kind.media_type)
+        return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
 
     def _act(self, request: Request) -> Response:
         """Execute an action of the page: next, back, undo, or a mark."""
@@ -110,14 +155,18 @@ class ReviewPage:
                 points = read_points(sent["points"], criterion.id, criterion.points)
                 session.mark(points, sent["comment"].strip(), sent["shown"])
                 session.next()
-            case "next":
-                session.next()
             case "back":
                 if not session.back():
                     raise InputError("this is the first item")
             case "undo":
                 said = undo(session)
                 self._notice = f"{said[0].upper()}{said[1:]}"
+            case "find":
+                session.find(sent["student"].strip())
+            case "filter":
+                session.show_only(ReviewFilter(*(sent[name] for name in ReviewFilter._fields)))
+            case simple:
+                {"next": session.next, "keep": session.stay, "split": session.split}[simple]()
 
     def _album(self, position: int, item: QueuedResult) -> "Future[Album]":
         """Return the pictures of an item. Another thread reads them, so that marks are not delayed."""
@@ -146,12 +195,10 @@ def _read(body: bytes) -> dict[str, Any] | None:
         sent = json.loads(body)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(sent, dict) or sent.get("do") not in ("mark", "next", "back", "undo"):
+    wanted = _ACTIONS.get(str(sent.get("do"))) if isinstance(sent, dict) else None
+    if wanted is None or not all(type(sent.get(name)) is kind for name, kind in wanted.items()):
         return None
-    if sent["do"] == "mark":
-        wanted = {"points": str, "comment": str, "shown": int, "item": str}
-        return sent if all(type(sent.get(name)) is kind for name, kind in wanted.items()) else None
-    return sent
+    return sent if sent.get("state", "") in ITEM_STATES else None
 
 
 def _is_number(text: str) -> bool:
@@ -192,7 +239,7 @@ def serving(
         book = worker.submit(Gradebook, gradebook).result()
         try:
             session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), scope)).result()
-            page = ReviewPage(session, book.shown, reader)
+            page = ReviewPage(session, book, reader)
             if not session.queue:
                 yield None, page
                 return

@@ -5,9 +5,10 @@ from itertools import starmap
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, QueuedResult
+from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.submission_files import SubmissionSources
-from grader.classroom.review import ReviewSession
+from grader.classroom.review.items import QueuedItem
+from grader.classroom.review.session import ReviewSession
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.pictures import may_have_pictures, pictures_of
@@ -19,12 +20,11 @@ from grader.usecases.report_names import file_names, report_names, update_index
 from grader.usecases.writing import make_folder, save_bytes
 
 _CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
-_HIDDEN = "not shown here: the review without --anonymous says why"
 
 
 def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return an item's pictures, and files that are not shown; the submission is reopened and must be unchanged."""
-    if not may_have_pictures(item.result):
+    if item.is_empty_group or not may_have_pictures(item.result):
         return ()
     submission = SubmissionSources(item.grade.files, rubric).submission
     found = (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
@@ -32,10 +32,10 @@ def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture |
 
 
 def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
-    """Return a picture without the name of its file, which students choose."""
+    """Return a picture, or why it is not shown, without the name of its file, which students choose."""
     if isinstance(found, EmbeddedPicture):
         return found._replace(where=f"picture {number}")
-    return NotShown(f"picture {number}", _CHANGED if found.reason == _CHANGED else _HIDDEN)
+    return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
 
 
 class PictureFolder:
@@ -53,7 +53,8 @@ class PictureFolder:
         self._names = {} if session.scope.anonymous else report_names(book)
         make_folder(folder)
         if not session.scope.anonymous:
-            update_index(folder, {key: self._names[key] for key in sorted({queued.key for queued in session.queue})})
+            keys = {key for item in session.queue for key in item.keys}
+            update_index(folder, {key: self._names[key] for key in sorted(keys)})
         elif any(folder.iterdir()):
             raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
 
@@ -68,12 +69,12 @@ class PictureFolder:
 
 def write_all_pictures(
     session: ReviewSession, folder: PictureFolder, show: Callable[[str], None]
-) -> dict[QueuedCriterion, list[str]]:
+) -> dict[QueuedItem, list[str]]:
     """Write the pictures of all items, and print the student of each; return those of each item."""
-    found: dict[QueuedCriterion, list[str]] = {}
-    for position, queued in enumerate(session.queue):
-        item = session.item_at(position)
-        if item is None:
+    found: dict[QueuedItem, list[str]] = {}
+    for position in session.listed():
+        item, queued = session.item_at(position), session.queue[position]
+        if item is None or not item.content:
             continue
         found[queued] = folder.write(item)
         for line in found[queued]:

@@ -208,7 +208,7 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     assert "Note: Graded automatically." in anna
     assert "Note: Graded manually by Lee." in dora
-    assert "The roots." in anna  # the student's answer
+    assert "The roots of anna." in anna  # the student's answer
     assert "Because of the roots" not in anna  # the model answer
     assert "Note: Final mark: 0 points, given by Lee instead of the sum of the criteria. never came" in dora
     assert "Not graded, because nothing was submitted: loads, box, tall, essay and picture (11 points)." in dora

@@ -13,7 +13,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, ReviewScope, queued_result
+from grader.classroom.gradebook.manual_queue import ReviewScope, queued_results
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.cli.terminal import show_class
 from grader.report.screen import Screen
@@ -23,13 +23,16 @@ from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
-HELP = "points and a comment (#2 for comment 2), s to skip, b to go back, u to undo, q to stop (all marks are kept), ? for this help"
+HELP = (
+    "points and a comment (#2 for comment 2; d1 for deduction 1, instead of points), s to skip, b to go back, u to undo, "
+    "/NAME for a student, o for one student after the other, q to stop (all marks are kept), ? for this help"
+)
 
 
 @pytest.fixture
 def top(top: Path) -> Path:
     """Return the class of two students with open questions: those of the single URDF are marked."""
-    assert review(top, "s\n0\ns\ns\n0\ns\n").stdout.endswith("2 marked, 4 left\n")
+    assert review(top, "s\ns\ns\ns\n0\n0\n").stdout.endswith("2 marked, 4 left\n")
     return top
 
 
@@ -67,7 +70,7 @@ def test_a_question(top: Path, graded_class: Path) -> None:
     assert first == (
         "\n1 of 4  Anna Ek (anna): About essay (4 points)\n"
         "Why? The answer in answers.md, from line 1, needs manual grading\n"
-        "Found:\n  # Step 1\n  The roots.\n"
+        "Found:\n  # Step 1\n  The roots of anna.\n"
         "Model answer:\n  Because of the roots.\n"
         f"in {graded_class}/class/anna/answers.md, line 1\n"
     )
@@ -163,8 +166,7 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 def put(top: Path, key: str, criterion: str, points: int, comment: str = "") -> None:
     """Mark as Kim."""
     with Gradebook(top / "book.db") as book:
-        found = queued_result(Grades(book), QueuedCriterion(key, criterion))
-        assert found is not None
+        (found,) = queued_results(Grades(book), key, [criterion])
         mark(book, found.grade, found.result.criterion, Decimal(points), "Kim", comment)
 
 
@@ -213,8 +215,7 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     del graded_class
     with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
         standings = Grades(one)
-        found = queued_result(standings, QueuedCriterion("anna", "essay"))
-        assert found is not None
+        (found,) = queued_results(standings, "anna", ["essay"])
         shown, seen = found.newest, []
         for points in (1, 2):
             theirs = mark(other, found.grade, found.result.criterion, Decimal(points), "", "").before
@@ -312,6 +313,6 @@ def test_the_last_item_can_be_undone(top: Path) -> None:
     assert done.stdout.count("4 of 4") == 3
     assert done.stdout.count(end) == 4
     assert done.stdout.endswith(f"{end}1 marked, 3 left\n")
-    assert done.stderr == "grader: undone\n"
+    assert done.stderr == "grader: u to undo, b to go back, Enter to end\ngrader: undone\n"
     assert [points for *_, points, _ in marks(top)] == [1, None, 0.5, 0.25]
     assert end not in review(top, "s\ns\ns\n").stdout

@@ -23,9 +23,9 @@ ROSTER = "id,name,section,marker\nu7701,Zebulon Ash,Lab A,Kim\nu7702,Wilhelmina 
 def scoped_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a class of three in two sections; the names of their files contain their names."""
     top = tmp_path_factory.mktemp("scopes")
-    for key, name in STUDENTS.items():
+    for (key, name), colour in zip(STUDENTS.items(), ("red", "green", "blue"), strict=True):
         folder = top / "class" / key
-        write_submission(folder)
+        write_submission(folder, answer=f"The {colour} roots.")
         (folder / "answers.md").rename(folder / f"answers {name}.md")
         (folder / "screen.png").rename(folder / f"screen {name}.png")
         (folder / f"screen 2 {name}.png").write_bytes(b"<svg/>" if key == "u7701" else gif())
@@ -114,8 +114,8 @@ def test_an_anonymous_review_in_the_terminal(top: Path, scoped_class: Path) -> N
     assert numbers[:2] == ["submission 1", "submission 2"] and set(numbers) == {f"submission {n}" for n in (1, 2, 3)}
     names = sorted(path.relative_to(top / "out").as_posix() for path in (top / "out").rglob("*.*"))
     assert len(names) == 5 and revealing(" ".join(names), scoped_class) == set()
-    assert "Pictures:\n" in done.stdout and ": not shown here" in done.stdout
-    assert "The roots." in done.stdout and "Because of the roots." in done.stdout
+    assert "Pictures:\n" in done.stdout and "  file 1: it is not a PNG" in done.stdout
+    assert "The red roots." in done.stdout and "Because of the roots." in done.stdout
     assert (
         "\nWhy? a written answer, needs manual grading\n" in done.stdout
         and "\n2 files, need manual grading\n" in done.stdout
@@ -146,7 +146,7 @@ def test_an_anonymous_review_in_the_browser(top: Path, scoped_class: Path) -> No
 def test_an_anonymous_student_who_is_removed(top: Path) -> None:
     """No message names the key, and no other student is shown instead."""
     from grader.classroom.gradebook.manual_queue import ReviewScope
-    from grader.classroom.review import ReviewSession
+    from grader.classroom.review.session import ReviewSession
     from grader.errors import InputError
 
     with Gradebook(top / "book.db") as book:
@@ -186,7 +186,7 @@ def test_second_marking_is_blind(top: Path) -> None:
 
 def test_the_page_of_a_second_opinion_has_no_score(top: Path) -> None:
     """The score so far would tell what the first mark is."""
-    from grader.classroom.gradebook.manual_queue import ReviewScope, manual_grading_queue, queued_result
+    from grader.classroom.gradebook.manual_queue import ReviewScope, queued_results
     from grader.report.pages.review import Place, item_page
 
     mark(top, "u7701", "essay", "3.25", "--by", "Kim")
@@ -194,11 +194,8 @@ def test_the_page_of_a_second_opinion_has_no_score(top: Path) -> None:
         for is_second in (False, True):
             scope = ReviewScope("essay", "Lee", second=is_second)
             grades = Grades(book)
-            item = queued_result(
-                grades, manual_grading_queue(grades, ReviewScope("essay", "Lee", second=True))[0], scope
-            )
-            assert item is not None
-            page = item_page(item, Place(1, 1, False, False), (), (), "")
+            (item,) = queued_results(grades, "u7701", ["essay"], scope)
+            page = item_page(item, Place(1, 1, "1", False, False), (), (), "")
             assert ("9.25" in page, "3.25" in page) == (not is_second, not is_second)
 
 

@@ -191,7 +191,7 @@ def test_pictures_of_a_pdf() -> None:
         image(10**9, b"", "/DeviceRGB", ""),
     ]
     found = shown({"lab.pdf": pages(*kinds.values(), *unknown)}, ["webcam"])
-    assert found == [*kinds, "lab.pdf: it has pictures that cannot be extracted: open it yourself"]
+    assert found == [*kinds, "lab.pdf"]  # the document itself
 
 
 def test_the_pages_below_a_heading_of_a_pdf() -> None:
@@ -199,18 +199,22 @@ def test_the_pages_below_a_heading_of_a_pdf() -> None:
     pytest.importorskip("pypdf")
     image_of = [image(width, bytes(width), "/DeviceGray", "") for width in (1, 2, 3)]
     report = pages(*image_of, texts=("Task 1: Step 8", "Task 1: Step 18", "Task 3: Step 3"))
-    assert shown({"lab.pdf": report}, ["task 1 step 18"]) == ["page 2 of lab.pdf (2 x 1 pixels)"]
+    assert shown({"lab.pdf": report}, ["task 1 step 18"]) == ["page 2 of lab.pdf (2 x 1 pixels)", "lab.pdf"]
 
 
 @pytest.mark.parametrize(
     ("name", "data", "why"),
     [
-        ("Task1_Step8.pdf", b"%PDF-1.4 damaged", "lab.pdf cannot be read; it may be damaged: open it yourself"),
+        (
+            "Task1_Step8.pdf",
+            b"no PDF",
+            "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
+        ),
         ("Task1_Step8.mp4", b"\0\0\0\x18ftypisom", "its content is a video: open it yourself, with care"),
     ],
 )
 def test_what_is_not_shown_is_named(name: str, data: bytes, why: str) -> None:
-    """A damaged document and a video."""
+    """A PDF that is none and a video."""
     assert shown({name: data}, ["task 1 step 8"]) == [f"{name}: {why.replace('lab.pdf', name)}"]
 
 

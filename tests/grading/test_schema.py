@@ -59,6 +59,7 @@ with = { link = "tip", relative_to = "base", xyz = [0, 0, 1], tolerance = 0.002,
 at = { shoulder = 90, slide = 0.1 }
 requires = ["box"]
 bonus = false
+choices = { "names no unit" = -1, "too short" = -0.5 }
 
 [criterion.carried]
 from = ["box"]

@@ -1,8 +1,10 @@
 """What needs manual grading in a class, and the marks and comments that it has so far."""
 
 import re
+from collections.abc import Collection
 from typing import NamedTuple
 
+from grader.checks.manual import answered
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, newest_mark, newest_second
@@ -10,11 +12,13 @@ from grader.classroom.gradebook.result import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.matching import plain_group, plain_name
 from grader.errors import InputError
-from grader.grading.report import ManualMark, Result
+from grader.grading.pictures import PICTURE, is_empty
+from grader.grading.report import ManualMark, Report, Result
 from grader.text import enumerated
 from grader.values import dataclass
 
 COMMENT_NUMBER = re.compile(r"#([0-9]{1,9})")  # how a person refers to an earlier comment
+FILES = "\0"  # begins the content of an item that is not the words of an answer
 _MAX_NAMED = 6
 _STUDENTS = "SELECT key, section, marker FROM student"
 
@@ -48,7 +52,9 @@ EVERYTHING = ReviewScope()
 class QueuedResult:
     """A queued criterion in its current state, with its newest mark, which may withdraw an earlier one.
 
-    With `is_second`, both are those of a second opinion. An anonymous student has a `number`.
+    With `is_second`, both are those of a second opinion. An anonymous student has a `number`. `content` is what results
+    have in common that one mark serves, empty if there is nothing to read; `others` are the results of the other
+    students that are marked with this one.
     """
 
     grade: StudentGrade
@@ -56,16 +62,28 @@ class QueuedResult:
     mark: Mark | None = None
     is_second: bool = False
     number: int | None = None
+    content: str = ""
+    others: tuple["QueuedResult", ...] = ()
+
+    @property
+    def members(self) -> tuple["QueuedResult", ...]:
+        """The results of all students that one mark serves."""
+        return (self, *self.others)
+
+    @property
+    def is_empty_group(self) -> bool:
+        """Return whether it has several students without an answer."""
+        return bool(self.others) and not self.content
 
     @property
     def newest(self) -> int:
-        """The id of the newest mark, 0 if there is none."""
-        return self.mark.id if self.mark is not None else 0
+        """The id of the newest mark of all members, 0 if there is none."""
+        return max(one.mark.id if one.mark is not None else 0 for one in self.members)
 
     @property
     def is_open(self) -> bool:
-        """Return whether it still needs a mark, or a second opinion."""
-        return self.result.manual_mark is None if self.is_second else self.result.is_open
+        """Return whether a member still needs a mark, or a second opinion."""
+        return any(one.result.manual_mark is None if one.is_second else one.result.is_open for one in self.members)
 
 
 _QUEUED = (
@@ -82,7 +100,7 @@ _OPEN_FOR_SECOND = f"""({_IS_PENDING} OR {_MARKED})) AND NOT {_MARKED} AND grade
 
 
 def manual_grading_queue(grades: Grades, scope: ReviewScope = EVERYTHING) -> list[QueuedCriterion]:
-    """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
+    """Return what needs manual grading, one criterion after the other.
 
     Unreadable submissions are omitted: they need a fix, not points. So are students with a final mark or an excuse.
     Raises InputError for a section or marker that no student has.
@@ -112,20 +130,37 @@ def _students_of(book: Gradebook, scope: ReviewScope) -> set[str]:
     return {row[0] for row in rows}
 
 
-def queued_result(
-    grades: Grades, queued: QueuedCriterion, scope: ReviewScope = EVERYTHING, number: int | None = None
-) -> QueuedResult | None:
-    """Return a queued criterion in its current state; None if it is no longer graded."""
-    grade = next(grades.between(queued.key, queued.key), None)
+def queued_results(
+    grades: Grades, key: str, criteria: Collection[str], scope: ReviewScope = EVERYTHING, number: int | None = None
+) -> list[QueuedResult]:
+    """Return queued criteria of a student in their current state, without those that are no longer graded."""
+    grade = next(grades.between(key, key), None)
     if grade is None or grade.result is None:
-        return None
+        return []
     # Before the report, so that no later mark counts as shown.
-    newest = newest_of(grades.book, grade, queued.criterion, scope)
-    for result in grades.report(grade).results:
-        if result.criterion.id == queued.criterion:
-            shown = _blind(result, newest) if scope.second else result
-            return QueuedResult(grade, shown, newest, scope.second, number)
-    return None
+    newest = {name: newest_of(grades.book, grade, name, scope) for name in criteria}
+    report = grades.report(grade)
+    return [
+        QueuedResult(
+            grade,
+            _blind(result, newest[result.criterion.id]) if scope.second else result,
+            newest[result.criterion.id],
+            scope.second,
+            number,
+            _content(result, report, grade),
+        )
+        for result in report.results
+        if result.criterion.id in newest
+    ]
+
+
+def _content(result: Result, report: Report, grade: StudentGrade) -> str:
+    """Return the words of a written answer, else the digest of the submission; empty if there is nothing to read."""
+    found = result.outcome.measured
+    if is_empty(result, report):
+        return ""
+    is_text = result.criterion.check.function is answered and isinstance(found, str) and PICTURE not in found
+    return " ".join(str(found).casefold().split()) if is_text else FILES + grade.files.digest
 
 
 def newest_of(book: Gradebook, grade: StudentGrade, criterion: str, scope: ReviewScope) -> Mark | None:

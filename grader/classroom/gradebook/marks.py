@@ -1,6 +1,6 @@
 """Manual marks of criteria and of whole submissions, stored in addition to the automatic points."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from decimal import Decimal
@@ -75,24 +75,42 @@ class NewerMarkError(Exception):
 def add_mark(
     book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, *, shown: int | None = None
 ) -> AddedMark:
-    """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
+    """Add a mark like `add_marks` to one student's result."""
+    return add_marks(book, [grade], criterion, entry, by, shown=shown)[0]
 
-    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If
-    there is a newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, their
-    grader, and the result that they were given for; the audit names who commented. Raises InputError for a criterion of
-    a student without a submission.
+
+def add_marks(
+    book: Gradebook,
+    grades: Sequence[StudentGrade],
+    criterion: str,
+    entry: Entry,
+    by: str,
+    *,
+    shown: int | None = None,
+) -> list[AddedMark]:
+    """Add a mark for a criterion, or for a whole submission (TOTAL), to the newest results of students, all or none.
+
+    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If a
+    student has a newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points,
+    their grader, and the result that they were given for; the audit names who commented. Raises InputError for a
+    criterion of a student without a submission.
     """
-    if grade.result is None and criterion != TOTAL:
-        key = grade.student.key
-        raise InputError(
-            f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
-        )
+    for grade in grades:
+        if grade.result is None and criterion != TOTAL:
+            key = grade.student.key
+            raise InputError(
+                f"{key} has submitted nothing that could be marked; "
+                f"`grader mark {key} {TOTAL} POINTS` gives a final mark"
+            )
+    added = []
     with _writing(book):
-        before = _newest_if_shown(book, grade, criterion, entry, by, shown)
-        mark = Mark(entry, by, result=grade.result)
-        if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
-        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
+        for grade in grades:
+            before = _newest_if_shown(book, grade, criterion, entry, by, shown)
+            mark = Mark(entry, by, result=grade.result)
+            if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
+                mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
+            added.append(AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before))
+    return added
 
 
 def restore_mark(
@@ -136,7 +154,7 @@ def _newest_if_shown(
     before = (
         newest_second(book, grade, criterion, by) if entry.kind == "second" else newest_mark(book, grade.id, criterion)
     )
-    if before is not None and shown is not None and before.id != shown:
+    if before is not None and shown is not None and before.id > shown:
         raise NewerMarkError(before)
     return before
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.agreement import Agreement, agreement
 from grader.classroom.gradebook.attention import Attention, attention
+from grader.classroom.gradebook.choices import ChoiceCount, choice_counts
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import CommonFix, common_fixes
@@ -91,6 +92,7 @@ class ClassSummary(NamedTuple):
     evidence_only: Counter[str]
     agreement: Agreement
     late: LateTotals
+    choices: tuple[ChoiceCount, ...]
 
 
 def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
@@ -108,4 +110,5 @@ def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
         count_evidence_only(book, rubric),
         agreement(book, rubric),
         late_totals(grades),
+        choice_counts(book, rubric),
     )

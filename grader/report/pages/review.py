@@ -11,45 +11,68 @@ from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
 from grader.report.pages.shell import Assets, render_page
-from grader.report.review import files_text, marked_text, message_text, place_text, who
+from grader.report.review import (
+    answer_lines,
+    choice_words,
+    files_text,
+    marked_text,
+    message_text,
+    place_text,
+    together_text,
+    who,
+    who_together,
+)
 from grader.text import counted, counted_points, format_points, shell_quoted
 
-_SOURCES = "img-src 'self'; connect-src 'self'"
+_SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
 _DECIMALS = Decimal("0.0001")
 
 
 class Place(NamedTuple):
-    """The number of an item in the queue, from 1; whether this review has marked it; whether it has marked any item."""
+    """The number of an item in the queue, from 1, and its address; whether this review has marked it, or any item.
+
+    `filters` are the lists to filter by: the name of each, its words, and its values with their words and whether one
+    is chosen. `students` are the keys and names to find one by.
+    """
 
     number: int
     total: int
+    address: str
     is_own: bool
     can_undo: bool
+    filters: Sequence[tuple[str, str, Sequence[tuple[str, str, bool]]]] = ()
+    students: Sequence[tuple[str, str]] = ()
 
 
 def item_page(
     item: QueuedResult, place: Place, found: Sequence[EmbeddedPicture | NotShown], comments: Sequence[str], notice: str
 ) -> str:
-    """Return the page of an item. The addresses of its pictures are NUMBER/picture/1 and so on."""
-    criterion, outcome = item.result.criterion, item.result.outcome
+    """Return the page of an item. The addresses of its pictures are ADDRESS/picture/1 and so on."""
+    criterion = item.result.criterion
     given, comment = item.result.manual_mark, item.result.comment
-    answer = outcome.measured if isinstance(outcome.measured, str) else ""
+    pictures, answer = [*_pictures(found, place.address)], answer_lines(item)
     values = {
-        "title": f"{place.number} of {place.total}: {who(item)}, {criterion.title}",
+        "title": f"{place.number} of {place.total}: {who_together(item)}, {criterion.title}",
         "place": place,
-        "who": who(item),
+        "who": who_together(item),
+        "together": together_text(item),
+        "members": [who(one) for one in item.others and item.members],
         "criterion": criterion,
         "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
-        "score": "" if item.is_second else _grade(item.grade),
-        "message": message_text(item),
-        "answer": _lines(answer),
-        "model": _lines(criterion.answer),
+        "score": "" if item.is_second or item.others else _grade(item.grade),
+        "message": "" if item.is_empty_group else message_text(item),
+        "answer": answer,
+        "model": criterion.answer.strip("\n").splitlines(),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
-        "pictures": [*_pictures(found, place.number)],
+        "pictures": [picture for picture in pictures if picture.height],
+        "documents": [picture for picture in pictures if not picture.height],
+        "is_open": not answer and not any(picture.height for picture in pictures),
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
+        "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
-        "choices": _choices(criterion),
+        "buttons": _buttons(criterion),
+        "choices": choice_words(criterion),
         "comments": [" ".join(comment.split()) for comment in comments],
         "notice": notice,
     }
@@ -59,13 +82,21 @@ def item_page(
         "points": format_points(given.points) if given is not None else "",
         "comment": given.comment if given is not None else comment.text if comment is not None else "",
         "comments": [*comments],
+        "choices": [[text, float(points)] for text, points in criterion.choices.items()],
+        "maximum": float(criterion.points),
     }
     return _page("review.html", values, data)
 
 
 def stamp_of(item: QueuedResult) -> str:
-    """Return a text that tells whether an item is the one that a page shows, without the name of its student."""
-    return sha256_of(f"{item.grade.student.key}\n{item.result.criterion.id}\n{item.grade.result}".encode())[:16]
+    """Return a text that tells whether an item is the one that a page shows, without the names of its students."""
+    results = (f"{one.grade.student.key}\n{one.grade.result}" for one in item.members)
+    return sha256_of("\n".join((item.result.criterion.id, *results)).encode())[:16]
+
+
+def has_report(item: QueuedResult) -> bool:
+    """Return whether the student's page may be shown: it has the name, and the marks of others."""
+    return item.number is None and not item.is_second and not item.is_empty_group
 
 
 def _grade(grade: StudentGrade) -> str:
@@ -77,14 +108,15 @@ def _grade(grade: StudentGrade) -> str:
     return f"{format_points(grade.total)} of {format_points(grade.out_of)} {how}"
 
 
-def end_page(marked: int, left: int, gradebook: str, notice: str) -> str:
+def end_page(marked: int, left: int, place: Place, gradebook: str, notice: str) -> str:
     """Return the page after the last item: the numbers of marked and remaining items, and the next command."""
     values = {
-        "title": "Nothing needs manual grading" if not left else f"{counted(left, 'item')} left",
-        "summary": f"{counted(marked, 'item')} marked in this review.",
+        "title": "Nothing needs manual grading" if not left else f"{counted(left, 'mark')} left",
+        "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
+        "place": place,
+        "is_filtered": any(name and is_chosen for *_, rows in place.filters for name, _, is_chosen in rows),
         "command": f"grader export csv --gradebook {shell_quoted(gradebook)}",
-        "can_undo": marked > 0,
         "notice": notice,
     }
     return _page("review-end.html", values, {})
@@ -102,20 +134,24 @@ def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
     return render_page(template, shared, data, Assets("review.css", "review.js", sources=_SOURCES))
 
 
-def _pictures(found: Sequence[EmbeddedPicture | NotShown], number: int) -> Iterator[tuple[str, str, int, int]]:
-    """Yield the address, the words, the width and the height of each picture."""
+class _Picture(NamedTuple):
+    """A picture on the page; a PDF has no width and height."""
+
+    address: str
+    words: str
+    width: int
+    height: int
+
+
+def _pictures(found: Sequence[EmbeddedPicture | NotShown], address: str) -> Iterator[_Picture]:
     for index, one in enumerate(found, 1):
         if isinstance(one, EmbeddedPicture):
-            yield f"{number}/picture/{index}", one.words, one.width, one.height
+            page = "" if one.height else f"#page={one.page}"
+            yield _Picture(f"{address}/picture/{index}{page}", one.words, one.width, one.height)
 
 
-def _choices(criterion: Criterion) -> list[tuple[str, str]]:
+def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
     half = criterion.points / 2
     named = {Decimal(0): "none", half: "half", criterion.points: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
-
-
-def _lines(text: str) -> list[str]:
-    """Return the lines of a text without empty ones at its beginning and end."""
-    return text.strip("\n").splitlines()

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_result
+from grader.classroom.gradebook.manual_queue import QueuedCriterion, manual_grading_queue, queued_results
 from grader.classroom.gradebook.marks import (
     TAKE_BACK,
     WITHDRAWN,
@@ -50,8 +50,7 @@ def put(standings: Grades, key: str, name: str, points: str) -> None:
 
 def is_open(standings: Grades, queued: QueuedCriterion) -> bool:
     """Return whether a queued criterion still needs manual grading."""
-    found = queued_result(standings, queued)
-    assert found is not None
+    (found,) = queued_results(standings, queued.key, [queued.criterion])
     return found.result.is_open
 
 

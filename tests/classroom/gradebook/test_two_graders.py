@@ -21,7 +21,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.gradebook.run_writer import save_student
-from grader.classroom.review import ReviewSession
+from grader.classroom.review.session import ReviewSession
 from grader.classroom.students import Student
 from grader.cli.terminal import show_class
 from grader.errors import InputError
@@ -201,7 +201,7 @@ class TwoGraders(RuleBasedStateMachine):
                         session.next()
                     case "back":
                         session.back()
-                    case "undo" if session.can_undo:
+                    case "undo" if session.own.can_undo:
                         self._undo(session, model, given, item, by)
                     case "mark" | "other" if item is not None and session.item is not None:
                         points = Decimal(value) * session.item.result.criterion.points

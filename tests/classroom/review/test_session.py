@@ -11,7 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope, reusable_comments
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.classroom.review import ReviewSession
+from grader.classroom.review.session import ReviewSession
 from grader.classroom.typed_names import criterion_of
 from tests.classroom.gradebooks import graded_as, lab, mark, record_run
 
@@ -23,7 +23,7 @@ KEYS = ("ash", "birch", "cedar")
 def book(tmp_path: Path) -> Iterator[Gradebook]:
     """Yield a gradebook with three submissions that have an open essay and picture each."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, LAB, [graded_as(LAB, key, "ppp??") for key in KEYS])
+        record_run(book, LAB, [graded_as(LAB, key, "ppp??", key) for key in KEYS])
         yield book
 
 
@@ -99,7 +99,7 @@ def test_an_undo_never_overwrites_a_newer_mark(book: Gradebook) -> None:
     count = len(entries(book))
     with pytest.raises(NewerMarkError):
         session.undo()
-    assert (len(entries(book)), session.marked, session.can_undo) == (count, 0, False)
+    assert (len(entries(book)), session.marked, session.own.can_undo) == (count, 0, False)
 
 
 def test_reusable_comments(book: Gradebook) -> None:

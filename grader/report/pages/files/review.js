@@ -1,19 +1,20 @@
 "use strict";
 {
   const find = (id) => document.getElementById(id);
-  let data, form, points, comment, error, newer, large, picture, help, pictures, choices;  // of the page that is shown
-  let shown, busy = false, leaving = "", current = 0;
+  let data, form, points, comment, error, newer, large, picture, help, finder, pictures, buttons;  // of the page that is shown
+  let shown, busy = false, leaving = "", current = 0, showsReport = false;
   let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
   const say = (text) => { error.textContent = text; };
   const isChanged = () => form !== null && (points.value !== data.points || comment.value !== data.comment);
 
-  async function send(action) {
+  async function send(action, more = {}) {
     if (busy) return;
-    const lost = form && JSON.stringify([action, points.value, comment.value]);  // each text has its own warning
+    const lost = form && JSON.stringify([action, more, points.value, comment.value]);  // each text has its own warning
     if (action !== "mark" && isChanged() && leaving !== lost) {
       leaving = lost;
       say(`Not saved. Press the same key again to leave without saving (${action}).`);
+      for (const list of document.querySelectorAll("[data-filter]")) list.value = list.querySelector("[selected]").value;
       return;
     }
     busy = true;
@@ -21,7 +22,7 @@
     find("main").inert = true;
     try {
       const mark = { points: points?.value, comment: comment?.value, shown, item: data.item };
-      const sent = action === "mark" ? { do: action, ...mark } : { do: action };
+      const sent = { do: action, ...(action === "mark" ? mark : more) };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
       if (answer.go) show(answer.go, await (await fetch(answer.go)).text());
@@ -79,7 +80,7 @@
     find("keep").focus();
   }
 
-  function keep() { discard(); send("next"); }
+  function keep() { discard(); send("keep"); }
   function replace() { shown = Number(newer.dataset.shown); newer.hidden = true; send("mark"); }
   function discard() { points.value = data.points; comment.value = data.comment; }
 
@@ -93,8 +94,41 @@
     const text = data.comments[number - 1];
     if (text === undefined) return;
     if (!comment.value.includes(text)) comment.value += (comment.value && !comment.value.endsWith(" ") ? " " : "") + text;
-    comment.focus();
+    comment.blur();  // the next digit is another comment
   }
+
+  const separator = /\s*[;\n]\s*/;
+  const chosen = () => { const parts = comment.value.split(separator); return data.choices.filter(([text]) => parts.includes(text)); };
+
+  /** Add a usual deduction to the comment, or remove it, and take what the comment has from the maximum. */
+  function choose(number) {
+    const choice = data.choices[number - 1];
+    if (!choice) return;
+    const others = comment.value.split(separator).filter((part) => part && part !== choice[0]);
+    const isNew = !chosen().includes(choice);
+    comment.value = (isNew ? [...chosen().map(([text]) => text), choice[0], ...others.filter((part) => data.choices.every(([text]) => text !== part))] : others).join("; ");
+    points.value = Number(Math.max(0, chosen().reduce((left, [, cost]) => left + cost, data.maximum)).toFixed(4));
+    showChosen();
+  }
+
+  function showChosen() {
+    const texts = chosen();
+    for (const button of document.querySelectorAll("[data-choice]")) button.ariaPressed = String(texts.includes(data.choices[button.dataset.choice - 1]));
+  }
+
+  function loadFrame(details) {
+    for (const frame of details.querySelectorAll("iframe[data-src]")) {
+      if (details.open && !frame.src) frame.src = frame.dataset.src;
+    }
+    if (details.id === "report") showsReport = details.open;
+  }
+
+  function toggle(selector) {
+    const details = document.querySelector(selector);
+    if (details) details.open = !details.open;
+  }
+
+  function findStudent() { if (finder) { finder.showModal(); find("student").select(); } }
 
   function enlarge(number) {
     if (!pictures.length) return;
@@ -115,22 +149,31 @@
 
   const keys = {
     n: () => send("next"), s: () => send("next"), b: () => send("back"), u: () => send("undo"), z: zoom,
-    f: () => setPoints(choices.at(-1)), h: () => setPoints(choices.find((button) => button.dataset.name === "half")),
+    f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
+    o: () => send("split"), v: () => toggle("#report"), d: () => toggle(".document:not(#report)"), "/": findStudent,
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
-  const keysOfEnd = { b: keys.b, u: keys.u };
+  const keysOfEnd = { b: keys.b, u: keys.u, "/": findStudent };
 
   function onKey(event) {
-    if (event.ctrlKey || event.altKey || event.metaKey || event.isComposing) return;
-    const pressed = { key: event.key, code: event.code, shiftKey: event.shiftKey, repeat: event.repeat };
+    if (event.ctrlKey || event.metaKey || event.isComposing || (event.altKey && !isChoice(event))) return;
+    const { key, code, altKey, shiftKey, repeat } = event;
+    const pressed = { key, code, altKey, shiftKey, repeat };
     if (busy ? typed.push(pressed) : act(pressed, event.target)) event.preventDefault();
   }
+
+  const isChoice = (event) => event.altKey && /^Digit[1-9]$/.test(event.code);
 
   /** Do what a key means; return whether it means anything but itself. */
   function act(event, target) {
     const isOther = event.key.length === 1 && event.key > "~" && event.code.startsWith("Key");  // a layout without Latin letters
     const key = isOther ? event.code.slice(3).toLowerCase() : event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    if (finder?.open) return false;
+    if (event.altKey) {
+      if (form && !help.open && !large.open && !event.repeat) choose(Number(event.code.slice(-1)));
+      return true;
+    }
     if (help?.open) {
       if (key === "?") help.close();
       return key === "?";
@@ -146,14 +189,14 @@
       if (!event.repeat) send("mark");
       return true;
     }
-    if (target === comment) return false;
+    if (target === comment || target instanceof HTMLSelectElement) return false;
     const action = (form ? keys : keysOfEnd)[key];
     if (action) {
       if (!event.repeat) action();
       return true;
     }
     if (form && !isField && /^[0-9]$/.test(key)) {
-      key === "0" ? setPoints(choices[0]) : insert(Number(key));
+      key === "0" ? setPoints(buttons[0]) : insert(Number(key));
       return true;
     }
     return target === points && /^[a-z]$/.test(key);
@@ -163,11 +206,16 @@
   function start() {
     data = JSON.parse(find("data").textContent);
     [form, points, comment, error, newer] = ["form", "points", "comment", "error", "newer"].map(find);
-    [large, picture, help] = ["large", "large-picture", "help"].map(find);
+    [large, picture, help, finder] = ["large", "large-picture", "help", "find"].map(find);
     pictures = [...document.querySelectorAll("[data-picture]")];
-    choices = [...document.querySelectorAll("[data-points]")];
+    buttons = [...document.querySelectorAll("[data-points]")];
     [shown, leaving, current] = [data.shown, "", 0];
     for (const button of document.querySelectorAll("[data-do]")) button.addEventListener("click", () => send(button.dataset.do));
+    const filters = [...document.querySelectorAll("[data-filter]")];
+    const wanted = () => Object.fromEntries([["criterion", ""], ["section", ""], ["state", ""], ...filters.map((list) => [list.dataset.filter, list.value])]);
+    for (const list of filters) list.addEventListener("change", () => send("filter", wanted()));
+    find("find-button")?.addEventListener("click", findStudent);
+    find("find-form")?.addEventListener("submit", () => send("find", { student: find("student").value }));
     const status = find("status");
     if (status?.textContent) {  // screen readers read a live region when it changes
       const text = status.textContent;
@@ -178,14 +226,22 @@
     points.value = data.points;
     comment.value = data.comment;
     form.addEventListener("submit", (event) => { event.preventDefault(); send("mark"); });
-    for (const button of choices) button.addEventListener("click", () => setPoints(button));
+    for (const button of buttons) button.addEventListener("click", () => setPoints(button));
+    for (const button of document.querySelectorAll("[data-choice]")) button.addEventListener("click", () => choose(button.dataset.choice));
+    for (const details of document.querySelectorAll(".document")) {
+      details.addEventListener("toggle", () => loadFrame(details));
+      if (details.id === "report") details.open = showsReport;
+      loadFrame(details);
+    }
+    comment.addEventListener("input", showChosen);
+    showChosen();
     for (const button of document.querySelectorAll("[data-comment]")) button.addEventListener("click", () => insert(Number(button.dataset.comment)));
     pictures.forEach((button, number) => button.addEventListener("click", () => enlarge(number)));
     large.addEventListener("click", zoom);
     find("keep").addEventListener("click", keep);
     find("replace").addEventListener("click", replace);
     find("help-button").addEventListener("click", () => help.showModal());
-    points.focus();
+    points.focus({ preventScroll: true });
     points.select();
   }
 

@@ -1,0 +1,1 @@
+"""A review: one person grades the items that need manual grading."""

@@ -1,0 +1,83 @@
+"""The items of a review: equal answers and a team's submission are one item, and similar answers are neighbours."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from functools import reduce
+from operator import or_
+from typing import NamedTuple
+from zlib import crc32
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import FILES, ReviewScope, manual_grading_queue, queued_results
+from grader.files.reading import sha256_of
+
+_BITS = 1024  # of a set of words
+_MAX_COMPARED = 1000  # answers to a question: each is compared with all others
+
+
+class QueuedItem(NamedTuple):
+    """A criterion of the students that one mark serves.
+
+    `content` is what their results have in common, empty if there is nothing to read. An item of one student who is
+    also part of an item of several has the position of that one, `whole`.
+    """
+
+    criterion: str
+    keys: tuple[str, ...]
+    content: str = ""
+    whole: int | None = None
+
+
+def review_items(grades: Grades, scope: ReviewScope, numbers: Mapping[str, int]) -> tuple[QueuedItem, ...]:
+    """Return the items of a review: first those with something to read, then those without, one for each criterion.
+
+    Each item of several students is followed by one for each of them. The order says nothing about the names of
+    students who have numbers.
+    """
+    queued = defaultdict[str, list[str]](list)
+    for key, criterion in manual_grading_queue(grades, scope):
+        queued[key].append(criterion)
+    groups = defaultdict[str, dict[str, list[str]]](dict)  # of each criterion, by content
+    for key in sorted(queued, key=lambda key: (numbers.get(key, 0), key)):
+        for one in queued_results(grades, key, queued[key], scope):
+            groups[one.result.criterion.id].setdefault(one.content, []).append(key)
+    items: list[QueuedItem] = []
+    for criterion, content, keys in _in_order([row.id for row in grades.newest_rubric().criteria], groups):
+        whole = len(items)
+        items.append(QueuedItem(criterion, tuple(keys), content))
+        items += [QueuedItem(criterion, (key,), content, whole) for key in keys if len(keys) > 1]
+    return tuple(items)
+
+
+def _in_order(
+    criteria: Sequence[str], groups: Mapping[str, Mapping[str, list[str]]]
+) -> Iterator[tuple[str, str, list[str]]]:
+    for criterion in filter(groups.__contains__, criteria):
+        found = groups[criterion]
+        texts = similar_order([content for content in found if content and not content.startswith(FILES)])
+        contents = (*texts, *(content for content in found if content.startswith(FILES)))
+        yield from ((criterion, content, found[content]) for content in contents)
+    yield from ((criterion, "", groups[criterion][""]) for criterion in criteria if "" in groups.get(criterion, ()))
+
+
+def similar_order(texts: Sequence[str]) -> list[str]:
+    """Return texts in an order in which each is followed by the one, of those that are left, that shares most words.
+
+    The first stays the first.
+    """
+    left = [(text, reduce(or_, (1 << crc32(word.encode()) % _BITS for word in text.split()), 0)) for text in texts]
+    if len(left) > _MAX_COMPARED:
+        return [*texts]
+    order, last = list[str](), 0
+    while left:
+        shares = [(words & last).bit_count() / ((words | last).bit_count() or 1) for _, words in left]
+        text, last = left.pop(shares.index(max(shares)))
+        order.append(text)
+    return order
+
+
+def student_numbers(book: Gradebook) -> dict[str, int]:
+    """Return a number for each student with a submission, in an order that says nothing about names."""
+    keys = [str(key) for (key,) in book.rows("SELECT key FROM grade WHERE result IS NOT NULL")]
+    return {key: number for number, key in enumerate(sorted(keys, key=lambda key: sha256_of(key.encode())), 1)}
