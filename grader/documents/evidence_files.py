@@ -14,7 +14,7 @@ from grader.values import dataclass
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 
 
-_EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
+EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 
 
 _COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
@@ -60,7 +60,7 @@ class LabelledFile(NamedTuple):
 
 def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
     """Return every picture, video and PDF of a submission, with its labels."""
-    return tuple(_label(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
+    return tuple(_label(file) for file in tree.files.values() if file.suffix in EVIDENCE)
 
 
 def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:

@@ -16,32 +16,25 @@ from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, Re
 from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review.filter import ITEM_STATES, ReviewFilter
 from grader.classroom.review.session import ReviewSession
-from grader.classroom.typed_names import read_points
 from grader.documents.pictures import EmbeddedPicture, NotShown
-from grader.errors import GraderError, InputError
+from grader.errors import GraderError
 from grader.report.pages.review import Place, end_page, error_page, has_report, item_page, stamp_of
 from grader.report.pages.student import render_html
 from grader.report.review import mark_text
 from grader.usecases.class_reports import report_of
 from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
-from grader.usecases.review import NOTHING, review_summary, undo
+from grader.usecases.review import NOTHING, review_summary
+from grader.usecases.review_actions import follow, read_action
 from grader.usecases.review_pictures import item_pictures
 from grader.usecases.terminal import Terminal
 
 Album = tuple[EmbeddedPicture | NotShown, ...]
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
+_HTML, _JSON = "text/html; charset=utf-8", "application/json"
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
 _PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
-# What the page sends besides `do`, with the type of each value.
-_ACTIONS: Mapping[str, Mapping[str, type]] = {
-    "mark": {"points": str, "comment": str, "shown": int, "item": str},
-    "filter": {"criterion": str, "section": str, "state": str},
-    "find": {"student": str},
-    **{name: {} for name in ("next", "back", "undo", "keep", "split")},
-}
-_HTML, _JSON = "text/html; charset=utf-8", "application/json"
 
 
 class ReviewPage:
@@ -132,7 +125,7 @@ class ReviewPage:
 
     def _act(self, request: Request) -> Response:
         """Execute an action of the page: next, back, undo, or a mark."""
-        sent = _read(request.body or b"")
+        sent = read_action(request.body or b"")
         position = self._position(request.path[0]) if len(request.path) == 1 else None
         if request.path == ("end",):
             position = len(self.session.queue)
@@ -142,31 +135,10 @@ class ReviewPage:
         try:
             if sent["do"] == "mark" and sent["item"] != stamp_of(self.session.current_item()):
                 return _json({"error": _CHANGED, "go": request.path[0]})
-            self._follow(sent)
+            self._notice = follow(self.session, sent)
         except NewerMarkError as error:
             return _json({"newer": mark_text(error.mark), "shown": error.mark.id})
         return _json({"go": self._address()})
-
-    def _follow(self, sent: Mapping[str, Any]) -> None:
-        session = self.session
-        match sent["do"]:
-            case "mark":
-                criterion = session.current_item().result.criterion
-                points = read_points(sent["points"], criterion.id, criterion.points)
-                session.mark(points, sent["comment"].strip(), sent["shown"])
-                session.next()
-            case "back":
-                if not session.back():
-                    raise InputError("this is the first item")
-            case "undo":
-                said = undo(session)
-                self._notice = f"{said[0].upper()}{said[1:]}"
-            case "find":
-                session.find(sent["student"].strip())
-            case "filter":
-                session.show_only(ReviewFilter(*(sent[name] for name in ReviewFilter._fields)))
-            case simple:
-                {"next": session.next, "keep": session.stay, "split": session.split}[simple]()
 
     def _album(self, position: int, item: QueuedResult) -> "Future[Album]":
         """Return the pictures of an item. Another thread reads them, so that marks are not delayed."""
@@ -187,18 +159,6 @@ class ReviewPage:
         """Return the notice of the last action, once."""
         said, self._notice = self._notice, ""
         return said
-
-
-def _read(body: bytes) -> dict[str, Any] | None:
-    """Return the action that the page has sent, or None if it is malformed."""
-    try:
-        sent = json.loads(body)
-    except (ValueError, RecursionError):
-        return None
-    wanted = _ACTIONS.get(str(sent.get("do"))) if isinstance(sent, dict) else None
-    if wanted is None or not all(type(sent.get(name)) is kind for name, kind in wanted.items()):
-        return None
-    return sent if sent.get("state", "") in ITEM_STATES else None
 
 
 def _is_number(text: str) -> bool:

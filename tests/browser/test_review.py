@@ -12,6 +12,7 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from tests.browser.conftest import OpenPage
 from tests.checks.submissions import png
+from tests.classroom.desk_class import ANSWERS, PICTURES, STUDENTS, make_desk_class
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.review_server import Review, running
 
@@ -61,10 +62,10 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return graded_in(top, f'id,name\nash,"{XSS[1].replace(chr(34), chr(34) * 2)}"\nbirch,{XSS[4]}\n')
 
 
-def graded_in(top: Path, roster: str = "id,name\nash,Ash Ek\n") -> Path:
+def graded_in(top: Path, roster: str = "id,name\nash,Ash Ek\n", text: str = "") -> Path:
     """Grade the class in a folder and return the gradebook."""
     (top / "roster.csv").write_text(roster)
-    (top / "small.toml").write_text(lab_text())
+    (top / "small.toml").write_text(text or lab_text())
     done = batch(top)
     assert done.returncode == 0, done.stderr
     return top / "book.db"
@@ -74,6 +75,23 @@ def graded_in(top: Path, roster: str = "id,name\nash,Ash Ek\n") -> Path:
 def book(graded: Path, tmp_path: Path) -> Path:
     """Return a copy of the gradebook of the class of five."""
     return Path(shutil.copy(graded, tmp_path))
+
+
+@pytest.fixture(scope="module")
+def chosen_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a class of two whose essay has usual deductions."""
+    top = tmp_path_factory.mktemp("chosen")
+    for key in KEYS[:2]:
+        write_submission(top / "class" / key)
+    head, tail = lab_text().split('check = "answered"', 1)
+    choices = 'choices = { "no reason" = -2, "too short" = -0.5 }'
+    return graded_in(top, text=f'{head}{choices}\ncheck = "answered"{tail}')
+
+
+@pytest.fixture
+def chosen(chosen_class: Path, tmp_path: Path) -> Path:
+    """Return a copy of the gradebook of the class with usual deductions."""
+    return Path(shutil.copy(chosen_class, tmp_path))
 
 
 @pytest.fixture
@@ -169,7 +187,7 @@ def test_hostile_text_stays_text(open_page: Open, hostile: Path) -> None:
             page = open_page(f"{review.url}{number}").page
             assert page.title().startswith(f"{number} of 4: ")
             assert page.locator("script").count() == 2
-            assert page.locator("a:not(.skip), svg, iframe, [onerror], [onload]").count() == 0
+            assert page.locator("a:not(.skip, [rel]), svg, iframe:not([sandbox]), [onerror], [onload]").count() == 0
             text = page.locator("body").inner_text()
             for line in corpus[:3]:
                 assert (line if number < 3 else line.replace("/", "|")) in text
@@ -279,3 +297,71 @@ def test_an_item_that_has_changed_is_not_marked(open_page: Open, review: Review,
     )
     assert page.url.endswith("/1")
     assert marks(book) == []
+
+
+@pytest.mark.slow
+def test_a_class_by_keys_alone(open_page: Open, tmp_path: Path) -> None:
+    """121 students, 40 with answers: equal answers are one item, those without are three, and each mark is two keys."""
+    make_desk_class(tmp_path)
+    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--roster", tmp_path / "roster.csv")
+    assert done.returncode == 0, done.stderr
+    pressed = 0
+    with running(tmp_path / "book.db") as review:
+        page = open_page(review.url).page
+        while not page.url.endswith("/end"):
+            is_empty = page.locator("strong:has-text('No ')").count()
+            here = page.url
+            press(page, f"{'0' if is_empty else 'f'} Enter")
+            page.wait_for_function("here => location.href !== here", arg=here)
+            pressed += 2
+    query = "SELECT criterion, points / 10000.0, count(*) FROM mark GROUP BY 1, 2 ORDER BY 1, 2"
+    with Gradebook(tmp_path / "book.db") as opened:
+        given = list(opened.rows(query))
+    assert given == [
+        ("answer-floating-link", 0, STUDENTS - ANSWERS), ("answer-floating-link", 4, ANSWERS),
+        ("answer-launch-nodes", 0, STUDENTS - ANSWERS), ("answer-launch-nodes", 4, ANSWERS),
+        ("evidence-webcam", 0, STUDENTS - PICTURES), ("evidence-webcam", 2, PICTURES),
+    ]  # fmt: skip
+    assert pressed < 0.25 * 2 * 3 * STUDENTS
+
+
+def test_deductions(open_page: Open, chosen: Path) -> None:
+    """A key gives the points and the comment, and takes both back; free comments stay; digits after Esc are comments."""
+    with running(chosen, "essay") as review:
+        page = open_page(review.url).page
+        press(page, "c 'see me' Alt+1 Alt+2")
+        assert page.locator("#points").input_value() == "1.5"
+        assert page.locator("#comment").input_value() == "no reason; too short; see me"
+        press(page, "Alt+2")
+        assert page.locator("#comment").input_value() == "no reason; see me"
+        assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == ["Alt+1 no reason (-2)"]
+        press(page, "Enter", "2")
+        press(page, "Escape 1 1 2 Enter")
+        page.wait_for_function("() => document.getElementById('error').textContent.includes('points are a number')")
+        assert page.locator("#comment").input_value() == "no reason; see me"
+    assert marks(chosen) == [("ash", "essay", 2, "no reason; see me")]
+
+
+def test_filters_students_and_the_report(open_page: Open, review: Review) -> None:
+    """A list shows one question, `/` goes to a student, `v` shows the report, which cannot reach the review."""
+    page = open_page(review.url).page
+    page.locator("[data-filter=criterion]").select_option("picture")
+    page.wait_for_url("**/6")
+    assert page.locator(".place").inner_text().strip() == "1 of 5"
+    press(page, "/ 'elm' Enter", "10")
+    press(page, "/ 'nobody' Enter")
+    page.wait_for_function("() => document.getElementById('error').textContent.includes('no student')")
+    press(page, "v")
+    report = page.frame_locator("#report iframe")
+    report.locator("h1").wait_for()
+    frame = page.frame(url=re.compile("/report$"))
+    assert frame is not None
+    assert frame.evaluate("fetch('10', {method: 'POST'}).then(() => 'sent', () => 'refused')") == "refused"
+
+
+def test_one_column_below_900_pixels(open_page: Open, review: Review) -> None:
+    """The answer has the width of the window."""
+    for width in (400, 683, 890):
+        page = open_page(review.url, viewport={"width": width, "height": 800}).page
+        box = page.locator(".answers").bounding_box()
+        assert box is not None and box["width"] > width - 40

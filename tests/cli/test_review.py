@@ -1,7 +1,9 @@
 """grader review: the questions shown, the accepted answers, and that a later review continues."""
 
+import json
 import os
 import pty
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,7 +21,7 @@ from grader.cli.terminal import show_class
 from grader.report.screen import Screen
 from grader.usecases.review import review as review_class
 from grader.usecases.terminal import Terminal
-from tests.classroom.gradebooks import ENVIRONMENT, grade_without, grader, mark
+from tests.classroom.gradebooks import ENVIRONMENT, batch, grade_without, grader, lab_text, make_class, mark
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -316,3 +318,42 @@ def test_the_last_item_can_be_undone(top: Path) -> None:
     assert done.stderr == "grader: u to undo, b to go back, Enter to end\ngrader: undone\n"
     assert [points for *_, points, _ in marks(top)] == [1, None, 0.5, 0.25]
     assert end not in review(top, "s\ns\ns\n").stdout
+
+
+def test_several_students_at_once(top: Path) -> None:
+    """One item for all without an answer: their names, the points for all, one by one, and a jump to one of them."""
+    for key in ("ben", "anna", "emil"):
+        for criterion in ("essay", "picture"):
+            grader("mark", key, criterion, "-", "--gradebook", top / "book.db")
+    shutil.copytree(top / "class" / "anna", top / "class" / "dora")
+    (top / "class" / "cleo.zip").unlink()
+    shutil.copy(top / "class" / "ben.urdf", top / "class" / "cleo.urdf")
+    assert batch(top).returncode == 0
+    done = review(top, "/cleo\no\no\ns\n1\n/ben\nq\n", COLUMNS="200")
+    assert "6 of 7  2 students: About essay (4 points)\nNo answer:\n  Ben Oh (ben); Cleo Ray (cleo)\n" in done.stdout
+    assert "points for all 2 students, 0 to 4 (? for help): " in done.stdout
+    assert done.stderr == "grader: this item is of one student\n"
+    assert marks(top)[-1][:3] == ("cleo", "essay", 1)
+    together = review(top, "0\n0\n0\n0\n", "--criterion", "essay")
+    assert together.stdout.endswith("4 marked, 0 left\n"), together.stdout[-300:]
+    assert (
+        "1 of 3  2 students" in together.stdout
+        and "The same answer:\n  Anna Ek (anna); Dora Fi (dora)" in together.stdout
+    )
+
+
+def test_usual_deductions(tmp_path: Path) -> None:
+    """`d1 d2` takes their points from the maximum and gives their comments; `stats` counts each."""
+    make_class(tmp_path)
+    head, tail = lab_text().split('check = "answered"', 1)
+    choices = 'choices = { "no reason" = -2, "too short" = -3 }\n'
+    (tmp_path / "small.toml").write_text(f'{head}{choices}check = "answered"{tail}')
+    assert batch(tmp_path).returncode == 0
+    done = review(tmp_path, "d3\nd1 see me\nD1 d2\nd4\nq\n", "--criterion", "essay")
+    assert "Usual deductions:\n  d1 no reason (-2)\n  d2 too short (-3)\n" in done.stdout
+    assert done.stderr == "grader: there is no deduction d3\ngrader: there is no deduction d4\n"
+    assert [row[2:] for row in marks(tmp_path)] == [(2, "no reason; see me"), (0, "no reason; too short")]
+    stats = grader("stats", "--gradebook", tmp_path / "book.db").stdout
+    assert "Usual deductions\n     2  essay: no reason (-2)\n     1  essay: too short (-3)\n" in stats
+    data = json.loads(grader("stats", "--gradebook", tmp_path / "book.db", "--format", "json").stdout)
+    assert data["choices"][0] == {"criterion": "essay", "text": "no reason", "points": -2, "students": 2}

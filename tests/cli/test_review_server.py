@@ -20,8 +20,18 @@ from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.grading.rubric import Rubric
 from grader.usecases import local_server
 from grader.usecases.local_server import HOST, MAX_BODY
-from tests.classroom.gradebooks import ENVIRONMENT, PNG, grade_without, grader, refusal
+from tests.classroom.gradebooks import (
+    ENVIRONMENT,
+    PNG,
+    batch,
+    grade_without,
+    grader,
+    lab_text,
+    refusal,
+    write_submission,
+)
 from tests.command_line import HANG_TIMEOUT
+from tests.documents.files import pdf
 from tests.review_server import Review, running
 from tests.samples import ROOT
 
@@ -390,3 +400,66 @@ def test_options(book: Path, review: Review) -> None:
     for number in range(1, ITEMS + 1):
         review.mark(str(number), "1")
     assert grader(*html).stdout == "nothing needs manual grading\n"
+
+
+def test_the_report_of_a_student(review: Review, book: Path) -> None:
+    """It is the student's page, in a sandbox; not in an anonymous review or a second one, nor for several students."""
+    found = review.get("1/report")
+    assert (found.status, found.headers["content-security-policy"]) == (
+        200,
+        "sandbox allow-scripts; frame-ancestors 'self'",
+    )
+    assert "<h1>A small lab</h1>" in found.text and "Because of the roots." not in found.text
+    assert 'data-src="1/report"' in review.get("1").text
+    with running(book, anonymous=True) as anonymous:
+        assert anonymous.get("1/report").status == 404
+        assert "/report" not in anonymous.get("1").text.partition("<script>")[0]
+
+
+def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
+    """The page of an answer in a PDF has the file, opened on its page; what is no PDF is not served."""
+    (tmp_path / "class").mkdir()
+    pages = ["Title"], ["Task 1: Step 1", "The roots."]
+    (tmp_path / "class" / "ash.pdf").write_bytes(pdf(*pages))
+    write_submission(tmp_path / "class" / "birch")
+    (tmp_path / "class" / "birch" / "screen.png").rename(tmp_path / "class" / "birch" / "screen.pdf")
+    shutil.move(tmp_path / "class" / "ash.pdf", tmp_path / "class" / "birch" / "report.pdf")
+    (tmp_path / "class" / "birch" / "answers.md").unlink()
+    (tmp_path / "roster.csv").write_text("id\nbirch\n")
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    with running(tmp_path / "book.db") as review:
+        assert 'data-src="1/picture/1#page=2&amp;navpanes=0"' in review.get("1").text
+        found = review.get("1/picture/1")
+        assert (found.status, found.headers["content-type"]) == (200, "application/pdf")
+        assert found.headers["content-security-policy"] == "default-src 'none'; frame-ancestors 'self'"
+        assert found.body == pdf(*pages)
+        assert review.get("2/picture/1").headers["content-type"] == "image/png"  # by its bytes
+
+
+@pytest.mark.parametrize(
+    ("sent", "answer"),
+    [
+        ({"do": "find", "student": "emil"}, {"go": "2"}),
+        ({"do": "find", "student": "nobody"}, None),
+        ({"do": "filter", "criterion": "picture", "section": "", "state": ""}, {"go": "3"}),
+        ({"do": "filter", "criterion": "", "section": "", "state": "empty"}, {"go": "5"}),
+        ({"do": "filter", "criterion": "", "section": "", "state": "marked"}, {"go": "end"}),
+        ({"do": "keep"}, {"go": "1"}),
+        ({"do": "split"}, {"go": "1"}),
+    ],
+)
+def test_other_actions(sent: dict[str, str], answer: dict[str, str] | None, review: Review) -> None:
+    """A jump to a student, filters, and what is left of an item after the mark of somebody else."""
+    review.get("1")
+    found = review.post("1", sent).json
+    assert found == answer if answer is not None else "there is no student 'nobody'" in found["error"]
+    if answer == {"go": "end"}:
+        assert "The filter shows no more items." in review.get("end").text
+
+
+@pytest.mark.parametrize("state", ["", "unknown"])
+def test_a_filter_of_another_form_is_refused(state: str, review: Review) -> None:
+    """Each value must be there, and be a known one."""
+    sent = {"do": "filter", "criterion": "", "state": state} | ({"section": ""} if state else {})
+    assert review.post("1", sent).status == 400

@@ -5,15 +5,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import reduce
 from operator import or_
 from typing import NamedTuple
-from zlib import crc32
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import FILES, ReviewScope, manual_grading_queue, queued_results
 from grader.files.reading import sha256_of
 
-_BITS = 1024  # of a set of words
-_MAX_COMPARED = 1000  # answers to a question: each is compared with all others
+_MAX_COMPARED, _MAX_WORDS = 1000, 200  # answers to a question, each of which is compared with all others
 
 
 class QueuedItem(NamedTuple):
@@ -66,9 +64,13 @@ def similar_order(texts: Sequence[str]) -> list[str]:
 
     The first stays the first.
     """
-    left = [(text, reduce(or_, (1 << crc32(word.encode()) % _BITS for word in text.split()), 0)) for text in texts]
-    if len(left) > _MAX_COMPARED:
+    if len(texts) > _MAX_COMPARED:
         return [*texts]
+    bits: dict[str, int] = {}  # of each word, in a set of words as a whole number
+    left = [
+        (text, reduce(or_, (1 << bits.setdefault(word, len(bits)) for word in text.split()[:_MAX_WORDS]), 0))
+        for text in texts
+    ]
     order, last = list[str](), 0
     while left:
         shares = [(words & last).bit_count() / ((words | last).bit_count() or 1) for _, words in left]

@@ -156,11 +156,11 @@ class ReviewSession:
 
     def split(self) -> bool:
         """Show the students of the current item one by one, from the first; return whether it has several."""
-        has_several = bool(self.current_item().others)
-        if has_several:
-            self._split.add(self.position)
-            self.next()
-        return has_several
+        if not self.current_item().others:
+            return False
+        self._split.add(self.position)
+        self.next()
+        return True
 
     def find(self, name: str) -> None:
         """Go to an item of a student: one with something to read, of the current criterion if possible.

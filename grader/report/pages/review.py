@@ -146,7 +146,7 @@ class _Picture(NamedTuple):
 def _pictures(found: Sequence[EmbeddedPicture | NotShown], address: str) -> Iterator[_Picture]:
     for index, one in enumerate(found, 1):
         if isinstance(one, EmbeddedPicture):
-            page = "" if one.height else f"#page={one.page}"
+            page = "" if one.height else f"#page={one.page}&navpanes=0"
             yield _Picture(f"{address}/picture/{index}{page}", one.words, one.width, one.height)
 
 

@@ -21,6 +21,7 @@ from grader.files import reading
 from grader.files.folder import read_folder
 from grader.files.opening import outer_tree
 from tests.classroom.class_runs import Item, tarred
+from tests.documents.files import docx
 from tests.samples import LAB6, ROOT
 
 URDF = b"<robot name='a'><link name='b'/></robot>"
@@ -276,10 +277,21 @@ def test_unreadable_submissions_are_one_line(make: Callable[[Path], None], tmp_p
 
 
 def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
-    """A text file with another name is refused."""
-    (tmp_path / "ann.txt").write_text("text")
-    with pytest.raises(InputError, match=r"ann\.txt is neither a URDF nor a folder or archive"):
-        open_class_submission(str(tmp_path), ("ann.txt",), (), "ann")
+    """A file of another kind is refused."""
+    (tmp_path / "ann.csv").write_text("text")
+    with pytest.raises(InputError, match=r"ann\.csv is neither a URDF nor a folder, an archive or a document"):
+        open_class_submission(str(tmp_path), ("ann.csv",), (), "ann")
+
+
+@pytest.mark.parametrize("name", ["ann.pdf", "ann.docx", "ann.md", "ann.txt", "ann.png"])
+def test_a_single_document_is_a_submission(name: str, tmp_path: Path) -> None:
+    """Its file is the only one of the tree, in a folder and in a zip; a Word file is no archive."""
+    data = docx("Task 1: Step 15") if name.endswith("docx") else b"text"
+    opened = [open_class_submission(str(top), (name,), (), "ann") for top in _both(tmp_path, {name: data})]
+    assert opened[0].digest == opened[1].digest
+    for submission in opened:
+        assert submission.tree is not None
+        assert [*submission.tree.files] == [name]
 
 
 def test_a_replaced_zip_is_read_again(tmp_path: Path) -> None:
@@ -383,7 +395,7 @@ def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
         assert submission.tree.unseen == {"build"}
 
 
-@pytest.mark.parametrize("name", ["ann.pdf", "ann.xml", "ann.zip", "ann.7z"])
+@pytest.mark.parametrize("name", ["ann.csv", "ann.xml", "ann.zip", "ann.7z"])
 def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Path) -> None:
     """The message is the same, with paths relative to the class."""
     output = set()
