@@ -58,7 +58,8 @@ class ReviewPage:
 
     def prepare(self) -> None:
         """Begin to read the pictures of the next item, while the person looks at this one."""
-        following = self.session.position + 1
+        listed = self.session.listed()
+        following = next(iter(listed[bisect(listed, self.session.position) :]), len(self.session.queue))
         with suppress(GraderError):  # the page of that item shows the error
             item = self.session.item_at(following)
             if item is not None:

@@ -136,7 +136,7 @@ def test_filters(book: Gradebook) -> None:
     session.mark(Decimal(1), "")
     assert points(book) == [("birch", "essay", 1)]
     assert session.sections == ["A", "B"]
-    shown = {}
+    shown: dict[str, list[str]] = {}
     for state in ("unmarked", "answered", "empty", "marked"):
         session.show_only(ReviewFilter("essay", "", state))
         shown[state] = []

@@ -125,7 +125,9 @@
 
   function toggle(selector) {
     const details = document.querySelector(selector);
-    if (details) details.open = !details.open;
+    if (!details) return;
+    details.open = !details.open;
+    details.scrollIntoView({ block: "nearest" });
   }
 
   function findStudent() { if (finder) { finder.showModal(); find("student").select(); } }
