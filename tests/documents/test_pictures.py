@@ -28,7 +28,6 @@ NOT_SHOWN = {
     "TIFF": (HEADERS["TIFF turned by its orientation"][0], "its content is TIFF, which browsers do not show"),
     "HEIC": (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "its content is HEIC, which browsers do not show"),
     "a video": (b"\0\0\0\x18ftypisom\0\0\0\0isomavc1", "its content is a video"),
-    "PDF": (b"%PDF-1.4\n", "its content is a PDF"),
     "a shell script": (b"#!/bin/sh\nrm -rf ~\n", "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
     "text that begins like a BMP": (b"BMW" + b" drives" * 20, "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
     "nothing": (b"", "it is not a PNG, JPEG, GIF, WebP or BMP picture"),
@@ -108,3 +107,10 @@ def test_a_picture_with_markup_in_it_keeps_its_type() -> None:
     kind = image_type(b"GIF89a" + struct.pack("<HH", 10, 10) + b"/*" + SCRIPT)
     assert kind is not None
     assert kind.media_type == "image/gif"
+
+
+def test_a_pdf_has_no_size() -> None:
+    """It is for the browser's viewer; its words are its place alone."""
+    found = verified(b"%PDF-1.4\n", "report.pdf")
+    assert isinstance(found, EmbeddedPicture)
+    assert (found.kind.media_type, found.width, found.words) == ("application/pdf", 0, "report.pdf")
