@@ -18,8 +18,16 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite()
 
 
-def _is_comment(text: str) -> bool:
-    return text.isprintable() and text != "" and ";" not in text  # which separates comments
+def _are_choices(value: Any) -> bool:
+    is_table = isinstance(value, dict) and len(value) <= MAX_CHOICES and all(map(_is_number, value.values()))
+    return is_table and all(
+        text.strip()
+        and text.isprintable()
+        and ";" not in text
+        and points < 0
+        and not Decimal(points).scaleb(_DECIMALS) % 1
+        for text, points in value.items()
+    )
 
 
 def _is_list(value: Any, kind: type) -> bool:
@@ -42,10 +50,11 @@ def _table(schema: Mapping[str, Any]) -> TomlType:
 
 _TEXT = toml_type(str)
 _NUMBER = simple_type("a number", {"type": "number"}, _is_number, Decimal)
-_FEW_DECIMALS = Constraint(
-    f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1
+_POINTS = constrained(
+    _NUMBER,
+    _range(0, MAX_POINTS),
+    Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
 )
-_POINTS = constrained(_NUMBER, _range(0, MAX_POINTS), _FEW_DECIMALS)
 _PERCENT, _MINUTES = (constrained(_NUMBER, _range(0, most)) for most in (100, MAX_POINTS))
 _NAMES = simple_type(
     "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
@@ -73,23 +82,11 @@ _FOLDERS = constrained(
         lambda names: all("/" not in name and any(map(str.isalnum, name)) for name in names),
     ),
 )
-_DEDUCTION = constrained(
-    _NUMBER,
-    Constraint("a number below 0", lambda points: -MAX_POINTS <= points < 0, {"exclusiveMaximum": 0}),
-    _FEW_DECIMALS,
-)
-_CHOICES = constrained(
-    simple_type(
-        "a table of numbers below 0, with at most 4 decimals",
-        {"type": "object", "additionalProperties": _DEDUCTION.schema},
-        lambda value: isinstance(value, dict),
-        lambda table: {text.strip(): _DEDUCTION.parse(points) for text, points in table.items()},
-    ),
-    Constraint(
-        f"a table of at most {MAX_CHOICES} comments, in one line each and without a semicolon",
-        lambda table: len(table) <= MAX_CHOICES and all(map(_is_comment, table)),
-        {"maxProperties": MAX_CHOICES},
-    ),
+_CHOICES = simple_type(
+    f"a table of at most {MAX_CHOICES} comments without a semicolon, each with points below 0",
+    {"type": "object", "additionalProperties": {"type": "number", "exclusiveMaximum": 0}, "maxProperties": MAX_CHOICES},
+    _are_choices,
+    lambda table: {text.strip(): Decimal(points) for text, points in table.items()},
 )
 _FALLBACK = toml_type(Literal["failed", "manual"])
 _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))

@@ -214,7 +214,8 @@ requires = ["five", "one", 3]  # !! requires must be a list of strings, not ['fi
  a criterion can only require those above it
 feedback = ["a"]  # !! feedback must be a string, not ['a']
 about = true  # !! about must be a string, not true
-choices = { "short" = 1 }  # !! choices must be a table of numbers below 0, with at most 4 decimals, not { short = 1 }
+choices = { "short" = 1 }  # !! choices must be a table of at most 9 comments without a\
+ semicolon, each with points below 0, not { short = 1 }
 
 [[criterion]]
 id = "five"
@@ -224,8 +225,8 @@ points = 7.5
 check = "urdf_loads"
 with = { link = "base" }  # !! the check urdf_loads takes no 'link'; it takes: nothing
 pints = 3  # !! a criterion has no key 'pints'; did you mean 'points'?
-choices = { "one; two" = -1 }  # !! choices must be a table of at most 9 comments, in one line each and without a\
- semicolon, not { one; two = -1 }
+choices = { "one; two" = -1 }  # !! choices must be a table of at most 9 comments without a\
+ semicolon, each with points below 0, not { one; two = -1 }
 """
 
 

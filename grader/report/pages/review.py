@@ -50,7 +50,6 @@ def item_page(
     """Return the page of an item. The addresses of its pictures are ADDRESS/picture/1 and so on."""
     criterion = item.result.criterion
     given, comment = item.result.manual_mark, item.result.comment
-    pictures, answer = [*_pictures(found, place.address)], answer_lines(item)
     values = {
         "title": f"{place.number} of {place.total}: {who_together(item)}, {criterion.title}",
         "place": place,
@@ -62,12 +61,10 @@ def item_page(
         "maximum": format_points(criterion.points),
         "score": "" if item.is_second or item.others else _grade(item.grade),
         "message": "" if item.is_empty_group else message_text(item),
-        "answer": answer,
+        "answer": answer_lines(item),
         "model": criterion.answer.strip("\n").splitlines(),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
-        "pictures": [picture for picture in pictures if picture.height],
-        "documents": [picture for picture in pictures if not picture.height],
-        "is_open": not answer and not any(picture.height for picture in pictures),
+        "pictures": [*_pictures(found, place.address)],
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
         "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
