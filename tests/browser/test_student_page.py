@@ -122,14 +122,15 @@ def test_submission_reference_and_both(fresh: Any) -> None:
 def test_failure_leads_to_its_link(fresh: Any) -> None:
     """The number of a failure turns the robot to its link and marks it; the focus alone marks it."""
     card = fresh.locator("#criterion-right-wheel-forward")
-    card.locator("pre.source").focus()
+    card.locator("pre.source").first.focus()
     assert fresh.locator("#links option:checked").inner_text() == "right_wheel"
     azimuth = fresh.evaluate("() => viewer.camera.azimuth = 1")  # the page may begin with the lidar
-    fresh.locator("#criterion-lidar-frame .pin").click()
+    fresh.locator("#criterion-lidar-frame .pin").first.click()
     assert fresh.locator("#links option:checked").inner_text() == "lidar"
     assert fresh.evaluate("() => viewer.camera.azimuth") != azimuth
     assert (
-        fresh.locator(".labels .chosen").inner_text() == fresh.locator("#criterion-lidar-frame .pin").inner_text()[-1]
+        fresh.locator(".labels .chosen").inner_text()
+        == fresh.locator("#criterion-lidar-frame .pin").first.inner_text()[-1]
     )
     card.hover()
     assert fresh.locator(".views .lit title").first.text_content() == "right_wheel"
