@@ -15,7 +15,17 @@ _AXIS = 20.0  # pixels
 _LONG_AXIS = 32.0  # of a frame of the reference, so that it is visible beside the robot's own
 _LETTER = (9.0, 11.0)  # the room of one
 # Where the letter of an axis is, from its tip: along the axis and to its side.
-_BESIDE = ((8.0, 0.0), (2.0, 8.0), (2.0, -8.0), (-5.0, 8.5), (-5.0, -8.5), (-12.0, 8.5), (-12.0, -8.5), (20.0, 0.0))
+_SIDES = (
+    (2.0, 8.0),
+    (2.0, -8.0),
+    (-5.0, 8.5),
+    (-5.0, -8.5),
+    (-12.0, 8.5),
+    (-12.0, -8.5),
+    (-12.0, 13.0),
+    (-12.0, -13.0),
+)
+_BESIDE = ((8.0, 0.0), *_SIDES, (20.0, 0.0))
 _ARROW = 30.0
 _HEAD = 6.0
 _RADIUS = 9.0  # of a number

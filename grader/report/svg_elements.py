@@ -167,6 +167,7 @@ def circle(centre: Place, radius: float) -> str:
 SIZE = 12.0  # pixels
 LINE = 15.0  # from one line to the next
 _NARROW, _WIDE = frozenset(" .,:;'|!ijlt()[]fr-"), frozenset("mwMW@%")
+_WORD = re.compile(r"\S*\d (?:m|mm|degrees)\b\S*|\S+")  # a number has its unit on the same line
 _CUT = re.compile(r"(?:\s+[-+(]*\d\S*)*\s+\S*$|[\s.,;:]+$")  # numbers before a word that is cut, and that word
 _MAX_LINES = 6
 _MAX_LENGTH = 1000  # characters: more do not fit into three lines
@@ -185,7 +186,7 @@ def wrap(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
     """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
     lines: list[str] = []
     line = ""
-    for word in printable(text[:_MAX_LENGTH]).split():
+    for word in _WORD.findall(" ".join(printable(text[:_MAX_LENGTH]).split())):
         longer = f"{line} {word}" if line else word
         if line and text_width(longer) > width:
             if len(lines) == most - 1:
