@@ -74,10 +74,14 @@ class Labels:
     def _cost(self, place: Place, centre: Place, box: Rectangle) -> float:
         """Return the cost of a label: the signs that it covers, and the labels that its leader line crosses."""
         covered = sum(30.0 for mark in self._marks if box.overlaps(mark))
+        leader = Rectangle.around((place, centre), 0.0)
+        near = [other for other in self._taken if other.overlaps(leader)]
+        if not near:
+            return covered
         across, down = centre[0] - place[0], centre[1] - place[1]
         steps = max(1, round(hypot(across, down) / _STEP))
         line = [(place[0] + across * step / steps, place[1] + down * step / steps) for step in range(2, steps)]
-        return covered + sum(40.0 for other in self._taken if any(map(other.contains, line)))
+        return covered + sum(40.0 for other in near if any(map(other.contains, line)))
 
     def _is_free(self, box: Rectangle) -> bool:
         room = self._room

@@ -308,7 +308,9 @@ def test_opposite_arrows_at_one_place_are_side_by_side() -> None:
 @pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm-elbow-to-the-side", "sensors-imu-upside-down"])
 def test_letters_of_axes_cover_neither_each_other_nor_numbers_nor_the_ground(name: str) -> None:
     """Each is behind its axis or beside it."""
-    root = drawing_element(picture_of(SAMPLES[name].grade()), legend=False)
+    picture = picture_of(SAMPLES[name].grade())
+    assert picture is not None
+    root = drawing_element(picture, legend=False)
     for view in root.findall("{*}g"):
         letters = [
             (float(text.get("x")), float(text.get("y")) - 3.5)

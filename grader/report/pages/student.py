@@ -29,7 +29,7 @@ _WORDS = {
     "skipped": "Skipped",
     "pending": "Needs manual grading",
     "errored": "Could not be graded",
-    "adjusted": "Changed for the whole class",
+    "adjusted": "Corrected after grading",
     "partial": "Some points",
 }  # of each status
 
