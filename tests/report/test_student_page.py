@@ -4,12 +4,14 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 import pytest
 from lxml import html
 
+from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
 from grader.grading.graded_submission import Grade
 from grader.grading.report import ManualMark, Report
@@ -17,7 +19,7 @@ from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
 from grader.submission.opening import read_submission
 from tests.command_line import run
-from tests.report.reports import AXLE, hinted, marked
+from tests.report.reports import AXLE, adjusted, hinted, marked
 from tests.samples import LAB6, ROOT, SAMPLES, opened
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -122,6 +124,26 @@ def test_what_the_same_edit_fixes_is_inside_of_the_first_card() -> None:
     assert first.xpath("./details/summary")[0].text == "Fixed by the same edit: 1 more criterion"
     assert not also.find_class("hint")
     assert "180 degrees off" in also.text_content()
+
+
+def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
+    """The card of a manual mark shows no edit: what the same edit fixes has its own card."""
+    mark = ManualMark(Decimal(0), "Ada", "")
+    report = hinted()
+    results = (one._replace(manual_mark=mark if one.criterion.id == AXLE[0] else None) for one in report.results)
+    page = read(render_html(replace(report, results=tuple(results))))
+    assert not page.get_element_by_id(f"criterion-{AXLE[0]}").xpath(".//article")
+    assert "180 degrees off" in page.get_element_by_id(f"criterion-{AXLE[1]}").text_content()
+
+
+def test_corrected_criteria_each_have_a_card() -> None:
+    """Also if the checks have the same reason to need manual grading: their points and reasons are others."""
+    pending = Outcome("pending", "the same reason")
+    report = adjusted()
+    corrected = [one.criterion.id for one in report.results if one.is_adjusted]
+    results = tuple(one._replace(outcome=pending) if one.is_adjusted else one for one in report.results)
+    page = read(render_html(replace(report, results=results)))
+    assert {f"criterion-{name}" for name in corrected} <= set(page.xpath("//article/@id"))
 
 
 def test_submission_that_cannot_be_opened_says_so_once(tmp_path: Path) -> None:

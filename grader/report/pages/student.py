@@ -145,10 +145,13 @@ def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -
 
 
 def _joined(cards: Iterable[Card]) -> Iterator[Card]:
-    """Yield the first card of each cause, with the others."""
-    for _, (first, *others) in alike(cards, lambda card: card.cause):
-        also = [card._replace(details=card.details._replace(hint=None)) for card in others]
-        yield first._replace(also=also)
+    """Yield the first card of each cause, with the others; all of them where the first one does not show the edit."""
+    for cause, (first, *others) in alike(cards, lambda card: card.cause):
+        if first.details.hint is None and cause == first.result.criterion.id:
+            yield from (first, *others)
+        else:
+            also = [card._replace(details=card.details._replace(hint=None)) for card in others]
+            yield first._replace(also=also)
 
 
 def _card(result: Result, report: Report) -> Card:
@@ -156,9 +159,8 @@ def _card(result: Result, report: Report) -> Card:
     where = details.location
     lines = source_lines(where, source_of) if where is not None else []
     diff = diff_lines(details.hint.edits, source_of) if details.hint is not None else []
-    outcome, has_text = result.outcome, details.answer or details.comment or result.manual_mark
-    is_ungraded = outcome.status in ("pending", "errored") and not has_text
-    cause = outcome.mistake or outcome.message if is_ungraded else result.criterion.id
+    is_ungraded = status_of(result) in ("pending", "errored") and not (details.answer or details.comment)
+    cause = result.outcome.mistake or result.outcome.message if is_ungraded else result.criterion.id
     return Card(result, earned_text(result), details, lines, diff, cause)
 
 
