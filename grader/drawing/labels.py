@@ -9,6 +9,8 @@ from grader.drawing.sheet import TITLE, Panel, Place
 
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what is labelled
 _DIRECTIONS = 16
+_ANGLES = [tau * (direction + 2) / _DIRECTIONS for direction in range(_DIRECTIONS)]  # up and to the right first
+AROUND = [(ring * cos(angle), -ring * sin(angle)) for ring, angle in product(_RINGS, _ANGLES)]
 _STEP = 4.0  # pixels between the points at which a leader line is compared with rectangles
 
 
@@ -49,41 +51,37 @@ class Labels:
         """Record a sign that labels should not cover."""
         self._marks.append(Rectangle.around(places, margin))
 
-    def take(self, place: Place, width: float, height: float) -> bool:
-        """Put a label with its centre at a place if it is free; return whether it is."""
-        x, y = place
-        box = Rectangle(x - width / 2, y - height / 2, x + width / 2, y + height / 2)
-        if not self._is_free(box):
-            return False
-        self._taken.append(box)
-        return True
-
-    def put_near(self, place: Place, size: float) -> Place:
-        """Put a square label near a place and return its centre.
+    def put(self, place: Place, shifts: Iterable[Place], size: Place) -> Place | None:
+        """Put a label of a width and height near a place and return its centre; None without a free place.
 
         It overlaps no other label. Of the free places, that with the lowest cost is taken: its distance, and the signs
-        that it covers.
+        that it covers. The shifts to the places are sorted by their length.
         """
-        best, lowest = place, 1e6
-        for ring, direction in product(_RINGS, range(_DIRECTIONS)):
-            if ring >= lowest:  # nothing farther away costs less
+        best, lowest = None, 1e6
+        for across, down in shifts:
+            distance = hypot(across, down)
+            if distance >= lowest:  # nothing farther away costs less
                 break
-            angle = tau * (direction + 2) / _DIRECTIONS  # up and to the right first
-            centre = place[0] + ring * cos(angle), place[1] - ring * sin(angle)
-            box = Rectangle.around([centre], size / 2.0 + 1.0)
-            cost = ring + self._cost(place, centre, box) if self._is_free(box) else lowest
+            x, y = place[0] + across, place[1] + down
+            box = Rectangle(x - size[0] / 2.0, y - size[1] / 2.0, x + size[0] / 2.0, y + size[1] / 2.0)
+            cost = distance + self._cost(place, (x, y), box) if self._is_free(box) else lowest
             if cost < lowest:
-                best, lowest = centre, cost
-        self._taken.append(Rectangle.around([best], size / 2.0))
+                best, lowest, taken = (x, y), cost, box
+        if best is not None:
+            self._taken.append(taken)
         return best
 
     def _cost(self, place: Place, centre: Place, box: Rectangle) -> float:
         """Return the cost of a label: the signs that it covers, and the labels that its leader line crosses."""
         covered = sum(30.0 for mark in self._marks if box.overlaps(mark))
+        leader = Rectangle.around((place, centre), 0.0)
+        near = [other for other in self._taken if other.overlaps(leader)]
+        if not near:
+            return covered
         across, down = centre[0] - place[0], centre[1] - place[1]
         steps = max(1, round(hypot(across, down) / _STEP))
         line = [(place[0] + across * step / steps, place[1] + down * step / steps) for step in range(2, steps)]
-        return covered + sum(40.0 for other in self._taken if any(map(other.contains, line)))
+        return covered + sum(40.0 for other in near if any(map(other.contains, line)))
 
     def _is_free(self, box: Rectangle) -> bool:
         room = self._room

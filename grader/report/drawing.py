@@ -108,6 +108,7 @@ def _add_robot_signs(signs: ViewSigns, framed: Iterable[str]) -> None:
     signs.add_outlines()
     signs.add_frames(framed)
     signs.add_wheels()
+    signs.add_letters()
 
 
 def _put_bodies(group: Any, panel: Panel, bodies: Sequence[Seen]) -> None:

@@ -5,7 +5,7 @@ from math import hypot
 from typing import Any
 
 from grader.drawing.curves import AXES
-from grader.drawing.labels import Labels
+from grader.drawing.labels import AROUND, Labels
 from grader.drawing.picture import Picture
 from grader.drawing.sheet import Panel, Place, project
 from grader.report.svg_elements import circle, path_data, put, segments
@@ -13,11 +13,24 @@ from grader.robot.transforms import Transform, Vector
 
 _AXIS = 20.0  # pixels
 _LONG_AXIS = 32.0  # of a frame of the reference, so that it is visible beside the robot's own
-_LETTER = 7.0  # behind the tip of an axis
+_LETTER = (9.0, 11.0)  # the room of one
+# Where the letter of an axis is, from its tip: along the axis and to its side.
+_SIDES = (
+    (2.0, 8.0),
+    (2.0, -8.0),
+    (-5.0, 8.5),
+    (-5.0, -8.5),
+    (-12.0, 8.5),
+    (-12.0, -8.5),
+    (-12.0, 13.0),
+    (-12.0, -13.0),
+)
+_BESIDE = ((8.0, 0.0), *_SIDES, (20.0, 0.0))
 _ARROW = 30.0
 _HEAD = 6.0
 _RADIUS = 9.0  # of a number
 _END_ON = 0.2  # of its length: an axis that appears shorter is a dot
+_ASIDE = 7.0  # arrows in several directions at one place
 _SAME = 0.001  # metres
 _AXES = tuple(zip("xyz", AXES, strict=True))
 _NO_HALO = ("ground", "dot-x", "dot-y", "dot-z")
@@ -63,6 +76,8 @@ class ViewSigns(Signs):
     def __init__(self, panel: Panel, picture: Picture) -> None:
         super().__init__()
         self._panel, self._picture, self._labels = panel, picture, Labels(panel)
+        self._letters: list[tuple[Place, Place, str]] = []  # the ends of axes with their names
+        self._names: list[tuple[Place, str]] = []
 
     def add_ground(self) -> None:
         """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
@@ -71,13 +86,14 @@ class ViewSigns(Signs):
             return
         for start, end in self._ground_line(ground):
             self.line("ground", segments([(start, end)]))
-            place = start[0] + 15.0, start[1] + 11.0
-            self._labels.take(place, 40.0, 12.0)
-            self.text("letter", place, "ground")
+            at = self._labels.put(start, [(22.0, 10.0), (22.0, -8.0)], (44.0, 12.0)) or start
+            self._names.append(((at[0], at[1] + 2.0), "ground"))
+            self._labels.mark([start, end], 1.0)
         expected = reference.ground if reference is not None else None
         if expected is not None and is_lifted(expected, ground):
             for line in self._ground_line(expected):
                 self.line("reference", segments([line]))
+                self._labels.mark(line, 1.0)
 
     def _ground_line(self, ground: Transform) -> Iterator[tuple[Place, Place]]:
         """Yield the ends of the plane z = 0 of a frame in the panel, if it is seen edge-on and crosses the panel."""
@@ -106,8 +122,7 @@ class ViewSigns(Signs):
                 continue  # in this view it covers the robot's own
             for name, start, tip, share, _ in self._axes(pose, _LONG_AXIS):
                 if share > _END_ON:
-                    self.line("reference", segments([(start, tip)]))
-                    self._add_letter(start, tip, name)
+                    self._add_axis("reference", start, tip, name)
 
     def add_frames(self, links: Iterable[str]) -> None:
         """Add the frames of links with their axes and letters; of frames that look the same, only one."""
@@ -118,9 +133,7 @@ class ViewSigns(Signs):
         for pose in frames.values():
             for name, start, tip, share, depth in self._axes(pose, _AXIS):
                 if share > _END_ON:
-                    self.line(f"axis-{name}", segments([(start, tip)]))
-                    self._labels.mark([start, tip])
-                    self._add_letter(start, tip, name)
+                    self._add_axis(f"axis-{name}", start, tip, name)
                 elif depth > 0.0:
                     self.line(f"dot-{name}", circle(start, 3.0))  # to the viewer
                 else:
@@ -138,22 +151,41 @@ class ViewSigns(Signs):
         directions = (value for _, axis in _AXES for value in self._panel.direction(pose.rotate(axis)))
         return (*map(round, self._panel.place(pose.translation)), *(round(10.0 * value) for value in directions))
 
-    def _add_letter(self, start: Place, tip: Place, name: str) -> None:
-        """Add the letter of an axis behind its tip, unless another one is there."""
-        across, down = tip[0] - start[0], tip[1] - start[1]
-        way = 1.0 + _LETTER / hypot(across, down)
-        place = start[0] + across * way, start[1] + down * way
-        if self._labels.take(place, 9.0, 11.0):
-            self.text("letter", (place[0], place[1] + 3.5), name)
+    def _add_axis(self, look: str, start: Place, tip: Place, name: str) -> None:
+        self.line(look, segments([(start, tip)]))
+        self._labels.mark([start, tip])
+        self._letters.append((start, tip, name))
+
+    def add_letters(self) -> None:
+        """Add the name of the ground, and the letters of axes behind or beside their tips, unless others are there."""
+        for start, tip, name in self._letters:
+            across, down = tip[0] - start[0], tip[1] - start[1]
+            long = hypot(across, down)
+            shifts = [((a * across - b * down) / long, (a * down + b * across) / long) for a, b in _BESIDE]
+            place = self._labels.put(tip, shifts, _LETTER)
+            if place is not None:
+                self._names.append(((place[0], place[1] + 3.5), name))
+        for place, name in self._names:
+            self.text("letter", place, name)
 
     def add_wheels(self) -> None:
-        """Add an arrow at each wheel for its driving direction; a circle with a slash if it does not roll."""
+        """Add an arrow at each wheel for its driving direction; a circle with a slash if it does not roll.
+
+        Arrows in several directions at one place keep to the right of it, each in its own direction.
+        """
+        ways: dict[tuple[int, ...], dict[tuple[int, ...], tuple[Place, Vector | None]]] = {}
         for wheel in self._picture.scene.wheels:
             start = self._panel.place(wheel.centre)
             travel = self._panel.direction(wheel.travel) if wheel.travel else None
-            self.line("arrow", wheel_sign(start, travel))
-            across, down, _ = travel or (0.0, 0.0, 0.0)
-            self._labels.mark([start, (start[0] + _ARROW * across, start[1] + _ARROW * down)], 5.0)
+            key = tuple(round(5.0 * value) for value in travel or ())
+            ways.setdefault((*map(round, start),), {})[key] = start, travel
+        for there in ways.values():
+            for (x, y), travel in there.values():
+                across, down, _ = travel or (0.0, 0.0, 0.0)
+                aside = _ASIDE if len(there) > 1 else 0.0
+                start = x - aside * down, y + aside * across
+                self.line("arrow", wheel_sign(start, travel))
+                self._labels.mark([start, (start[0] + _ARROW * across, start[1] + _ARROW * down)], 5.0)
 
     def add_callouts(self) -> None:
         """Add the numbers of callouts beside their points, with leader lines, none over another."""
@@ -162,7 +194,7 @@ class ViewSigns(Signs):
         for _, point in points:
             self._labels.mark([point], 5.0)
         for number, point in points:
-            centre = self._labels.put_near(point, 2.0 * _RADIUS + 2.0)
+            centre = self._labels.put(point, AROUND, (2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0)) or point
             self.line("leader", segments([(point, centre)]) + circle(point, 1.5))
             self.badge(centre, number)
 

@@ -4,6 +4,7 @@ The looks for light mode and print are presentation attributes, which need no st
 colours of classes in dark mode.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from math import atan2, degrees, hypot, tau
@@ -166,7 +167,9 @@ def circle(centre: Place, radius: float) -> str:
 SIZE = 12.0  # pixels
 LINE = 15.0  # from one line to the next
 _NARROW, _WIDE = frozenset(" .,:;'|!ijlt()[]fr-"), frozenset("mwMW@%")
-_MAX_LINES = 3
+_WORD = re.compile(r"\S*\d (?:m|mm|degrees)\b\S*|\S+")  # a number has its unit on the same line
+_CUT = re.compile(r"(?:\s+[-+(]*\d\S*)*\s+\S*$|[\s.,;:]+$")  # numbers before a word that is cut, and that word
+_MAX_LINES = 6
 _MAX_LENGTH = 1000  # characters: more do not fit into three lines
 
 
@@ -183,7 +186,7 @@ def wrap(text: str, width: float, most: int = _MAX_LINES) -> list[str]:
     """Return a text in at most some lines of a width in pixels; the last one ends with "..." if words are missing."""
     lines: list[str] = []
     line = ""
-    for word in printable(text[:_MAX_LENGTH]).split():
+    for word in _WORD.findall(" ".join(printable(text[:_MAX_LENGTH]).split())):
         longer = f"{line} {word}" if line else word
         if line and text_width(longer) > width:
             if len(lines) == most - 1:
@@ -200,9 +203,10 @@ def cut(text: str, width: float) -> str:
 
 
 def _shorten(text: str, width: float) -> str:
+    """Return the start of a text and "..."; it ends with a whole word, not with a number that has lost its unit."""
     while text and text_width(text) > width - SIZE:
         text = text[:-1]
-    return f"{text.rstrip(' .,;:')}..."
+    return f"{_CUT.sub('', text) or text}..."
 
 
 def text_width(text: str) -> float:

@@ -1,4 +1,4 @@
-"""Pages in headless Chromium. Without it, or without Playwright, these tests are skipped; `.ci/run` requires both."""
+"""Pages in headless browsers. Without these, or without Playwright, tests are skipped; `.ci/run` requires all of them."""
 
 import os
 import shutil

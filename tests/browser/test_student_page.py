@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -119,17 +120,52 @@ def test_submission_reference_and_both(fresh: Any) -> None:
     assert len(set(pictures)) == 3
 
 
+def test_page_opens_with_the_submission(open_page: Open, tmp_path: Path) -> None:
+    """Numbers are those of the submission: `Reference` has none, and a link that only the reference has is in `Both`."""
+    page = open_page(write(tmp_path, "grade", SAMPLES["lidar-missing"].path), reduced_motion="reduce").page
+    numbers = page.locator(".labels .callout:visible")
+    pressed = page.locator("[data-mode][aria-pressed=true]")
+    page.evaluate("() => viewer.draw()")
+    assert (pressed.inner_text(), numbers.count()) == ("Submission", 0)
+    page.locator("#criterion-lidar-shape .pin").first.click()
+    page.evaluate("() => viewer.draw()")
+    assert (pressed.inner_text(), numbers.count()) == ("Both", 1)
+    page.get_by_role("button", name="Reference", exact=True).click()
+    page.evaluate("() => viewer.draw()")
+    assert (pressed.inner_text(), numbers.count()) == ("Reference", 0)
+
+
+def test_labels_do_not_overlap(fresh: Any) -> None:
+    """Numbers, letters of axes and the name of a link are beside each other, from each side."""
+    fresh.get_by_role("button", name="Frames").click()
+    fresh.get_by_label("Link", exact=True).select_option("lidar")
+    for azimuth in (0, 1, 2, 3):
+        fresh.evaluate("azimuth => { viewer.camera.azimuth = azimuth; viewer.draw(); }", azimuth)
+        boxes = [label.bounding_box() for label in fresh.locator(".labels span:visible").all()]
+        assert len(boxes) > 15
+        for one, other in combinations(boxes, 2):
+            across, down = (
+                abs(one[at] + one[size] / 2 - other[at] - other[size] / 2)
+                for at, size in (("x", "width"), ("y", "height"))
+            )
+            assert (
+                across >= (one["width"] + other["width"]) / 2 - 3 or down >= (one["height"] + other["height"]) / 2 - 3
+            )
+    fresh.get_by_role("button", name="Frames").click()
+
+
 def test_failure_leads_to_its_link(fresh: Any) -> None:
     """The number of a failure turns the robot to its link and marks it; the focus alone marks it."""
     card = fresh.locator("#criterion-right-wheel-forward")
-    card.locator("pre.source").focus()
+    card.locator("pre.source").first.focus()
     assert fresh.locator("#links option:checked").inner_text() == "right_wheel"
     azimuth = fresh.evaluate("() => viewer.camera.azimuth = 1")  # the page may begin with the lidar
-    fresh.locator("#criterion-lidar-frame .pin").click()
+    fresh.locator("#criterion-lidar-frame .pin").first.click()
     assert fresh.locator("#links option:checked").inner_text() == "lidar"
     assert fresh.evaluate("() => viewer.camera.azimuth") != azimuth
     assert (
-        fresh.locator(".labels .chosen").inner_text() == fresh.locator("#criterion-lidar-frame .pin").inner_text()[-1]
+        fresh.locator(".labels .chosen:visible").inner_text()
+        == fresh.locator("#criterion-lidar-frame .pin").first.inner_text()[-1]
     )
     card.hover()
     assert fresh.locator(".views .lit title").first.text_content() == "right_wheel"
@@ -210,7 +246,16 @@ def test_dark_mode_and_print(fresh: Any) -> None:
         == "rgb(218, 251, 225)"
     )
     assert not fresh.locator("canvas").is_visible()
+    assert fresh.get_by_role("heading", name="The robot").count() == 0
+    tops = [
+        fresh.locator(f"{part} h2").first.bounding_box()["y"] for part in ("header + main .picture", ".report", ".all")
+    ]
+    assert tops == sorted(tops)  # the three views are where the robot in 3-D is on the screen
     assert fresh.locator("details td").first.is_visible()
+    tables = fresh.locator("details table").evaluate_all(
+        "tables => tables.map((one) => one.clientWidth / one.parentElement.clientWidth)"
+    )
+    assert min(tables) > 0.9
     fresh.emulate_media(media="screen", color_scheme="light")
     fresh.wait_for_function(f"light => ({PIXELS})() === light", arg=light)
 
@@ -221,6 +266,8 @@ def test_no_width_scrolls_sideways(fresh: Any, width: int) -> None:
     fresh.set_viewport_size({"width": width, "height": 800})
     assert fresh.evaluate("() => document.documentElement.scrollWidth") <= width
     assert fresh.evaluate("() => viewer.canvas.clientWidth") > 300
+    for lines in fresh.locator(".diff, .source").all():  # all of each line is visible, also what changes
+        assert lines.evaluate("lines => lines.scrollWidth <= lines.clientWidth")
     fresh.set_viewport_size({"width": 1280, "height": 900})
 
 

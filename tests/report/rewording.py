@@ -93,7 +93,9 @@ def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> R
     where = Location(path(), 1, 2) if outcome.location is not None else None
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
     hint = known.setdefault(old.hint.message, _hint(old.hint, words, path)) if old.hint is not None else None
-    return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where), hint=hint)
+    mistake = outcome.mistake or outcome.message  # equal for what is about the same, as before
+    renamed = outcome._replace(message=words(), measured=measured, location=where, mistake=mistake)
+    return old._replace(outcome=renamed, hint=hint)
 
 
 def _hint(old: Hint, words: Words, path: Words) -> Hint:

@@ -4,19 +4,22 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 import pytest
 from lxml import html
 
+from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
+from grader.grading.graded_submission import Grade
 from grader.grading.report import ManualMark, Report
 from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
 from grader.submission.opening import read_submission
 from tests.command_line import run
-from tests.report.reports import hinted, marked
+from tests.report.reports import AXLE, adjusted, hinted, marked
 from tests.samples import LAB6, ROOT, SAMPLES, opened
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -81,6 +84,109 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     assert pins == {text.text for text in page.xpath("//*[@class='number']//*[text()]")}
     assert pins == {"1", "2", "3", "4"}  # the fifth is about several links: it has no place in the picture
     assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
+
+
+def shares(page: Any) -> tuple[list[str], list[str]]:
+    """Return the widths of the bar's parts, and the words below it."""
+    bars = [part.get("width") for part in page.find_class("bar")[0].findall("rect")] if page.find_class("bar") else []
+    return bars, [words.text_content().strip() for words in page.xpath("//*[@class='shares']/span")]
+
+
+def test_bar_explains_its_colours() -> None:
+    """What is earned, needs manual grading and is lost stands below it; without points to grade there is no such part."""
+    page = read(run(("grade", "submissions/right-wheel-mirrored", "--format", "html")).stdout)
+    assert shares(page) == (["63.0%", "10.0%", "27.0%"], ["Earned: 63", "Needs manual grading: 10", "Lost: 27"])
+    page = read(run(("grade", "submissions/reference", "--part", "task1", "--format", "html")).stdout)
+    assert shares(page) == (["100.0%"], ["Earned: 70"])
+
+
+def test_excused_student_has_no_bar() -> None:
+    """No points count."""
+    report = replace(SAMPLES["reference"].grade(), grade=Grade(points=None))
+    assert shares(read(render_html(report))) == ([], [])
+
+
+def test_every_criterion_has_its_title_behind_its_status() -> None:
+    """On cards and in the list of all criteria; so that the title of a failed one does not read as a fact."""
+    page = read(run(("grade", "submissions/axis-negated/my_robot.urdf", "--format", "html")).stdout)
+    name, title = "left-wheel-forward", "Failed: A positive turn of the left wheel drives the base forward"
+    heading = page.get_element_by_id(f"criterion-{name}").find("h3").text_content()
+    (row,) = (row.text_content() for row in page.iter("tr") if f"#criterion-{name}" in row.xpath(".//a/@href"))
+    for text in (heading, row):
+        assert f"{title} {name}" in " ".join(text.split())
+
+
+def test_what_the_same_edit_fixes_is_inside_of_the_first_card() -> None:
+    """It is folded there, with what was found; the hint is not repeated."""
+    page = read(render_html(hinted()))
+    first, also = (page.get_element_by_id(f"criterion-{name}") for name in AXLE)
+    assert also in first.xpath("./details//article")
+    assert first.xpath("./details/summary")[0].text == "Fixed by the same edit: 1 more criterion"
+    assert not also.find_class("hint")
+    assert "180 degrees off" in also.text_content()
+
+
+def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
+    """The card of a manual mark shows no edit: what the same edit fixes has its own card."""
+    mark = ManualMark(Decimal(0), "Ada", "")
+    report = hinted()
+    results = (one._replace(manual_mark=mark if one.criterion.id == AXLE[0] else None) for one in report.results)
+    page = read(render_html(replace(report, results=tuple(results))))
+    assert not page.get_element_by_id(f"criterion-{AXLE[0]}").xpath(".//article")
+    assert "180 degrees off" in page.get_element_by_id(f"criterion-{AXLE[1]}").text_content()
+
+
+def test_corrected_criteria_each_have_a_card() -> None:
+    """Also if the checks have the same reason to need manual grading: their points and reasons are others."""
+    pending = Outcome("pending", "the same reason")
+    report = adjusted()
+    corrected = [one.criterion.id for one in report.results if one.is_adjusted]
+    results = tuple(one._replace(outcome=pending) if one.is_adjusted else one for one in report.results)
+    page = read(render_html(replace(report, results=results)))
+    assert {f"criterion-{name}" for name in corrected} <= set(page.xpath("//article/@id"))
+
+
+def test_submission_that_cannot_be_opened_says_so_once(tmp_path: Path) -> None:
+    """One card for all criteria with the same reason, which the list of all criteria leads to; the others have theirs."""
+    (tmp_path / "lab.zip").write_bytes(b"PK\3\4 no archive")
+    page = read(run(("grade", tmp_path, "--format", "html")).stdout)
+    cards = page.xpath("//article")
+    assert [card.get("id") for card in cards] == [
+        f"criterion-{name}" for name in ("urdf-loads", "evidence-webcam", "answer-floating-link", "answer-launch-nodes")
+    ]
+    assert "The same holds for 43 more criteria" in cards[0].text_content()
+    assert page.text_content().count("lab.zip could not be opened") == 1
+    assert page.xpath("//tr//a/@href").count("#criterion-urdf-loads") == 44
+
+
+def test_submission_that_could_not_be_graded_says_so_once(tmp_path: Path) -> None:
+    """Of a class: its reason is that of the whole submission, also for questions."""
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "ada.zip").write_bytes(b"PK\3\4 no archive")
+    run(
+        (
+            "batch",
+            tmp_path / "class",
+            "--gradebook",
+            tmp_path / "c.db",
+            "--reports",
+            tmp_path,
+            "--report-format",
+            "html",
+        )
+    )
+    page = read((tmp_path / "ada.html").read_bytes())
+    assert len(page.xpath("//article")) == 1
+    assert "The same holds for 46 more criteria" in page.text_content()
+
+
+@pytest.mark.parametrize("name", ["pictures-only", "reference"])
+def test_what_needs_manual_grading_has_no_points_yet(name: str) -> None:
+    """It shows a dash, never 0."""
+    page = read(render_html(SAMPLES[name].grade()))
+    found = [row.findtext("td") for row in page.iter("tr") if "Needs manual grading" in row.text_content()]
+    assert found
+    assert all(text.startswith("–/") for text in found)
 
 
 def mark_of_the_cause() -> Report:

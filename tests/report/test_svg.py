@@ -14,7 +14,7 @@ from grader.drawing.sheet import single_panel
 from grader.report.drawing import drawing_element, inspection_svg, thumbnail_element
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
-from grader.report.svg_elements import DARK_RULES, LOOKS
+from grader.report.svg_elements import DARK_RULES, LOOKS, wrap
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.text import format_points
@@ -295,6 +295,42 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
     with limited_work(9_000_000):
         root = inspected(f'<robot name="r">{text}</robot>')
     assert len(bodies(root)) == 200
+
+
+def test_opposite_arrows_at_one_place_are_side_by_side() -> None:
+    """In the side view one wheel hides the other: each arrow keeps to the right of its direction, 14 pixels apart."""
+    root = shown("grade", "submissions/several-mistakes", code=1)
+    views = [re.findall(r"M([\d.]+) ([\d.]+)H", path) for path in paths(root, "arrow")]
+    pairs = [[tuple(map(float, start)) for start in starts] for starts in views if len(starts) == 2]
+    assert [abs(one[1] - other[1]) for one, other in pairs if one[0] == other[0]] == [180.0, 14.0]
+
+
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm-elbow-to-the-side", "sensors-imu-upside-down"])
+def test_letters_of_axes_cover_neither_each_other_nor_numbers_nor_the_ground(name: str) -> None:
+    """Each is behind its axis or beside it."""
+    picture = picture_of(SAMPLES[name].grade())
+    assert picture is not None
+    root = drawing_element(picture, legend=False)
+    for view in root.findall("{*}g"):
+        letters = [
+            (float(text.get("x")), float(text.get("y")) - 3.5)
+            for text in view.iter("{*}text")
+            if text.text in ("x", "y", "z")
+        ]
+        assert all(abs(a - c) >= 9.0 or abs(b - d) >= 11.0 for (a, b), (c, d) in combinations(letters, 2))
+        discs = re.findall(r"M([\d.]+) ([\d.]+)a9 9", "".join(paths(view, "badge")))
+        assert all(abs(x - float(u) - 9.0) >= 12.0 or abs(y - float(v)) >= 12.0 for x, y in letters for u, v in discs)
+        for ground in re.findall(r"M[\d.]+ ([\d.]+)H", "".join(paths(view, "ground"))):
+            assert all(abs(y - float(ground)) > 5.0 for _, y in letters)
+
+
+def test_units_are_never_cut() -> None:
+    """A text without room for its end stops before a number, and a line never ends between a number and its unit."""
+    text = "they are at z = 0.2 m, 50 mm too low in 'base_link' (x 200 mm)"
+    for width in range(60, 400, 7):
+        *lines, last = wrap(text, width, 2)
+        assert not any(re.search(r"\d$", line) for line in lines)
+        assert not re.search(r"\d( m?)?\.\.\.$", last) or last.endswith(" m..."), last
 
 
 def test_thumbnail_is_small() -> None:

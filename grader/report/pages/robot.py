@@ -131,8 +131,7 @@ def render_robot_page(
     }
     views = Markup(etree.tostring(element, encoding="unicode"))  # noqa: S704  an element tree, whose text is escaped
     starts = [{"joint": one.name, "value": one.value * one.scale} for one in sliders if not one.follows]
-    mode = "both" if picture.outlines or picture.frames else "submission"
-    robot = {**picture_data(picture), "sliders": starts, "mode": mode}
+    robot = {**picture_data(picture), "sliders": starts}
     assets = Assets("robot.css student.css", " ".join((_SCRIPTS, *scripts)), RULES)
     return render_page(template, {**values, "robot": view, "views": views}, {**robot, **data}, assets)
 

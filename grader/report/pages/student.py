@@ -1,6 +1,6 @@
 """A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
 
-from decimal import Decimal
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
@@ -23,11 +23,22 @@ from grader.report.order import (
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
 
+_WORDS = {
+    "passed": "Passed",
+    "failed": "Failed",
+    "skipped": "Skipped",
+    "pending": "Needs manual grading",
+    "errored": "Could not be graded",
+    "adjusted": "Corrected after grading",
+    "partial": "Some points",
+}  # of each status
+
 
 class Card(NamedTuple):
     """The content of a criterion: `points` or what it costs, and `diff` has the changed lines of its hint.
 
-    `feedback` is the rubric's advice, and `skipped` what is skipped because of it.
+    `cause` is equal for criteria that the same edit fixes, or that could not be graded for the same reason. `feedback`
+    is the rubric's advice, and `skipped` what is skipped because of it. `also` are the others with the same cause.
     """
 
     result: Result
@@ -35,8 +46,25 @@ class Card(NamedTuple):
     details: Details
     source: list[SourceLine]
     diff: list[str]
+    cause: str
     skipped: str = ""
     feedback: str = ""
+    also: "Sequence[Card]" = ()
+
+    def addresses(self) -> Iterator[tuple[str, str]]:
+        """Yield the criteria of the card, each with the criterion whose card shows it."""
+        for card in (self, *self.also):
+            shown = card if self.details.hint is not None else self
+            yield card.result.criterion.id, shown.result.criterion.id
+
+
+class Share(NamedTuple):
+    """A part of the bar from `start` with a `width`, in percent of the maximum, and what it means."""
+
+    name: str
+    start: float
+    width: float
+    words: str
 
 
 def render_html(report: Report) -> str:
@@ -57,9 +85,9 @@ def _summary(report: Report) -> dict[str, object]:
         "heading": report.rubric.title,
         "score": content.counting_text(report),
         "maximum": format_points(report.max_score) if report.counting is not None else "",
-        "shares": _shares(report),
+        "shares": [*_shares(report)],
         "summary": content.summaries(report),
-        "pending": content.pending_line(report),
+        "pending": content.pending_points(report) if report.open_points else "",
         "notes": content.notes(report),
         "next": command,
         "left": "" if command else content.what_is_left(report),
@@ -67,27 +95,37 @@ def _summary(report: Report) -> dict[str, object]:
     }
 
 
-def _shares(report: Report) -> tuple[float, float]:
-    """Return the percentages of the maximum that are earned, and that are earned or need manual grading."""
-    whole, counting = report.max_score or Decimal(1), report.counting or Decimal(0)
-    earned, possible = (float(100 * points / whole) for points in (counting, counting + report.open_points))
-    return min(100, round(earned, 2)), min(100, round(possible, 2))
+def _shares(report: Report) -> Iterator[Share]:
+    """Yield what is earned, needs manual grading, and is lost; nothing for an excused student."""
+    whole, earned, start = report.max_score, report.counting, 0.0
+    if not whole or earned is None:
+        return
+    lost = whole - earned - report.open_points
+    names = ("earned", "Earned"), ("pending", "Needs manual grading"), ("lost", "Lost")
+    for (name, words), points in zip(names, (earned, report.open_points, lost), strict=True):
+        width = min(round(float(100 * points / whole), 2), 100.0 - start)
+        if points > 0:
+            yield Share(name, start, width, f"{words}: {format_points(points)}")
+            start += width
 
 
 def _criteria(report: Report) -> dict[str, object]:
     order, printed = in_order(report), set[str]()
     skipped = alike(order.skipped, lambda result: result.because or "")
     by_part = groupby(groups(report), key=lambda group: group.part)
-    results = (*(failure.result for failure in order.failures), *order.pending, *order.marked)
+    failed = [*_joined(_failure_card(failure, report, printed) for failure in order.failures)]
+    sections = [(title, [*_joined(_card(result, report) for result in some)]) for title, some in order.sections]
+    cards = [card for some in (failed, *(some for _, some in sections)) for card in some]
     return {
         "symbols": SYMBOLS,
+        "status_words": _WORDS,
         "status_of": status_of,
         "earned_text": earned_text,
         "location_text": location_text,
-        "failures": [_failure_card(failure, report, printed) for failure in order.failures],
+        "failures": failed,
         "skipped": [skipped_text(cause, some) for cause, some in skipped],
-        "sections": [(title, [_card(result, report) for result in some]) for title, some in order.sections],
-        "cards": {result.criterion.id for result in results},  # that others refer to
+        "sections": sections,
+        "cards": dict(item for card in cards for item in card.addresses()),
         "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
     }
 
@@ -102,7 +140,18 @@ def _failure_card(failure: FailedCriterion, report: Report, printed: set[str]) -
     feedback = "" if card.details.hint is not None or card.details.feedback in printed else card.details.feedback
     printed.add(feedback)
     skipped = skipped_text(failure.id, failure.skipped) if failure.skipped else ""
-    return card._replace(points=failure.cost, skipped=skipped, feedback=feedback)
+    cause = failure.first or card.cause
+    return card._replace(points=failure.cost, cause=cause, skipped=skipped, feedback=feedback)
+
+
+def _joined(cards: Iterable[Card]) -> Iterator[Card]:
+    """Yield the first card of each cause, with the others; all of them where the first one does not show the edit."""
+    for cause, (first, *others) in alike(cards, lambda card: card.cause):
+        if first.details.hint is None and cause == first.result.criterion.id:
+            yield from (first, *others)
+        else:
+            also = [card._replace(details=card.details._replace(hint=None)) for card in others]
+            yield first._replace(also=also)
 
 
 def _card(result: Result, report: Report) -> Card:
@@ -110,7 +159,9 @@ def _card(result: Result, report: Report) -> Card:
     where = details.location
     lines = source_lines(where, source_of) if where is not None else []
     diff = diff_lines(details.hint.edits, source_of) if details.hint is not None else []
-    return Card(result, earned_text(result), details, lines, diff)
+    is_ungraded = status_of(result) in ("pending", "errored") and not (details.answer or details.comment)
+    cause = result.outcome.mistake or result.outcome.message if is_ungraded else result.criterion.id
+    return Card(result, earned_text(result), details, lines, diff, cause)
 
 
 def _others(report: Report) -> dict[str, object]:

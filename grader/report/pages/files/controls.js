@@ -58,10 +58,8 @@ function addControls(viewer, section, robot) {
   for (const button of all("mode")) {
     button.addEventListener("click", () => {
       state.mode = button.dataset.mode;
-      for (const other of all("mode")) other.setAttribute("aria-pressed", String(other === button));
-      viewer.schedule();
+      viewer.notify();
     });
-    button.setAttribute("aria-pressed", String(button.dataset.mode === state.mode));
   }
   find("reset").addEventListener("click", () => viewer.reset());
   find("frames").addEventListener("click", (event) => {
@@ -86,6 +84,7 @@ function addControls(viewer, section, robot) {
       slider.parentElement.querySelector("output").textContent = text;
       slider.setAttribute("aria-valuetext", text);
     }
+    for (const button of all("mode")) button.setAttribute("aria-pressed", String(button.dataset.mode === state.mode));
     if (find("drive")) find("drive").setAttribute("aria-pressed", String(viewer.isDriving()));
     if (find("links").value !== String(state.link)) find("links").value = String(state.link);
   }

@@ -3,7 +3,7 @@
 for (const badge of viewer ? document.querySelectorAll("[data-show]") : []) {
   const number = Number(badge.dataset.show), { link } = pageData.callouts.find((callout) => callout.number === number);
   const card = badge.closest("article");
-  card.addEventListener("focusin", () => viewer.choose(link));
+  card.addEventListener("focusin", (event) => { if (event.target.closest("article") === card) viewer.choose(link); });
   const mark = (on) => {
     viewer.state.hover = on ? link : -1;
     viewer.schedule();

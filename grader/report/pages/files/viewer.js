@@ -8,7 +8,7 @@ function makeViewer(data, section) {
   const canvas = find("canvas"), painter = makePainter(canvas);
   if (!painter) return null;
   const calm = matchMedia("(prefers-reduced-motion: reduce)"), watchers = [], given = new Map();
-  const state = { mode: data.mode, link: -1, hover: -1, frames: false, poses: [], drift: IDENTITY };
+  const state = { mode: "submission", link: -1, hover: -1, frames: false, poses: [], drift: IDENTITY };
   const scene = makeScene(data), camera = makeCamera(scene);
   const label = makeLabels(data, scene, canvas, find("labels"), find("pose"));
   let colours = {}, frame = 0, seen = null, pickable = [], driving = 0;
@@ -86,6 +86,8 @@ function makeViewer(data, section) {
   /* Select and face the link of a callout. */
   function show(number) {
     const { link, point } = numbered(number);
+    if (link < 0) state.mode = "both"; // only the reference has it
+    else if (state.mode === "reference") state.mode = "submission";
     choose(link);
     glide({ ...aspect(point), zoom: 1.1, target: scene.centre.map((value, k) => value + (point ? 0.35 * (point[k] - value) : 0)) });
   }
