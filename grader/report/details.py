@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from grader.grading.report import Hint, Report, Result
+from grader.report.answers import answer_lines, counts_lines, plain_lines
 from grader.report.locations import excerpt_lines, location_text
 from grader.report.order import FailedCriterion, alike, failures, is_failure, is_manual, points_of, status_of
 from grader.source import Location
@@ -19,7 +20,6 @@ SYMBOLS = {
     "partial": "~",
 }  # of each status
 _MAX_FILES, _MAX_CRITERIA = 2, 3
-_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
 class Details(NamedTuple):
@@ -59,8 +59,8 @@ def result_details(result: Result, report: Report) -> Details:
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     return Details(
         _sentences(result),
-        _lines(outcome.measured) if is_asked else (),
-        _lines(criterion.answer) if is_asked else (),
+        _printable(answer_lines(outcome)) if is_asked else (),
+        _printable(plain_lines(criterion.answer)) if is_asked else (),
         outcome.location if has_failed else None,
         _one_line(criterion.feedback) if is_mistake and has_subject else "",
         # The title of a criterion is never stated alone, because it would read as a fact.
@@ -97,9 +97,9 @@ def _one_line(text: str) -> str:
     return printable(" ".join(text.split()))
 
 
-def _lines(text: object) -> tuple[str, ...]:
-    """Return the lines of an answer; none of the value of a criterion that is not a question."""
-    return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
+def _printable(lines: Iterable[str]) -> tuple[str, ...]:
+    """Return the lines that are not blank."""
+    return tuple(printable(line) for line in lines if line.strip())
 
 
 def sentence(message: str) -> str:
@@ -152,8 +152,8 @@ def pending_reason(result: Result) -> str:
     if isinstance(outcome.measured, tuple):
         where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
     elif outcome.location is not None:
-        path = outcome.location.path
-        where = path if path.lower().endswith(_WITHOUT_LINES) else f"{path}:{outcome.location.line}"
+        at = outcome.location
+        where = f"{at.path}:{at.line}" if counts_lines(at) else at.path
     doubt = outcome.problem or ("" if where else "not found")
     return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 

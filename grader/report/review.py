@@ -9,12 +9,12 @@ from rich.text import Text
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
 from grader.grading.pictures import evidence_files
+from grader.report.answers import answer_lines, counts_lines, plain_lines
 from grader.report.console import wrapped
 from grader.report.order import status_of
 from grader.text import counted, counted_points, printable
 
 _INDENT = 2
-_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
 def render_item(
@@ -31,19 +31,14 @@ def render_item(
     wrapped(console, Text(message_text(item)), 0)
     if marked := marked_text(item):
         wrapped(console, Text(f"Marked: {marked}", style="bold"), 0)
-    if isinstance(outcome.measured, str):
-        _print_block("Found", outcome.measured, console)
-    if files := files_text(item):
-        _print_block("Look at", "\n".join(files), console)
-    if pictures:
-        _print_block("Pictures", "\n".join(pictures), console)
-    if criterion.answer:
-        _print_block("Model answer", criterion.answer, console)
+    _print_block("Found", answer_lines(outcome), console)
+    _print_block("Look at", files_text(item), console)
+    _print_block("Pictures", pictures, console)
+    _print_block("Model answer", plain_lines(criterion.answer), console)
     if place := place_text(item):
         wrapped(console, Text(f"in {place}", "dim"), 0)
-    if comments:
-        lines = (f"#{number} {' '.join(comment.split())}" for number, comment in comments.items())
-        _print_block("Earlier comments", "\n".join(lines), console)
+    lines = [f"#{number} {' '.join(comment.split())}" for number, comment in comments.items()]
+    _print_block("Earlier comments", lines, console)
 
 
 def who(item: QueuedResult) -> str:
@@ -96,13 +91,14 @@ def place_text(item: QueuedResult) -> str:
     location = item.result.outcome.location
     if location is None or item.number is not None:
         return ""
-    line = "" if location.path.lower().endswith(_WITHOUT_LINES) else f", line {location.line}"
+    line = f", line {location.line}" if counts_lines(location) else ""
     return printable(f"{_where(item, location.path)}{line}")
 
 
-def _print_block(title: str, text: str, console: Console) -> None:
-    wrapped(console, Text(f"{title}:", style="bold"), 0)
-    for line in filter(str.strip, text.splitlines()):
+def _print_block(title: str, lines: Sequence[str], console: Console) -> None:
+    if lines:
+        wrapped(console, Text(f"{title}:", style="bold"), 0)
+    for line in filter(str.strip, lines):
         wrapped(console, Text(printable(line)), _INDENT)
 
 

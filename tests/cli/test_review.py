@@ -67,7 +67,7 @@ def test_a_question(top: Path, graded_class: Path) -> None:
     assert first == (
         "\n1 of 4  Anna Ek (anna): About essay (4 points)\n"
         "Why? The answer in answers.md, from line 1, needs manual grading\n"
-        "Found:\n  # Step 1\n  The roots.\n"
+        "Found:\n  Step 1\n  The roots.\n"
         "Model answer:\n  Because of the roots.\n"
         f"in {graded_class}/class/anna/answers.md, line 1\n"
     )

@@ -10,6 +10,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
+from grader.report.answers import answer_lines, plain_lines
 from grader.report.pages.shell import Assets, render_page
 from grader.report.review import files_text, marked_text, message_text, place_text, who
 from grader.text import counted, counted_points, format_points, shell_quoted
@@ -33,7 +34,6 @@ def item_page(
     """Return the page of an item. The addresses of its pictures are NUMBER/picture/1 and so on."""
     criterion, outcome = item.result.criterion, item.result.outcome
     given, comment = item.result.manual_mark, item.result.comment
-    answer = outcome.measured if isinstance(outcome.measured, str) else ""
     values = {
         "title": f"{place.number} of {place.total}: {who(item)}, {criterion.title}",
         "place": place,
@@ -43,8 +43,8 @@ def item_page(
         "maximum": format_points(criterion.points),
         "score": "" if item.is_second else _grade(item.grade),
         "message": message_text(item),
-        "answer": _lines(answer),
-        "model": _lines(criterion.answer),
+        "answer": answer_lines(outcome),
+        "model": plain_lines(criterion.answer),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
         "pictures": [*_pictures(found, place.number)],
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
@@ -114,8 +114,3 @@ def _choices(criterion: Criterion) -> list[tuple[str, str]]:
     half = criterion.points / 2
     named = {Decimal(0): "none", half: "half", criterion.points: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
-
-
-def _lines(text: str) -> list[str]:
-    """Return the lines of a text without empty ones at its beginning and end."""
-    return text.strip("\n").splitlines()
