@@ -204,7 +204,11 @@ def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
     page = ClassPageReader(top / "pages" / "index.html")
     assert page.members("final") == ["Dora Fi", "Ben Oh"]
     assert page.members("excused") == ["Anna Ek"]
-    assert [row["total"] for row in page.table("students")] == ["", "", "10", "", "0"]
+    assert [row["grade"] for row in page.table("students")] == ["excused", "6", "10", "0", "0"]
+    assert [row["status"] for row in page.table("students") if "final" in row["status"]] == [
+        "graded; final mark instead of 3 points",
+        "without a submission; final mark",
+    ]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------

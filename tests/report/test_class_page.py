@@ -62,7 +62,7 @@ def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
     page = ClassPageReader(tmp_path / "index.html")
     rows = {row["name"]: row for row in page.table("students")}
     assert "graded with an earlier version of the rubric" in rows["birch"]["status"]
-    assert (rows["ash"]["score"], rows["birch"]["score"]) == ("9", "4.5 of 11")
+    assert (rows["ash"]["grade"], rows["birch"]["grade"]) == ("9", "4.5 of 11")
     assert page.members("attention") == ["birch"]
     assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
     assert page.links() == ["birch.html"]

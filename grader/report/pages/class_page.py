@@ -97,6 +97,13 @@ def _travels(scene: Scene) -> dict[str, Vector]:
 MAX_DRAWINGS = MAX_LISTED
 _MAX_ATTENTION = 100  # students for one reason
 _ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
+_COUNTS = {
+    **{f"status-{verdict}": words for verdict, words in VERDICTS.items()},
+    "pending": "with points that need manual grading",
+    "late": "late",
+    "final": "with a final mark",
+    "excused": "excused",
+}  # in the head of the page, by group
 
 
 def render_class_page(
@@ -118,13 +125,7 @@ def render_class_page(
         "version": __version__,
         "title": summary.rubric.title,
         "rubric": summary.rubric,
-        "counts": [(f"status-{verdict}", words) for verdict, words in VERDICTS.items()],
-        "others": [
-            ("pending", "to grade manually"),
-            ("late", "late"),
-            ("final", "with a final mark"),
-            ("excused", "excused"),
-        ],
+        "counts": [(name, f"{len(found[name].keys)} {words}") for name, words in _COUNTS.items() if name in found],
         "notes": [*filter(None, (final_line(summary.statistics), earlier_line(summary.statistics)))],
         "adjusted": adjusted_lines(summary.rubric),
         "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
@@ -143,7 +144,7 @@ def render_class_page(
         "evidence": evidence_lines(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,
-        "columns": _columns(rows),
+        "columns": _columns(rows, summary.statistics),
         "groups": found,
     }
     return render_page("class.html", values, _data(rows, found), Assets("class.css", "class.js", RULES))
@@ -160,18 +161,17 @@ def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, A
     }
 
 
-def _columns(rows: Sequence[StudentRow]) -> list[tuple[str, str, str]]:
+def _columns(rows: Sequence[StudentRow], statistics: ClassStatistics) -> list[tuple[str, str, str]]:
     """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
     columns = (
+        ("grade", f"grade of {format_points(statistics.out_of)}", "number"),
+        ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
         ("status", "status", ""),
-        ("score", "score", "number"),
         ("pending", "needs manual grading", "number"),
         ("late", "late", "number"),
-        ("total", "final mark, or total after the late penalty", "number"),
+        ("lost", "lost points in", ""),
     )
-    has_names = any(row.name != row.key for row in rows)
-    names = [("key", "id", "")] if has_names else []
-    return [*names, *(column for column in columns if any(getattr(row, column[0]) for row in rows))]
+    return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
 
 
 def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:

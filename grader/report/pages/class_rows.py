@@ -6,11 +6,12 @@ from typing import NamedTuple
 from grader.classroom.gradebook.statistics import ClassStatistics, Member
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.classroom.typed_names import without_accents
 from grader.grading.criterion import Criterion
 from grader.report.class_words import VERDICTS, span
 from grader.text import counted, enumerated, format_points
 
-_MAX_LOST = 3  # criteria in a row
+_MAX_LOST = 2  # criteria in a row
 
 
 class StudentRow(NamedTuple):
@@ -20,11 +21,10 @@ class StudentRow(NamedTuple):
     name: str
     link: str
     verdict: str
+    grade: str
     status: str
-    score: str
     pending: str
     late: str
-    total: str
     lost: str
 
 
@@ -39,27 +39,29 @@ class Group(NamedTuple):
 def student_rows(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member], links: Mapping[str, str]
 ) -> list[StudentRow]:
-    """Return a row for each student, sorted by name."""
+    """Return a row for each student, sorted by name, letters with accents as those without."""
     rows = [_row(grade, summary, members.get(grade.student.key), links) for grade in grades]
-    return sorted(rows, key=lambda row: (row.name.casefold(), row.key))
+    return sorted(rows, key=lambda row: (without_accents(row.name.casefold())[0], row.key))
 
 
 def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, links: Mapping[str, str]) -> StudentRow:
     key, is_graded = grade.student.key, grade.result is not None
-    status = grade.why_attention or ("excused" if grade.is_excused else VERDICTS[grade.verdict])
-    about = key, grade.student.name or key, links.get(key, ""), grade.verdict, status
-    total = format_points(grade.total) if grade.late.points or grade.final is not None else ""
-    if not is_graded:
-        return StudentRow(*about, "", "", "", total, "")
-    maximum = "" if grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
-    lost = _costliest(summary, member)
+    points = format_points(grade.total) if is_graded or grade.final is not None else ""
+    maximum = "" if not is_graded or grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
+    status = grade.why_attention or VERDICTS[grade.verdict]
+    if grade.final is not None:
+        status += f"; final mark{f' instead of {format_points(grade.score)} points' if is_graded else ''}"
+    penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
     return StudentRow(
-        *about,
-        f"{format_points(grade.score)}{maximum}",
+        key,
+        grade.student.name or key,
+        links.get(key, ""),
+        grade.verdict,
+        "excused" if grade.is_excused else f"{points}{maximum}",
+        status,
         format_points(grade.pending) if grade.pending else "",
-        counted(grade.late.days, "day") if grade.late.days else "",
-        total,
-        enumerated([criterion.id for criterion in lost], _MAX_LOST),
+        f"{counted(grade.late.days, 'day')}{penalty}" if is_graded and grade.late.days else "",
+        enumerated([criterion.id for criterion in _costliest(summary, member)], _MAX_LOST),
     )
 
 
@@ -87,7 +89,7 @@ def row_groups(
         keys = [one.student.key for one in grades if one.verdict == verdict and not one.is_excused]
         yield f"status-{verdict}", Group(words, keys)
     for name, words, is_in in _STATES:
-        yield name, Group(words, [one.student.key for one in grades if is_in(one)])
+        yield name, Group(words, [one.student.key for one in grades if is_in(one)], words)
     pending = {one.student.key for one in grades if one.pending}
     yield "pending", Group("need manual grading", [key for key in members if key in pending])
     yield from _by_figure(statistics, members)
