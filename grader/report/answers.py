@@ -2,9 +2,6 @@
 
 import re
 
-from grader.checks.outcome import Outcome
-from grader.source import Location
-
 _FENCE = re.compile(r"\s*(?:```[^`]*|~~~.*)$")
 _SIGNS = tuple(
     (re.compile(pattern), plain)
@@ -20,19 +17,6 @@ _SIGNS = tuple(
         (r"\\([-\\`*_{}\[\]()#+.!<>|~])", r"\1"),
     )
 )
-
-
-def answer_lines(outcome: Outcome) -> list[str]:
-    """Return the lines of the answer that a check found; none if it is not about a question."""
-    if not isinstance(outcome.measured, str):
-        return []
-    has_lines = outcome.location is None or counts_lines(outcome.location)
-    return plain_lines(outcome.measured) if has_lines else outcome.measured.strip("\n").splitlines()
-
-
-def counts_lines(location: Location) -> bool:
-    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the page or heading."""
-    return not location.path.lower().endswith((".pdf", ".docx"))
 
 
 def plain_lines(markdown: str) -> list[str]:

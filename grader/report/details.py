@@ -3,8 +3,9 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from grader.checks.outcome import Outcome
+from grader.grading.criterion import Criterion
 from grader.grading.report import Hint, Report, Result
-from grader.report.answers import answer_lines, counts_lines, plain_lines
 from grader.report.locations import excerpt_lines, location_text
 from grader.report.order import FailedCriterion, alike, failures, is_failure, is_manual, points_of, status_of
 from grader.source import Location
@@ -60,7 +61,7 @@ def result_details(result: Result, report: Report) -> Details:
     return Details(
         _sentences(result),
         _printable(answer_lines(outcome)) if is_asked else (),
-        _printable(plain_lines(criterion.answer)) if is_asked else (),
+        _printable(model_lines(criterion)) if is_asked else (),
         outcome.location if has_failed else None,
         _one_line(criterion.feedback) if is_mistake and has_subject else "",
         # The title of a criterion is never stated alone, because it would read as a fact.
@@ -95,6 +96,31 @@ def _sentences(result: Result) -> tuple[str, ...]:
 def _one_line(text: str) -> str:
     """Return a text of a rubric or a comment in one printable line."""
     return printable(" ".join(text.split()))
+
+
+def answer_lines(outcome: Outcome) -> list[str]:
+    """Return the lines of the answer that a check found, as plain text; none if it is not about a question."""
+    text = outcome.measured
+    if not isinstance(text, str):
+        return []
+    is_markup = outcome.location is None or counts_lines(outcome.location)
+    return _plain_lines(text) if is_markup else text.strip("\n").splitlines()
+
+
+def model_lines(criterion: Criterion) -> list[str]:
+    """Return the lines of the model answer, as plain text; none if the criterion has no answer or is loaded without."""
+    return _plain_lines(criterion.answer) if criterion.answer else []
+
+
+def _plain_lines(markdown: str) -> list[str]:
+    from grader.report.answers import plain_lines  # late: few reports have answers
+
+    return plain_lines(markdown)
+
+
+def counts_lines(location: Location) -> bool:
+    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the page or heading."""
+    return not location.path.lower().endswith((".pdf", ".docx"))
 
 
 def _printable(lines: Iterable[str]) -> tuple[str, ...]:

@@ -6,11 +6,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
+from grader.classroom.gradebook.lateness import time_text
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
 from grader.grading.pictures import evidence_files
-from grader.report.answers import answer_lines, counts_lines, plain_lines
 from grader.report.console import wrapped
+from grader.report.details import answer_lines, counts_lines, model_lines
 from grader.report.order import status_of
 from grader.text import counted, counted_points, printable
 
@@ -34,7 +35,7 @@ def render_item(
     _print_block("Found", answer_lines(outcome), console)
     _print_block("Look at", files_text(item), console)
     _print_block("Pictures", pictures, console)
-    _print_block("Model answer", plain_lines(criterion.answer), console)
+    _print_block("Model answer", model_lines(criterion), console)
     if place := place_text(item):
         wrapped(console, Text(f"in {place}", "dim"), 0)
     lines = [f"#{number} {' '.join(comment.split())}" for number, comment in comments.items()]
@@ -76,7 +77,7 @@ def marked_text(item: QueuedResult) -> str:
 def mark_text(mark: Mark) -> str:
     """Return a mark in one printable line: points, name, time, comment."""
     points = counted_points(mark.points) if mark.points is not None else mark.entry.kind
-    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
+    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {time_text(mark.at)}"]
     comment = " ".join(mark.comment.split())
     return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
 

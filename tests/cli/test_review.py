@@ -201,7 +201,7 @@ def test_a_newer_mark_is_confirmed(
     meanwhile(lambda: put(top, "anna", "essay", 3, "two roots"), ["2 mine", *typed])
     done = review(top, "", "--criterion", "essay")
     assert done.stderr.startswith("grader: somebody has marked this since it was shown: 3 points by Kim at 20")
-    assert done.stderr.endswith("+00:00: two roots\n")
+    assert done.stderr.endswith("): two roots\n")
     assert done.stderr.count("\n") == 1
     assert "k to keep that mark, r to replace it with yours: " in done.stdout
     assert done.stdout.endswith(end)

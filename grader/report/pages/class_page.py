@@ -1,6 +1,6 @@
 """The class's page: statistics, common edits with small pictures of a robot, and a table of students with links."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -23,6 +23,7 @@ from grader.report.class_words import (
     FIXES_NOTE,
     IDENTICAL_NOTE,
     MAX_LISTED,
+    NOT_DEDUCTED_NOTE,
     VERDICTS,
     adjusted_lines,
     earlier_line,
@@ -37,11 +38,11 @@ from grader.report.class_words import (
     span,
 )
 from grader.report.drawing import thumbnail_element
-from grader.report.pages.class_rows import Group, StudentRow, row_groups, student_rows
+from grader.report.pages.class_rows import columns, group_data, row_groups, student_rows
 from grader.report.pages.robot import RULES
 from grader.report.pages.shell import Assets, render_page
 from grader.robot.transforms import Vector, dot
-from grader.text import counted, format_points, printable
+from grader.text import counted, format_points
 
 _SAME_WAY = 0.9  # cosine
 
@@ -134,6 +135,7 @@ def render_class_page(
         "out_of": format_points(summary.statistics.out_of),
         "criteria": _criteria(summary.statistics),
         "criteria_note": CRITERIA_NOTE,
+        "not_deducted_note": NOT_DEDUCTED_NOTE,
         "failures": summary.statistics.failures if summary.statistics.graded else (),
         "fixes": [_fix(fix, drawings) for fix in summary.fixes[:MAX_LISTED]],
         "fixes_note": FIXES_NOTE,
@@ -144,34 +146,10 @@ def render_class_page(
         "evidence": evidence_lines(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,
-        "columns": _columns(rows, summary.statistics),
+        "columns": columns(rows, summary.statistics),
         "groups": found,
     }
-    return render_page("class.html", values, _data(rows, found), Assets("class.css", "class.js", RULES))
-
-
-def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
-    """Return the data of the script: for each group its label, its search word, and the numbers of its rows."""
-    numbers = {row.key: number for number, row in enumerate(rows)}
-    return {
-        "groups": {
-            name: [printable(label), word, [numbers[key] for key in keys]]
-            for name, (label, keys, word) in found.items()
-        }
-    }
-
-
-def _columns(rows: Sequence[StudentRow], statistics: ClassStatistics) -> list[tuple[str, str, str]]:
-    """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
-    columns = (
-        ("grade", f"grade of {format_points(statistics.out_of)}", "number"),
-        ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
-        ("status", "status", ""),
-        ("pending", "needs manual grading", "number"),
-        ("late", "late", "number"),
-        ("lost", "lost points in", ""),
-    )
-    return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
+    return render_page("class.html", values, group_data(rows, found), Assets("class.css", "class.js", RULES))
 
 
 def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:

@@ -1,7 +1,8 @@
 """The table of students on the class's page, and the groups of students that it can show."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.statistics import ClassStatistics, Member
 from grader.classroom.gradebook.student_grade import StudentGrade
@@ -9,7 +10,7 @@ from grader.classroom.gradebook.summary import ClassSummary
 from grader.classroom.typed_names import without_accents
 from grader.grading.criterion import Criterion
 from grader.report.class_words import VERDICTS, span
-from grader.text import counted, enumerated, format_points
+from grader.text import counted, enumerated, format_points, printable
 
 _MAX_LOST = 2  # criteria in a row
 
@@ -111,3 +112,31 @@ def _by_figure(statistics: ClassStatistics, members: Mapping[str, Member]) -> It
     for number, failure in enumerate(statistics.failures):
         keys = [key for key, member in members.items() if number in member.mistakes]
         yield f"mistake-{number}", Group(f"{failure.criterion.id}: {failure.message}", keys)
+
+
+def group_data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
+    """Return the data of the script: for each group its label, its search word, and the numbers of its rows.
+
+    Of each number but the first, it is the difference to the one before: a large class has many of them.
+    """
+    numbers = {row.key: number for number, row in enumerate(rows)}
+    return {
+        "groups": {
+            name: [printable(label), word, [after - before for before, after in pairwise((0, *shown))]]
+            for name, (label, keys, word) in found.items()
+            for shown in [sorted(numbers[key] for key in keys)]
+        }
+    }
+
+
+def columns(rows: Sequence[StudentRow], statistics: ClassStatistics) -> list[tuple[str, str, str]]:
+    """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
+    found = (
+        ("grade", f"grade of {format_points(statistics.out_of)}", "number"),
+        ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
+        ("status", "status", ""),
+        ("pending", "needs manual grading", "number"),
+        ("late", "late", "number"),
+        ("lost", "lost points in", "text"),
+    )
+    return [column for column in found if column[1] and any(getattr(row, column[0]) for row in rows)]

@@ -10,7 +10,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
-from grader.report.answers import answer_lines, plain_lines
+from grader.report.details import answer_lines, model_lines
 from grader.report.pages.shell import Assets, render_page
 from grader.report.review import files_text, marked_text, message_text, place_text, who
 from grader.text import counted, counted_points, format_points, shell_quoted
@@ -44,7 +44,7 @@ def item_page(
         "score": "" if item.is_second else _grade(item.grade),
         "message": message_text(item),
         "answer": answer_lines(outcome),
-        "model": plain_lines(criterion.answer),
+        "model": model_lines(criterion),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
         "pictures": [*_pictures(found, place.number)],
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],

@@ -89,7 +89,7 @@ def test_undecided_submissions_are_no_zeros(top: Path) -> None:
     assert (found["graded"], found["undecided"]) == (len(students), 2) == (14, 2)
     assert found["mean"] == pytest.approx(sum(grades) / len(grades), abs=1e-3)
     assert sum(found["tenths"]) == 12
-    assert "2 submissions are undecided for the most part: not in these grades" in text(top)
+    assert "Not in these grades: 2 submissions, because most of the automatic points need manual grading" in text(top)
 
 
 def test_three_kinds_of_points_are_separate(top: Path) -> None:
@@ -108,7 +108,7 @@ def test_the_main_reason_is_one_line(top: Path) -> None:
     assert data(top)["statistics"]["reasons"] == [
         {"reason": "the package other is not part of the submission", "count": 2}
     ]
-    assert "Could not be decided: 2 submissions: the package other is not part of the submission" in text(top)
+    assert "Checks without a result: 2 submissions: the package other is not part of the submission" in text(top)
 
 
 def test_a_manual_mark_decides(top: Path) -> None:
