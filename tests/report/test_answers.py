@@ -73,3 +73,11 @@ def test_reports_and_the_review_show_plain_text(tmp_path: Path, kind: str) -> No
     assert grader("batch", tmp_path / "class", "--rubric", tmp_path / "small.toml", "--gradebook", book).returncode == 0
     review = grader("review", "--gradebook", book, stdin="q\n", COLUMNS="200").stdout
     assert "Found:\n" + "".join(f"  {line}\n" for line in PLAIN) in review
+
+
+def test_a_model_answer_of_several_lines(tmp_path: Path) -> None:
+    """The overview of a rubric shows it in one paragraph, the review line by line, both without signs of Markdown."""
+    answer = '"""\n# Roots\n\n- *two* roots\n"""'
+    (tmp_path / "small.toml").write_text(lab_text().replace('"Because of the roots."', answer), encoding="utf-8")
+    shown = grader("rubric", "show", tmp_path / "small.toml", "--answers").stdout
+    assert "    Model answer: Roots - two roots\n" in shown
