@@ -21,11 +21,11 @@ VERDICTS = {
     "missing": "without a submission",
 }
 CRITERIA_NOTE = (
-    "share: the mean share of the points that students earned. discrimination: whether students who earned the rest of"
+    "Share: the mean share of the points that students earned. Discrimination: whether students who earned the rest of"
     " the grade earned these points, too (a correlation from -1 to 1). Below 0.2 a criterion hardly separates strong"
     " from weak submissions; below 0 it may be wrong."
 )
-NOT_DEDUCTED_NOTE = "not deducted: failed because of an earlier mistake alone, or corrected after grading."
+NOT_DEDUCTED_NOTE = "Not deducted: failed because of an earlier mistake alone, or corrected after grading."
 FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 IDENTICAL_NOTE = (
     "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students"
