@@ -149,7 +149,7 @@ def test_markup_of_students_stays_text(open_page: Open, tmp_path: Path) -> None:
     assert opened.page.title() != "run"
 
 
-@pytest.mark.parametrize("width", [1366, 683, 400])
+@pytest.mark.parametrize("width", [1366, 1000, 683, 400])
 def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
     """A long file name breaks, no code is cut off, and name and grade of a student are in view, below the headings."""
     make_class(tmp_path)
